@@ -25,8 +25,8 @@ from served import browser_path, start_server
 from test_views import laborious
 
 from trunnion.app.address import pack
-from trunnion.app.calls import LINE, Call
-from trunnion.app.jobs import Job
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.jobs import Job
 from trunnion.app.pool import Pool
 from trunnion.driveline.starter import starter
 

@@ -116,7 +116,7 @@ def main() -> None:
     options = parser.parse_args()
     points, threads = options.points, options.threads
 
-    import trunnion.analyses.charts.stability_chart  # noqa: F401  (lazy imports count as imports)
+    import trunnion.floquet.charts.stability_chart  # noqa: F401  (lazy imports count as imports)
 
     before = resident()
     first = timed(lambda: chart(points, threads))

@@ -32,7 +32,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
-from trunnion.numerics.chain.chain_tables import LANES
+from trunnion.numerics.lanes import LANES
 from trunnion.results.chart import StabilityChart
 
 Array = NDArray[np.float64]
@@ -221,7 +221,7 @@ def main() -> None:
         joint = "HookeJoint *.angle" if line is not two else "HookeJoint 1.angle"
         return tn.stability_chart(line, ("speed", *speed, n), (joint, *angle, n), tolerance=TOLERANCE, threads=threads)
 
-    import trunnion.analyses.charts.stability_chart  # noqa: F401  (lazy imports count as imports)
+    import trunnion.floquet.charts.stability_chart  # noqa: F401  (lazy imports count as imports)
 
     chart(two, (0.02, 2.0), (0.0, 1.5), 200)
     before = resident()

@@ -1,4 +1,4 @@
-"""Whether charts choose the cheaper way: the cost model of ``analyses.charts.prices`` against measured seconds.
+"""Whether charts choose the cheaper way: the cost model of ``floquet.charts.prices`` against measured seconds.
 
     PYTHONPATH=src python benchmarks/prices.py
 
@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_families
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_pixels import judge_matrices
-from trunnion.analyses.charts.prices import kernel_price, pixel_price, step_price
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import chart_families
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_pixels import judge_matrices
+from trunnion.floquet.charts.prices import kernel_price, pixel_price, step_price
 from trunnion.results.chart import StabilityChart
 
 TRUCK = tn.load(Path(__file__).parents[1] / "examples" / "truck.toml")

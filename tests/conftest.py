@@ -16,9 +16,9 @@ import typer.testing
 from typer.testing import CliRunner, Result
 
 import trunnion as tn
-from trunnion.analyses.charts import prices
 from trunnion.cli import app
-from trunnion.studies.result import Reproduction
+from trunnion.floquet.charts import prices
+from trunnion.studies.shared.result import Reproduction
 
 pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
 

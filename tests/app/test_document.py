@@ -11,10 +11,10 @@ pytest.importorskip("panel")
 
 import trunnion as tn
 from trunnion.app.address import pack, unpack
-from trunnion.app.calls import LINE, Call, script
-from trunnion.app.document import Document
-from trunnion.app.form import Group
-from trunnion.app.variants import Sliders, difference
+from trunnion.app.parts.calls import LINE, Call, script
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.form import Group
+from trunnion.app.parts.variants import Sliders, difference
 from trunnion.app.views.driveline import DrivelineView
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter

@@ -13,8 +13,8 @@ pytest.importorskip("panel")
 from test_views import rattling
 
 from trunnion.app import shown
-from trunnion.app.calls import script
-from trunnion.app.document import Document
+from trunnion.app.parts.calls import script
+from trunnion.app.parts.document import Document
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import View
 from trunnion.driveline.files import dumps, loads

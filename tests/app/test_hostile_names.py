@@ -19,11 +19,11 @@ from test_exported_code import view_of
 
 import trunnion as tn
 from trunnion.app.address import pack
-from trunnion.app.calls import script
-from trunnion.app.document import Document
 from trunnion.app.page import Page
-from trunnion.app.pieces import Shown, lines, markup, small
-from trunnion.app.variants import difference
+from trunnion.app.parts.calls import script
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.pieces import Shown, lines, markup, small
+from trunnion.app.parts.variants import difference
 from trunnion.app.views.base import View, links
 from trunnion.app.worker import Worker
 from trunnion.errors import TrunnionError

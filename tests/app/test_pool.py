@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.app.calls import LINE, Call
-from trunnion.app.jobs import Job
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.jobs import Job
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.driveline.starter import starter
 from trunnion.errors import ComputationError, InputError

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from served import Look
 
-from trunnion.app import figures
+from trunnion.app.parts import figures
 
 LEAST_CONTRAST = 4.5
 """Of text, by WCAG 2.2, 1.4.3."""

@@ -20,9 +20,9 @@ from bokeh.document import Document as BokehDocument
 import trunnion as tn
 from trunnion.app import session as module
 from trunnion.app.address import pack
-from trunnion.app.calls import LINE, Call
-from trunnion.app.jobs import Answer, Job
-from trunnion.app.pieces import FAINT, Shown
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.jobs import Answer, Job
+from trunnion.app.parts.pieces import FAINT, Shown
 from trunnion.app.session import NOW, Session
 from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter

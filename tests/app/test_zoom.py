@@ -16,7 +16,7 @@ pytest.importorskip("panel")
 from test_exported_code import view_of
 
 import trunnion as tn
-from trunnion.app.jobs import Job
+from trunnion.app.parts.jobs import Job
 from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter
 

@@ -10,9 +10,9 @@ import pytest
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.analyses.assessment.check import Status, percent
-from trunnion.analyses.assessment.joint_angles import TABLE_ANGLE, TABLE_SPEED
 from trunnion.cli import app
+from trunnion.design.assessment.check import Status, percent
+from trunnion.design.assessment.joint_angles import TABLE_ANGLE, TABLE_SPEED
 from trunnion.driveline.rules import APPLICATIONS, RULES, Weight, markdown
 from trunnion.errors import InputRemark
 from trunnion.reporting.answer import answer, asked, judged
@@ -83,7 +83,7 @@ def beyond_all(application: str, *off: str) -> tn.Driveline:
 
 
 @pytest.fixture(scope="module")
-def beyond() -> dict[str, tn.analyses.assessment.result.Assessment]:
+def beyond() -> dict[str, tn.design.assessment.result.Assessment]:
     return {application: tn.assess(beyond_all(application)) for application in ALL}
 
 

@@ -14,15 +14,15 @@ import pytest
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.joint_angles import allowed_angle
-from trunnion.analyses.assessment.measures import permissible_stress
-from trunnion.analyses.assessment.ship_shafts import barred_range
-from trunnion.analyses.orders.result import frequency_factor
 from trunnion.cli import app
+from trunnion.design.assessment.check import Status
+from trunnion.design.assessment.joint_angles import allowed_angle
+from trunnion.design.assessment.measures import permissible_stress
+from trunnion.design.assessment.ship_shafts import barred_range
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.overview import overview
 from trunnion.reporting.tables import with_signs
+from trunnion.response.orders.result import frequency_factor
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
 

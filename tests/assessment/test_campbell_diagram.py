@@ -7,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.analyses.linear.loaded_modes import matched
 from trunnion.cli import app
+from trunnion.modes.loaded_modes import matched
 
 J1, J2, K, C = 0.2, 0.8, 1e4, 2.0
 

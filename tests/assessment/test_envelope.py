@@ -57,7 +57,7 @@ def test_the_worst_is_what_assess_says_there() -> None:
         assert found.places[found.where[k]].schedule in ("axle", "")
     torque = next(i for i, c in enumerate(found.checks) if c.name == "max torque of rear")
     assert found.checks[torque].load_case == "hill" and found.places[found.where[torque]].value == 0.1
-    assert found.verdict is tn.analyses.assessment.check.Status.EXCEEDED and "at axle 100 mm" in str(found)
+    assert found.verdict is tn.design.assessment.check.Status.EXCEEDED and "at axle 100 mm" in str(found)
     assert "between them nothing is looked at" in str(found)
 
 
@@ -118,7 +118,7 @@ def test_a_limit_that_is_unknown_at_one_speed_is_unknown(monkeypatch: pytest.Mon
     """It is no smaller value than the others, which alone would be printed as the limit."""
     from dataclasses import replace
 
-    from trunnion.analyses.assessment import envelope as module
+    from trunnion.design import envelope as module
 
     def untold(*args, **options):  # type: ignore[no-untyped-def]
         found = tn.stable_limit(*args, **options)

@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.remedies.variables import Design, Scale
 from trunnion.cli import app
+from trunnion.design.assessment.check import Status
+from trunnion.design.sensitivity.variables import Design, Scale
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
 LOW, HIGH = 90.0, 115.0

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.assessment.joint_angles import allowed_angle
-from trunnion.analyses.assessment.measures import permissible_stress
-from trunnion.analyses.assessment.ship_shafts import barred_range
-from trunnion.analyses.orders.result import frequency_factor
+from trunnion.design.assessment.check import Status
+from trunnion.design.assessment.joint_angles import allowed_angle
+from trunnion.design.assessment.measures import permissible_stress
+from trunnion.design.assessment.ship_shafts import barred_range
 from trunnion.driveline.limits import SHIP_SHAFTS
+from trunnion.response.orders.result import frequency_factor
 
 
 def pumped(**ratings):

@@ -10,8 +10,8 @@ import pytest
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
-from trunnion.analyses.chaos.chaos_subject import clocks
+from trunnion.motion.chaos.certify_chaos import ChaosCertificate
+from trunnion.motion.chaos.chaos_subject import clocks
 from trunnion.studies.double_tripod.published import DoubleTripod
 from trunnion.systems.reference import (
     dead_zone_oscillator,

@@ -16,8 +16,8 @@ from oracles.forced_oscillator import oscillator, what_it_is
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
-from trunnion.analyses.motion.repetition import Repetition, repetition
+from trunnion.motion.chaos.certify_chaos import ChaosCertificate
+from trunnion.steady.shooting.repetition import Repetition, repetition
 from trunnion.systems.reference import lorenz, mathieu_oscillator, rossler
 
 Known = tuple[str, int]

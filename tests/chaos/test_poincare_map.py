@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.chaos.poincare_map import PoincareMap
+from trunnion.motion.chaos.poincare_map import PoincareMap
 from trunnion.systems.reference import duffing, linear_oscillator, lorenz, mathieu_oscillator, rossler, ueda
 
 

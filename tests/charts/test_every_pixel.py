@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from scipy.special import mathieu_a, mathieu_b
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_families
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_families import LineFamily, quantities
-from trunnion.analyses.charts.chart_pixels import Pixels, judge
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import chart_families
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_families import LineFamily, quantities
+from trunnion.floquet.charts.chart_pixels import Pixels, judge
 from trunnion.numerics.chain import chain_monodromy
 from trunnion.numerics.patches import patches
 from trunnion.results.chart import StabilityChart

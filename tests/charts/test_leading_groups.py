@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.analyses.charts.leading_group import Settling, settle
+from trunnion.floquet.charts.leading_group import Settling, settle
 
 Array = NDArray[np.float64]
 

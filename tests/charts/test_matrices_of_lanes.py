@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_pixels
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_families import LineFamily
 from trunnion.equations.coefficients import assemble
-from trunnion.numerics.chain.chain_tables import LANES
+from trunnion.floquet.charts import chart_pixels
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.numerics.chain.eigenvalues_in_rows import conditions, eigenvalues_in_rows
+from trunnion.numerics.lanes import LANES
 
 KINDS = ("random", "orthogonal", "graded", "blocks", "repeated", "companion", "zero")
 

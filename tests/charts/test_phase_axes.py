@@ -9,11 +9,11 @@ from oracles.sampling import quick_every
 from phase_charts import QUARTER, PhaseChart, phase_chart
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_families
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_families import LineFamily
-from trunnion.analyses.charts.chart_pixels import Pixels, judge_matrices
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import chart_families
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.chart_pixels import Pixels, judge_matrices
 from trunnion.results.verdict import Verdict
 
 Places = NDArray[np.int64]

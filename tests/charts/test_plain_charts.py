@@ -12,16 +12,16 @@ import pytest
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_families, prices
-from trunnion.analyses.charts import stability_chart as stability_chart_module
-from trunnion.analyses.charts.building import build
-from trunnion.analyses.charts.chart_families import LineFamily
-from trunnion.analyses.charts.plain_chart import build_plainly
-from trunnion.analyses.charts.plain_pixels import plain_radii
-from trunnion.analyses.charts.stability_chart import chart_task, stability_chart
-from trunnion.analyses.limits.result import LimitKind
-from trunnion.analyses.limits.stable_limit import limit_of_chart
+from trunnion.design.limits.result import LimitKind
+from trunnion.design.limits.stable_limit import limit_of_chart
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import chart_families, prices
+from trunnion.floquet.charts import stability_chart as stability_chart_module
+from trunnion.floquet.charts.building import build
+from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.plain_chart import build_plainly
+from trunnion.floquet.charts.plain_pixels import plain_radii
+from trunnion.floquet.charts.stability_chart import chart_task, stability_chart
 from trunnion.numerics.chain.characteristic import radii
 from trunnion.results.verdict import Verdict
 from trunnion.studies.entries import catalogue
@@ -155,8 +155,8 @@ def test_the_chart_of_a_report_and_its_limit_compile_no_kernel_of_charts(tmp_pat
 import sys
 import trunnion as tn
 from numba.core import event
-from trunnion.analyses.charts.stability_chart import chart_of_report
-from trunnion.analyses.limits.stable_limit import limit_of_chart
+from trunnion.floquet.charts.stability_chart import chart_of_report
+from trunnion.design.limits.stable_limit import limit_of_chart
 from trunnion.equations.coefficients import assemble
 
 class Heard(event.Listener):

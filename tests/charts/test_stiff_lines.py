@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.charts import chart_families
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_pixels import judge_matrices
-from trunnion.analyses.limits.stable_limit import LimitKind, limit_of_chart
+from trunnion.design.limits.stable_limit import LimitKind, limit_of_chart
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import chart_families
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_pixels import judge_matrices
 from trunnion.results.chart import ChartPoint, StabilityChart
 from trunnion.results.verdict import Verdict
 

@@ -11,11 +11,11 @@ import pytest
 from numpy.typing import NDArray
 
 import trunnion as tn
-from trunnion.analyses.charts import building, chart_families
-from trunnion.analyses.charts.axes import axis
-from trunnion.analyses.charts.chart_families import LineFamily
-from trunnion.analyses.charts.chart_pixels import judge_matrices
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts import building, chart_families
+from trunnion.floquet.charts.axes import axis
+from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.chart_pixels import judge_matrices
 from trunnion.numerics.patches import patches
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict

@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.assessment.check import Status
-from trunnion.analyses.orders.response import response_about
-from trunnion.analyses.range_search.largest import Quantity, search
 from trunnion.cli import output
+from trunnion.design.assessment.check import Status
 from trunnion.equations.coefficients import assemble
 from trunnion.numerics.threads import on_threads
+from trunnion.response.orders.response import response_about
+from trunnion.response.ranges.largest import Quantity, search
 from trunnion.waiting import OutOfTime, keep_time, time_is_up, time_limit
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")

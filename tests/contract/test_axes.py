@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.charts.axes import axis
 from trunnion.driveline.parameters import pack
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.charts.axes import axis
 
 LINE = tn.Driveline([
     tn.ConstantSpeed(),

@@ -1,4 +1,4 @@
-"""Nothing is silently left out: every cell of ``trunnion.analyses.features`` is seen to be true."""
+"""Nothing is silently left out: every cell of ``trunnion.features`` is seen to be true."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.features import NOT_ANALYSES, TABLE, Treatment, left_out, markdown
 from trunnion.driveline.elements import Element
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.features import FEATURES, NOT_FEATURES
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.features import NOT_ANALYSES, TABLE, Treatment, left_out, markdown
 
 SPEED = 100.0
 RANGE = (100.0, 101.0)
@@ -254,6 +254,10 @@ def test_cell(analysis: str, key: str) -> None:
         assert words and words[0] in after.text, f"not said: {words}"
 
 
+ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "plots")
+"""Where what takes a driveline to answer something stands."""
+
+
 def test_every_analysis_has_a_row() -> None:
     """Every public function that takes a driveline is in the table, or has a reason not to be."""
     public = {name: getattr(tn, name) for name in tn.__all__ if name != "__version__"}
@@ -261,9 +265,7 @@ def test_every_analysis_has_a_row() -> None:
         name
         for name, one in public.items()
         if inspect.isfunction(one)
-        and one.__module__.startswith(
-            ("trunnion.analyses", "trunnion.equations", "trunnion.reporting", "trunnion.plots")
-        )
+        and one.__module__.startswith(tuple(f"trunnion.{room}." for room in ROOMS))
         and any("Driveline" in str(p.annotation) for p in inspect.signature(one).parameters.values())
     }
     assert taking == set(TABLE) | set(NOT_ANALYSES)
@@ -296,6 +298,6 @@ def test_places(one) -> None:
 
 
 def test_the_page_prints_the_table() -> None:
-    """``python -m trunnion.analyses.features`` prints what belongs below the page's first lines."""
+    """``python -m trunnion.features`` prints what belongs below the page's first lines."""
     page = (Path(__file__).parents[2] / "docs" / "features.md").read_text(encoding="utf-8")
     assert page.endswith(f"\n{markdown()}\n")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.modes.resonance_speeds import Resonance
 from trunnion.results.units import amplification_words, angle_words, figures, order_words, with_error
 
 # value, error, beside → words

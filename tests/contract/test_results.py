@@ -13,8 +13,10 @@ import pytest
 import trunnion as tn
 from trunnion.results.declared import Result, axis, over, remark
 
-for found in pkgutil.walk_packages([str(Path(tn.__file__).parent / "analyses")], "trunnion.analyses."):
-    import_module(found.name)
+ROOMS = ("modes", "steady", "floquet", "response", "motion", "design")
+for room in ROOMS:
+    for found in pkgutil.walk_packages([str(Path(tn.__file__).parent / room)], f"trunnion.{room}."):
+        import_module(found.name)
 
 
 def subclasses(base: type) -> set[type]:

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.features import TABLE
+from trunnion.features import TABLE
 from trunnion.plots import DRAWINGS
 
 RAD_PER_SECOND = re.compile(r"rad/s(?! ?(\^2|²))")

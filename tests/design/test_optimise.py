@@ -9,9 +9,9 @@ import pytest
 from scipy.optimize import minimize
 
 import trunnion as tn
-from trunnion.analyses.optimisation.aims import Aim, Answer, Question
-from trunnion.analyses.optimisation.search import Search, first
-from trunnion.analyses.optimisation.space import Space
+from trunnion.design.optimisation.aims import Aim, Answer, Question
+from trunnion.design.optimisation.search import Search, first
+from trunnion.design.optimisation.space import Space
 from trunnion.equations.coefficients import assemble
 from trunnion.results.files import read_dataset, save_dataset
 

@@ -10,7 +10,7 @@ import pytest
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.sensitivity.differences import slope
+from trunnion.design.sensitivity.differences import slope
 from trunnion.results.files import read_dataset, save_dataset
 
 

@@ -9,12 +9,12 @@ import pytest
 from hurry import hurried
 from seed_files import texts
 
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.linear.stability import stability
 from trunnion.driveline.files import loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.starter import starter
 from trunnion.errors import ComputationError, InputRemark, TrunnionError
+from trunnion.floquet.stability.stability import stability
+from trunnion.modes.natural_frequencies import natural_frequencies
 
 VALUES = [
     "0",

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.kinetostatics import equivalent, phasor_angle
-from trunnion.analyses.kinetostatics.chain import chain
+from trunnion.response.kinetostatics import equivalent, phasor_angle
+from trunnion.response.kinetostatics.chain import chain
 from trunnion.results.finding import Gravity
 
 

@@ -9,10 +9,10 @@ import pytest
 from matplotlib.text import Text
 
 import trunnion as tn
-from trunnion.analyses.kinetostatics.measures import extremes, parts
 from trunnion.plots import kinetostatics as plots
 from trunnion.plots.irregularity import draw as draw_irregularity
 from trunnion.plots.style import STYLES, curve_style
+from trunnion.response.kinetostatics.measures import extremes, parts
 
 LINE = lines.row([12, 15], planes=[0, 20], load=150.0)
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.kinetostatics import equivalent_angle
-from trunnion.analyses.kinetostatics.measures import extremes
+from trunnion.response.kinetostatics import equivalent_angle
+from trunnion.response.kinetostatics.measures import extremes
 
 KNOWN = {  # degrees: lag [deg], largest acceleration over speed squared
     10: (0.4386, 0.030626),

@@ -60,8 +60,8 @@ def test_layout_does_not_care_where_the_line_lies():
 
 def test_layout_agrees_with_the_line_it_describes():
     """The line's own axes, rebuilt from angles and planes, enclose the angles of the drawing."""
-    from trunnion.analyses.kinetostatics.chain import chain
-    from trunnion.analyses.kinetostatics.frames import member_frames
+    from trunnion.response.kinetostatics.chain import chain
+    from trunnion.response.kinetostatics.frames import member_frames
 
     rng = np.random.default_rng(6)
     points = np.cumsum(rng.normal(size=(5, 3)) * 0.3 + [1, 0, 0], axis=0)

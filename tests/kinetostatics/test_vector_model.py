@@ -7,8 +7,8 @@ import vector_model
 from vector_model import Line
 
 import trunnion as tn
-from trunnion.analyses.kinetostatics.chain import chain
-from trunnion.analyses.kinetostatics.frames import member_frames
+from trunnion.response.kinetostatics.chain import chain
+from trunnion.response.kinetostatics.frames import member_frames
 
 CASES = {
     "one joint": lines.random_line(1, 0),

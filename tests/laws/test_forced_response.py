@@ -9,11 +9,11 @@ from oracles.nonlinear import NonlinearChain
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.analyses.linear.forced_response import LinearResponse
-from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.linear import periodic_linear_system
+from trunnion.motion.orbits.periodic_response import PeriodicResponse
 from trunnion.numerics.chain.dense_monodromy import Propagation, propagate
+from trunnion.steady.orders.forced_response import LinearResponse
 from trunnion.systems.periodic_linear import from_matrices
 
 

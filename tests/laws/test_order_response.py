@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.orders.response import response_of_table
 from trunnion.equations.coefficients import assemble
+from trunnion.response.orders.response import response_of_table
 
 
 def two_masses(**shaft: Any) -> tn.Driveline:

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import trunnion as tn
-from trunnion.analyses.orders.response import response_about
 from trunnion.equations.coefficients import assemble
+from trunnion.response.orders.response import response_about
 
 ENGINE = ((3.0, 20.0, 0.3), (2.0, 30.0, 0.0), (0.5, 5.0, 1.0))
 

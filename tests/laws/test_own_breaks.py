@@ -14,10 +14,10 @@ from oracles.own_shooting import Shooting, growth_of_own, leads_over
 from oracles.scanned_lines import scanned_line
 
 import trunnion as tn
-from trunnion.analyses.linear.along import stability_along
-from trunnion.analyses.linear.own_breaks import breaks
-from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.stability.along import stability_along
+from trunnion.steady.own.own_breaks import breaks
+from trunnion.steady.own.own_motions import MotionsBySpeed
 
 
 def test_a_motion_on_the_flank_of_a_steep_resonance_is_followed_to():

@@ -7,18 +7,18 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import trunnion as tn
-from trunnion.analyses.linear.along import stability_along
-from trunnion.analyses.linear.loaded_modes import loaded_modes
-from trunnion.analyses.orders.amplitudes import joined
-from trunnion.analyses.orders.response import response_about
-from trunnion.analyses.orders.spectrum import order_spectrum
-from trunnion.analyses.range_search.exponents import SideOrders, floquet_exponents, meeting_exponents
-from trunnion.analyses.range_search.largest import Quantity, first_speeds, search, sharpened
-from trunnion.analyses.range_search.resonances import Modes, orders_acting, resonances
-from trunnion.analyses.range_search.slow import slow_enough
-from trunnion.analyses.range_search.span import Span
-from trunnion.analyses.range_search.unstable import UnstableRanges, unstable_ranges
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.ranges.exponents import SideOrders, floquet_exponents, meeting_exponents
+from trunnion.floquet.ranges.resonances import Modes, orders_acting, resonances
+from trunnion.floquet.ranges.slow import slow_enough
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
+from trunnion.floquet.stability.along import stability_along
+from trunnion.modes.loaded_modes import loaded_modes
+from trunnion.response.orders.response import response_about
+from trunnion.response.ranges.largest import Quantity, first_speeds, search, sharpened
+from trunnion.steady.orders.amplitudes import joined
+from trunnion.steady.orders.spectrum import order_spectrum
 
 
 def bent(angle: float, damping: float = 1e-3, second: float | None = None, inertia: float = 1.0) -> tn.Driveline:

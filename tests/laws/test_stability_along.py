@@ -6,12 +6,12 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import trunnion as tn
-from trunnion.analyses.linear.along import NoSharedMotion, stability_along, straight_decay
-from trunnion.analyses.linear.free_balance import FreeBalance
-from trunnion.analyses.linear.own_motions import MotionsBySpeed
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.stability.along import NoSharedMotion, stability_along, straight_decay
 from trunnion.numerics.chain.exponential_monodromy import exponential, exponential_monodromies
 from trunnion.results.verdict import Verdict
+from trunnion.steady.own.free_balance import FreeBalance
+from trunnion.steady.own.own_motions import MotionsBySpeed
 
 
 def test_the_exponential_is_that_of_scipy():

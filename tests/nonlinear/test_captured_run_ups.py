@@ -15,7 +15,7 @@ import pytest
 from oracles.driven_chains import Chain, keeps, mean_speed, random_chain, reaches, run
 
 import trunnion as tn
-from trunnion.analyses.motion.run_up_result import RunUp
+from trunnion.motion.passing.run_up_result import RunUp
 
 LOOSE, TIGHT = 1e-8, 1e-10
 MOST_EDGES = 0.05
@@ -153,8 +153,8 @@ def test_a_capture_tells_where_why_and_what_to_change(captured: RunUp) -> None:
 def test_the_torque_of_a_captured_line_would_keep_the_last_speed(captured: RunUp) -> None:
     """By another method: the periodic motion at 100 rad/s asks for less than the drive gives, that at 41 rad/s for
     all."""
-    from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
     from trunnion.equations.line_system import line_system
+    from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 
     losses = {w: kept_speed_orbit(line_system(hanging_line(), w)).extra_torque for w in (captured.ending.speed, 100.0)}
     needed = {w: 0.003 * w**2 + torque for w, torque in losses.items()}
@@ -227,8 +227,8 @@ def test_a_joint_captures_at_half_of_the_mode(degrees: float, kind: str) -> None
 def test_a_line_whose_losses_take_the_torque_is_not_captured() -> None:
     """Dampers behind a bent joint far below any resonance: the steady motion at the last speed asks for more than there
     is, by another method."""
-    from trunnion.analyses.orbits.free_orbit import kept_speed_orbit
     from trunnion.equations.line_system import line_system
+    from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 
     line = tn.Driveline(
         [
@@ -303,7 +303,7 @@ def test_a_clutch_that_lets_go_is_no_run_up(free: bool) -> None:
 def test_an_ending_that_hangs_on_the_tolerance_is_not_decided(monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
-    from trunnion.analyses.motion import run_up as module
+    from trunnion.motion.passing import run_up as module
 
     whole, seen = module._run, []
 

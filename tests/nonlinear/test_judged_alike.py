@@ -7,7 +7,7 @@ import pytest
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.orbits.harmonic_balance_springs import balance_springs
+from trunnion.motion.orbits.harmonic_balance_springs import balance_springs
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.verdict import Verdict
 from trunnion.systems.second_order import SecondOrder, cubic_spring

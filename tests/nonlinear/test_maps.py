@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.orbits.closing import Closing, Phase, close
-from trunnion.analyses.orbits.exact_map import OscillatorMap
 from trunnion.errors import InputError
+from trunnion.motion.orbits.exact_map import OscillatorMap
+from trunnion.steady.shooting.closing import Closing, Phase, close
 from trunnion.systems.maps import IntegratedMap, TimedMap
 
 OSCILLATOR = tn.PiecewiseOscillator.gap(1.0, damping=0.1, mean_force=0.1, force=0.05, frequency=0.6)

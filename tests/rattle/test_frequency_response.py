@@ -10,10 +10,10 @@ from gears import HALF_GAP, dead_zone, gear_pair
 from known_motions import DEAD_ZONE_FOLDS, DUFFING_FOLDS
 
 import trunnion as tn
-from trunnion.analyses.orbits.frequency_response import compare_responses, frequency_response
-from trunnion.analyses.orbits.harmonic_balance import harmonic_balance
-from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
+from trunnion.motion.orbits.frequency_response import compare_responses, frequency_response
+from trunnion.motion.orbits.harmonic_balance import harmonic_balance
+from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 

@@ -11,10 +11,10 @@ import pytest
 from known_motions import BACKLASH
 
 import trunnion as tn
-from trunnion.analyses.motion.simulation import simulate_system
 from trunnion.driveline import json_schema
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputRemark
+from trunnion.motion.simulation.simulation import simulate_system
 
 SCHEMA = jsonschema.Draft202012Validator(json_schema())
 

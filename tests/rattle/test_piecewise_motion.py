@@ -21,9 +21,9 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 import trunnion as tn
-from trunnion.analyses.orbits.piecewise_branch import piecewise_branch
-from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.errors import InputError
+from trunnion.motion.orbits.piecewise_branch import piecewise_branch
+from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.numerics.piecewise_linear.piecewise import TooManyEventsError, kernel, move, period
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator

@@ -10,12 +10,12 @@ from gears import HALF_GAP, gear_pair
 from oracles.sampling import quick_every
 from scipy.integrate import quad
 
-from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.analyses.perturbation.averaging import averaging
-from trunnion.analyses.perturbation.cubic_fit import cubic_fit
-from trunnion.analyses.perturbation.describing_function import DescribingFunction, describing_function
-from trunnion.analyses.perturbation.multiple_scales import MultipleScales, multiple_scales
 from trunnion.errors import InputError
+from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.perturbation.averaging import averaging
+from trunnion.motion.perturbation.cubic_fit import cubic_fit
+from trunnion.motion.perturbation.describing_function import DescribingFunction, describing_function
+from trunnion.motion.perturbation.multiple_scales import MultipleScales, multiple_scales
 from trunnion.numerics.piecewise_linear.piecewise import states
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 

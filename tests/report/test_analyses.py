@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.limits.result import LimitKind
-from trunnion.analyses.linear.bending import tube_critical_speed
+from trunnion.design.limits.result import LimitKind
+from trunnion.modes.bending import tube_critical_speed
 
 LINE = tn.catalogue("two-shaft-cardan", angle=0.3)
 

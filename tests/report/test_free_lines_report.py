@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.linear.resonance_speeds import resonance_speeds
 from trunnion.equations.coefficients import assemble
+from trunnion.modes.resonance_speeds import resonance_speeds
 from trunnion.reporting.answer import answer, asked, judged
 from trunnion.reporting.contents import gather
 from trunnion.reporting.overview import at_speed, charted

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from oracles.sampling import quick_only
 
 import trunnion as tn
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.plots.layout import sketch
 from trunnion.plots.style import HEIGHT, WIDTH, new_axes
 from trunnion.reporting.pictures import picture

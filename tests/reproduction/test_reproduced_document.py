@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from trunnion.studies.reproduce import PAPERS
-from trunnion.studies.result import Reproductions
+from trunnion.studies.shared.result import Reproductions
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reproduced.md").read_text(encoding="utf-8")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.studies.result import Reproduction
+from trunnion.studies.shared.result import Reproduction
 from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
 
 SLOW = pytest.mark.slow

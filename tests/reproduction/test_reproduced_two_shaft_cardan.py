@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.studies.result import Reproduction
+from trunnion.studies.shared.result import Reproduction
 from trunnion.studies.two_shaft_cardan.errata import difference_tongue, errata
 from trunnion.studies.two_shaft_cardan.printed_matrices import matrices
 from trunnion.studies.two_shaft_cardan.study import TABLE_1, TABLE_2

@@ -9,7 +9,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.shares import Share, bands, change, in_bands, share, steps
+from trunnion.studies.shared.shares import Share, bands, change, in_bands, share, steps
 
 
 @pytest.fixture(scope="module")

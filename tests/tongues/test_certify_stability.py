@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.analyses.tolerance import floquet_form as floquet_form_module
-from trunnion.analyses.tolerance import lyapunov
-from trunnion.analyses.tolerance.bounds import Coefficients, over_boxes, ratios
-from trunnion.analyses.tolerance.box_terms import BoxTerms
-from trunnion.analyses.tolerance.floquet_form import floquet_form
-from trunnion.analyses.tolerance.lyapunov import judge_boxes
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system
+from trunnion.floquet.tolerance import floquet_form as floquet_form_module
+from trunnion.floquet.tolerance import lyapunov
+from trunnion.floquet.tolerance.bounds import Coefficients, over_boxes, ratios
+from trunnion.floquet.tolerance.box_terms import BoxTerms
+from trunnion.floquet.tolerance.floquet_form import floquet_form
+from trunnion.floquet.tolerance.lyapunov import judge_boxes
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan", angle=0.2, damping_ratio=0.02)
@@ -320,8 +320,8 @@ def test_eight_tolerances_are_proved() -> None:
 @pytest.mark.slow
 def test_a_hundred_thousand_lines_of_certified_boxes() -> None:
     """None is unstable: ±1 % on eight numbers over the speeds of all tongues, drawn all over what was proved."""
-    from trunnion.analyses.tolerance.many_lines import ManyLines
-    from trunnion.analyses.tolerance.spread import read_tolerances, tables
+    from trunnion.floquet.tolerance.many_lines import ManyLines
+    from trunnion.floquet.tolerance.spread import read_tolerances, tables
 
     line, speeds = with_rim(), (0.55, 1.75)
     assert tn.certify_stability(line, EIGHT, speeds).verdict == "proved stable"
@@ -337,7 +337,7 @@ def test_a_hundred_thousand_lines_of_certified_boxes() -> None:
 @pytest.mark.slow
 def test_what_stays_open_stands_beside_what_is_unstable() -> None:
     """Of a line with an unstable range, everything but its neighbourhood is proved, and lines from there are stable."""
-    from trunnion.analyses.tolerance.many_lines import ManyLines
+    from trunnion.floquet.tolerance.many_lines import ManyLines
 
     line = LINE.replace("HookeJoint 1", angle=0.75)
     assembly = assemble(line)

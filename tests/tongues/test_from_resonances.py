@@ -7,11 +7,11 @@ import pytest
 from long_lines import Small, long_line
 
 import trunnion as tn
-from trunnion.analyses.tongues.from_resonances import Followed, followed
-from trunnion.analyses.tongues.naming import eigenvalues
-from trunnion.analyses.tongues.region import patched, unpatched
-from trunnion.analyses.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
-from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
+from trunnion.floquet.tongues.from_resonances import Followed, followed
+from trunnion.floquet.tongues.naming import eigenvalues
+from trunnion.floquet.tongues.region import patched, unpatched
+from trunnion.floquet.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
+from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 
 
 def paths(line: tn.Driveline, low: float, high: float, angles: tuple[float, float], *, patch: bool = False) -> Followed:
@@ -96,7 +96,7 @@ def test_rows_and_resonances_agree(damping: float) -> None:
 def test_what_rows_miss_is_added(monkeypatch: pytest.MonkeyPatch) -> None:
     from dataclasses import replace
 
-    from trunnion.analyses.tongues import from_resonances
+    from trunnion.floquet.tongues import from_resonances
 
     def one_missed(region, v):  # type: ignore[no-untyped-def]
         rows = unstable_intervals(region, v)

@@ -9,17 +9,17 @@ import pytest
 import two_shafts
 
 import trunnion as tn
-from trunnion.analyses.limits.result import LimitKind
-from trunnion.analyses.limits.stable_limit import limit_of_chart
-from trunnion.analyses.tongues.region import unpatched
-from trunnion.analyses.tongues.tongues import task_of
+from trunnion.design.limits.result import LimitKind
+from trunnion.design.limits.stable_limit import limit_of_chart
+from trunnion.floquet.tongues.region import unpatched
+from trunnion.floquet.tongues.tongues import task_of
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
 ANGLE = "HookeJoint 1.angle"
 
 
-def unstable_at(found: tn.analyses.limits.result.StableLimit, i: int, value: float) -> bool:
+def unstable_at(found: tn.design.limits.result.StableLimit, i: int, value: float) -> bool:
     return any(a < value < b for a, b in found.unstable[i])
 
 

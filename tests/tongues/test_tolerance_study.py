@@ -108,9 +108,9 @@ def test_intervals_overlap_those_of_plain_monte_carlo() -> None:
     """100 seeds: at least 90 intervals overlap that of 4096 independent random lines."""
     tolerances = {"Shaft 1.stiffness": 0.05, "Disk 2.inertia": 0.05, "HookeJoint 1.angle": 0.05}
     rng, count, hits = np.random.default_rng(8), 4096, 0
-    from trunnion.analyses.tolerance.many_lines import ManyLines
-    from trunnion.analyses.tolerance.spread import read_tolerances, tables
     from trunnion.equations.coefficients import assemble
+    from trunnion.floquet.tolerance.many_lines import ManyLines
+    from trunnion.floquet.tolerance.spread import read_tolerances, tables
 
     assembly = assemble(LINE)
     spreads = read_tolerances(assembly, tolerances)
@@ -151,8 +151,8 @@ def test_every_line_of_a_stiff_driveline_is_decided_at_its_slowest_speed() -> No
 
 @pytest.mark.parametrize("damping", [0.02, 0.0])
 def test_both_ways_to_judge_many_lines_agree(damping: float) -> None:
-    from trunnion.analyses.tolerance.many_lines import ManyLines
     from trunnion.equations.coefficients import assemble
+    from trunnion.floquet.tolerance.many_lines import ManyLines
 
     assembly = assemble(long_line(3, 4, damping * 1e-3))
     table = assembly.table(8, 150.0)
@@ -234,7 +234,7 @@ def test_probability_of_checks_is_an_area() -> None:
 
 
 def test_lines_are_chosen_by_cost_and_the_result_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    from trunnion.analyses.tolerance import checks as module
+    from trunnion.design.tolerance import checks as module
 
     monkeypatch.setattr(module, "SECONDS", 1e-3)
     found = tn.tolerance_study(OSCILLATOR, speeds=48.0, checks=True, samples=256).checks

@@ -10,14 +10,14 @@ import two_shafts
 from long_lines import long_line
 
 import trunnion as tn
-from trunnion.analyses.tongues.boundaries import boundary_functions
-from trunnion.analyses.tongues.bracketing import bracketed
-from trunnion.analyses.tongues.joining import joined
-from trunnion.analyses.tongues.meetings import meetings
-from trunnion.analyses.tongues.region import Region, patched
-from trunnion.analyses.tongues.rows import Row, looked_at, unstable_intervals
-from trunnion.analyses.tongues.series_roots import row_roots
-from trunnion.analyses.tongues.tongues import PATCH_TOLERANCE, task_of
+from trunnion.floquet.tongues.boundaries import boundary_functions
+from trunnion.floquet.tongues.bracketing import bracketed
+from trunnion.floquet.tongues.joining import joined
+from trunnion.floquet.tongues.meetings import meetings
+from trunnion.floquet.tongues.region import Region, patched
+from trunnion.floquet.tongues.rows import Row, looked_at, unstable_intervals
+from trunnion.floquet.tongues.series_roots import row_roots
+from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
@@ -25,7 +25,7 @@ BOX = (("speed", 0.05, 2.0), ("HookeJoint 1.angle", 0.05, 1.45))
 
 
 @pytest.fixture(scope="module")
-def gentle() -> tn.analyses.tongues.result.Tongues:
+def gentle() -> tn.floquet.tongues.result.Tongues:
     return tn.tongues(LINE, ("speed", 0.25, 2.0), ("HookeJoint 1.angle", 0.0, 0.5), rows=17)
 
 

@@ -10,9 +10,9 @@ import two_shafts
 from two_disks import TwoDisks
 
 import trunnion as tn
-from trunnion.analyses.limits.result import LimitKind
-from trunnion.analyses.tongues.region import Region
-from trunnion.analyses.tongues.window_search import UNKNOWN
+from trunnion.design.limits.result import LimitKind
+from trunnion.floquet.tongues.region import Region
+from trunnion.floquet.tongues.window_search import UNKNOWN
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")
@@ -20,7 +20,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @pytest.fixture(scope="module")
-def angles() -> tn.analyses.tongues.windows.StableWindows:
+def angles() -> tn.floquet.tongues.windows.StableWindows:
     return tn.stable_windows(LINE, "HookeJoint 1.angle", 0.0, 1.4, (0.75, 0.9), rows=33)
 
 

@@ -8,7 +8,7 @@ import pytest
 from two_disks import FINE, PHASE, TwoDisks
 
 import trunnion as tn
-from trunnion.analyses.tongues.window_search import UNKNOWN, UNNAMED
+from trunnion.floquet.tongues.window_search import UNKNOWN, UNNAMED
 
 PLACES = {
     "Shaft 1.damping": "c1",
@@ -39,7 +39,7 @@ def random_box(seed: int) -> tuple[TwoDisks, str, float, float, tuple[float, flo
     return line, name, float(low), float(high), (float(middle * (1 - wide)), float(middle * (1 + wide)))
 
 
-def points_in(found: tn.analyses.tongues.windows.StableWindows, rng: np.random.Generator) -> tuple[np.ndarray, ...]:
+def points_in(found: tn.floquet.tongues.windows.StableWindows, rng: np.random.Generator) -> tuple[np.ndarray, ...]:
     """Speeds and values (points,) in the windows: all over, near their ends, and at both ends of the speeds."""
     low, high = found.windows[rng.integers(len(found.windows), size=POINTS)].T
     share = np.where(rng.random(POINTS) < 0.5, rng.random(POINTS), 10 ** rng.uniform(-6, 0, POINTS))
@@ -84,7 +84,7 @@ def test_random_windows_hold(seed: int) -> None:
     check(seed)
 
 
-def beyond_tip(tongue: tn.analyses.tongues.result.Tongue, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def beyond_tip(tongue: tn.floquet.tongues.result.Tongue, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Points (points,) on the side of a tip where its tongue is not, near it and up to a tenth of its height off."""
     x, y = tongue.tip
     share = 10 ** rng.uniform(-7, -1, POINTS)

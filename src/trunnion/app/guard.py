@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 import tornado.httputil as httputil
 
-from trunnion.app.pieces import markup
+from trunnion.app.parts.pieces import markup
 
 REFUSAL = b"This server answers its own pages only: open the address that trunnion app printed.\n"
 SERVED = re.compile(r"/|/ws|/favicon\.ico|/(static|components|download)/.*")

@@ -8,7 +8,7 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.pieces import Quiet, Shown, column, heading, joined, markup, pane
+from trunnion.app.parts.pieces import Quiet, Shown, column, heading, joined, markup, pane
 from trunnion.app.views.base import View
 
 MOST_OFTEN = 0.1

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import IO
 
-from trunnion.app.jobs import CUT_OFF, Answer, Job, Request, receive, send
+from trunnion.app.parts.jobs import CUT_OFF, Answer, Job, Request, receive, send
 from trunnion.errors import ComputationError, InputError
 
 SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")

@@ -14,18 +14,18 @@ import panel as pn
 from panel.io.document import unlocked
 from panel.io.state import set_curdoc
 
-from trunnion.analyses.assessment.own_limits import unlimited
 from trunnion.app import address
-from trunnion.app.calls import LINE, Call, script
-from trunnion.app.document import Document
-from trunnion.app.jobs import Answer, Job
 from trunnion.app.page import Page
-from trunnion.app.pieces import Html, markup, pane
+from trunnion.app.parts.calls import LINE, Call, script
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.jobs import Answer, Job
+from trunnion.app.parts.pieces import Html, markup, pane
+from trunnion.app.parts.variants import Sliders, buttons, difference
 from trunnion.app.pool import SUPERSEDED, Pool
-from trunnion.app.variants import Sliders, buttons, difference
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import Step, View, links
 from trunnion.app.warming import WARMING
+from trunnion.design.assessment.own_limits import unlimited
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
 from trunnion.equations.coefficients import assemble

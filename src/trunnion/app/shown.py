@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.orders.result import order_name
 from trunnion.driveline.quantities import eye_unit
+from trunnion.response.orders.result import order_name
 from trunnion.results.units import amplification_words
 from trunnion.results.written import write_numbers
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from trunnion.app.calls import LINE, Call
-from trunnion.app.jobs import Job
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.jobs import Job
 from trunnion.driveline.quantities import RPM
 from trunnion.driveline.starter import starter
 

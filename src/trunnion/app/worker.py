@@ -16,7 +16,7 @@ from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from typing import IO, Any
 
-from trunnion.app.jobs import CUT_OFF, Answer, Job, Request, receive, send
+from trunnion.app.parts.jobs import CUT_OFF, Answer, Job, Request, receive, send
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
 MOST_KEPT = 4

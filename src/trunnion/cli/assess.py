@@ -14,8 +14,8 @@ from trunnion.cli.places import check_places, deliver
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
-    from trunnion.analyses.assessment.remedies.result import Remedies
-    from trunnion.analyses.assessment.result import Assessment
+    from trunnion.design.assessment.result import Assessment
+    from trunnion.design.remedies.result import Remedies
 
 DIAGRAM_POINTS = 201
 """Speeds at which the modes of a diagram are computed."""

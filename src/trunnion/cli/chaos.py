@@ -179,7 +179,7 @@ def _subject(
     file: str, parameters: list[str] | None, speed: str | None, unit: str | None, load_case: str | None
 ) -> tn.System:
     """The system that FILE names, with parameters set."""
-    from trunnion.analyses.chaos.chaos_subject import as_system
+    from trunnion.motion.chaos.chaos_subject import as_system
     from trunnion.systems.reference import SYSTEMS
 
     name, _, part = file.partition(":")

@@ -152,8 +152,8 @@ def sensitivity(
 
     Example: trunnion sensitivity truck.toml --speed 1500rpm -p "Shaft *.stiffness" -p "HookeJoint *.angle"
     """
-    from trunnion.analyses.sensitivity.directions import directions_of
-    from trunnion.analyses.sensitivity.sensitivity import KINDS
+    from trunnion.design.sensitivity.directions import directions_of
+    from trunnion.design.sensitivity.sensitivity import KINDS
     from trunnion.equations.coefficients import assemble
 
     line, unit = read_case(file, unit)

@@ -26,7 +26,7 @@ from trunnion.cli.places import DEFAULT_FOLDER, answer, check_places, write_resu
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.analyses.kinetostatics import Kinetostatics
+    from trunnion.response.kinetostatics import Kinetostatics
 
 SUPPORT_EXAMPLE = 'write "Shaft 1:-300mm:-100mm", positions from the joint in front (first shaft: behind)'
 

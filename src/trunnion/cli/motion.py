@@ -31,9 +31,9 @@ from trunnion.cli.places import check_places, deliver
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.analyses.motion.run_up_result import RunUp
-    from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
-    from trunnion.analyses.orbits.periodic_response import PeriodicResponse
+    from trunnion.motion.orbits.periodic_response import PeriodicResponse
+    from trunnion.motion.passing.run_up_result import RunUp
+    from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 
 Subject = Annotated[
     str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
@@ -275,7 +275,7 @@ def _print_orders(result: PeriodicResponse, unit: str) -> None:
 
 
 def _simulation_json(result: Any) -> dict[str, Any]:
-    from trunnion.analyses.motion.line_simulation import LineSimulation
+    from trunnion.motion.simulation.line_simulation import LineSimulation
 
     content = {
         "outcome": result.outcome.kind,

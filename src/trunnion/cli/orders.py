@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from trunnion.analyses.limits.result import StableLimit
-    from trunnion.analyses.linear.speed_sweep import SpeedSweep
-    from trunnion.analyses.orders.result import OrderResponse
+    from trunnion.design.limits.result import StableLimit
+    from trunnion.response.orders.result import OrderResponse
+    from trunnion.response.speed_sweep import SpeedSweep
     from trunnion.results.finding import Finding
 
     Array = NDArray[np.float64]
@@ -141,7 +141,7 @@ def stable_limit(
 
     Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
     """  # fmt: skip
-    from trunnion.analyses.limits.other_limits import SCAN
+    from trunnion.design.limits.other_limits import SCAN
 
     line, unit = read_case(file, unit, load_case)
     label, low, high, points = read_even_axis(parameter, line, unit, SCAN + 1, "--parameter")
@@ -196,9 +196,9 @@ def _orders(text: str | None) -> list[float] | None:
 
 
 def _known(line: tn.Driveline, spring: str | None) -> None:
-    from trunnion.analyses.linear.forced_response import shaft_names
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.coefficients import assemble
+    from trunnion.steady.orders.forced_response import shaft_names
 
     names = shaft_names(assemble(line))
     if spring is not None and spring not in names:
@@ -214,7 +214,7 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
     """What a table shows: sums over the cycle, then amplitude and phase of every order."""
     import numpy as np
 
-    from trunnion.analyses.orders.result import order_name
+    from trunnion.response.orders.result import order_name
 
     data = _in_unit(result.data, unit)
     kept = data[["mean_torque", "peak_torque", "vibratory_torque", "rated_torque", "vibratory_stress", "heat"]]
@@ -243,7 +243,7 @@ def _response_json(result: OrderResponse, findings: Sequence[Finding], unit: str
 
 def _spring_json(result: OrderResponse, spring: int, unit: str) -> dict[str, Any]:
     """Largest torques [N m] of a spring, each with its speed; a rated torque of couplings with a rating alone."""
-    from trunnion.analyses.orders.result import order_name
+    from trunnion.response.orders.result import order_name
 
     columns = {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque}
     if result.rated[spring]:
@@ -281,7 +281,7 @@ def _sweep_json(result: SpeedSweep, unit: str) -> dict[str, Any]:
 
 
 def _limit_json(result: StableLimit, unit: str) -> dict[str, Any]:
-    from trunnion.analyses.limits.result import LimitKind
+    from trunnion.design.limits.result import LimitKind
 
     at, factor = result.critical_speed, speed_factor(unit)
     return {

@@ -58,7 +58,7 @@ def frequency_response(
 
     Example: trunnion frequency-response gear-rattle --method all -o response.png
     """
-    from trunnion.analyses.orbits.frequency_response import ResponseComparison, methods_of
+    from trunnion.motion.orbits.frequency_response import ResponseComparison, methods_of
 
     subject, length = _subject(name, parameters)
     unit = _unit(subject)
@@ -108,10 +108,10 @@ def sweep(
     """
     import numpy as np
 
-    from trunnion.analyses.orbits.free_play import require_forced
-    from trunnion.analyses.orbits.piecewise_branch import check_range
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.staged_line import staged_line
+    from trunnion.motion.orbits.free_play import require_forced
+    from trunnion.motion.orbits.piecewise_branch import check_range
     from trunnion.plots.frequency_response import draw_line_sweeps, draw_sweeps
 
     subject, length = _subject(name, parameters)

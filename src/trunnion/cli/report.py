@@ -20,9 +20,9 @@ from trunnion.results.units import with_error
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
-    from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
-    from trunnion.analyses.linear.stability import Stability
+    from trunnion.floquet.stability.stability import Stability
+    from trunnion.modes.natural_frequencies import NaturalFrequencies
+    from trunnion.modes.resonance_speeds import ResonanceSpeeds
     from trunnion.reporting.answer import Answer, Asked, Judged
     from trunnion.reporting.overview import Overview
     from trunnion.results.chart import StabilityChart
@@ -42,7 +42,7 @@ def print_begin(given: Asked) -> None:
 
 def print_judged(given: Judged) -> None:
     """The verdict and the checks: what is known first."""
-    from trunnion.analyses.assessment.check import Status
+    from trunnion.design.assessment.check import Status
 
     judged, unit = given.assessment, given.unit
     low, high = (show_speed(end, unit) for end in given.speed_range)

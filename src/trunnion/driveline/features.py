@@ -1,6 +1,6 @@
 """What a driveline can have that an analysis may count, refuse or leave out: one list, by field of the description.
 
-``trunnion.analyses.features`` crosses it with the analyses. Every field of every element belongs to a feature (or to
+``trunnion.features`` crosses it with the analyses. Every field of every element belongs to a feature (or to
 ``NOT_FEATURES``, with the reason), which the tests hold.
 """
 

@@ -1,6 +1,6 @@
 """What of a line does nothing, or holds in part only, by where its elements stand: said whenever a line is made.
 
-Analyses say it as well (``trunnion.analyses.features``).
+Analyses say it as well (``trunnion.features``).
 """
 
 from __future__ import annotations

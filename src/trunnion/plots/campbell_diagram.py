@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.linear.campbell_diagram import CampbellDiagram
 from trunnion.driveline.operation import Operation
 from trunnion.plots.over_speed import over_speed
 from trunnion.plots.resonance_marks import spread
 from trunnion.plots.style import FAINT, INK, SMALL, VERMILION, key_below, new_axes
+from trunnion.response.campbell_diagram import CampbellDiagram
 from trunnion.results.speeds import speed_factor
 
 BAND = "#dde6ee"

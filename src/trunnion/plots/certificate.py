@@ -10,8 +10,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from trunnion.analyses.tolerance.certify import StabilityCertificate
 from trunnion.arrays import Array
+from trunnion.floquet.tolerance.certify import StabilityCertificate
 from trunnion.plots.style import INK, TEXT, VERMILION, key_below, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 

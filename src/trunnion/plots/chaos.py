@@ -11,13 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 
-from trunnion.analyses.chaos.bifurcation_diagram import BifurcationDiagram
-from trunnion.analyses.chaos.certify_chaos import ChaosCertificate
-from trunnion.analyses.chaos.lyapunov_map import LyapunovMap, LyapunovSweep
-from trunnion.analyses.chaos.lyapunov_result import LyapunovSpectrum
-from trunnion.analyses.chaos.poincare_map import PoincareMap
-from trunnion.analyses.motion.repetition import modulo
 from trunnion.arrays import Array
+from trunnion.motion.chaos.bifurcation_diagram import BifurcationDiagram
+from trunnion.motion.chaos.certify_chaos import ChaosCertificate
+from trunnion.motion.chaos.lyapunov_map import LyapunovMap, LyapunovSweep
+from trunnion.motion.chaos.lyapunov_result import LyapunovSpectrum
+from trunnion.motion.chaos.poincare_map import PoincareMap
 from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.motion import pair_of_states
 from trunnion.plots.style import (
@@ -37,6 +36,7 @@ from trunnion.plots.style import (
 )
 from trunnion.results.counts import counted
 from trunnion.results.quantity_axes import axis_of_parameter, state_axes
+from trunnion.steady.shooting.repetition import modulo
 
 PORTRAIT = 60
 """Periods of a motion in its portrait."""

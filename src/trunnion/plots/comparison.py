@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.comparison.result import Comparison, Difference
+from trunnion.design.comparison.result import Comparison, Difference
 from trunnion.errors import InputError
 from trunnion.plots.style import ACCENT, INK, VERMILION, key_below, new_axes, rows_of_names
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.assessment.course import Course
+from trunnion.design.assessment.course import Course
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import eye_unit
 from trunnion.plots.order_response import LIMIT, logarithmic, order_curves

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.assessment.envelope import Envelope
+from trunnion.design.envelope import Envelope
 from trunnion.errors import InputError
 from trunnion.plots.style import INK, key_below, label_axes, new_axes
 from trunnion.results.speeds import speed_factor

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 
-from trunnion.analyses.orbits.basins import Basins
-from trunnion.analyses.orbits.frequency_response import ResponseComparison
-from trunnion.analyses.orbits.jumps import abrupt_changes
-from trunnion.analyses.orbits.piecewise_sweep import LineSweep, Sweep
 from trunnion.arrays import Array
+from trunnion.motion.orbits.basins import Basins
+from trunnion.motion.orbits.frequency_response import ResponseComparison
+from trunnion.motion.orbits.jumps import abrupt_changes
+from trunnion.motion.orbits.piecewise_sweep import LineSweep, Sweep
 from trunnion.plots.style import FAINT, INK, SMALL, key_below, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
 

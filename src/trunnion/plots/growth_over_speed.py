@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.linear.along import StabilityAlong
 from trunnion.driveline.operation import Operation
+from trunnion.floquet.stability.along import StabilityAlong
 from trunnion.plots.over_speed import over_speed
 from trunnion.plots.style import INK, key_below, new_axes
 from trunnion.results.speeds import speed_factor

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.plots.kinetostatics import SAME, groups
 from trunnion.plots.style import curve_style, key_below, label_axes, new_axes
+from trunnion.response.kinetostatics.result import Kinetostatics
 
 
 def draw(result: Kinetostatics, axes: Axes | None = None) -> Axes:

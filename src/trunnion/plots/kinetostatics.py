@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from trunnion.analyses.kinetostatics.result import Kinetostatics
 from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.plots.style import (
@@ -28,6 +27,7 @@ from trunnion.plots.style import (
     label_axes,
     new_figure,
 )
+from trunnion.response.kinetostatics.result import Kinetostatics
 from trunnion.results.speeds import show_speed, speed_factor
 
 MARKS_PER_TURN = 8

@@ -15,9 +15,6 @@ from matplotlib.patheffects import withStroke
 from mpl_toolkits.mplot3d import proj3d
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from trunnion.analyses.kinetostatics.chain import Chain, Link, chain
-from trunnion.analyses.kinetostatics.frames import member_frames, turned_about_axis
-from trunnion.analyses.kinetostatics.motion import drive_jet, walk
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.layout import Layout
@@ -25,6 +22,9 @@ from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.laws.hooke import QUARTER_TURN
 from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, head, new_figure, through
+from trunnion.response.kinetostatics.chain import Chain, Link, chain
+from trunnion.response.kinetostatics.frames import member_frames, turned_about_axis
+from trunnion.response.kinetostatics.motion import drive_jet, walk
 
 SHAFT_COLOURS = COLOURS[:6]
 PLANE_COLOUR = "#888888"

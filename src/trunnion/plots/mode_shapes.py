@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies
+from trunnion.modes.natural_frequencies import NaturalFrequencies
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, new_figure
 from trunnion.results.speeds import show_speed, speed_factor
 

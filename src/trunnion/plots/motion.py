@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.motion.line_simulation import LineSimulation
-from trunnion.analyses.motion.simulation import Simulation
-from trunnion.analyses.orbits.periodic_orbit import PeriodicOrbit
-from trunnion.analyses.orbits.periodic_response import PeriodicResponse
 from trunnion.driveline.quantities import TORQUE, shown
+from trunnion.motion.orbits.periodic_response import PeriodicResponse
+from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import Simulation
 from trunnion.plots.style import (
     COLOURS,
     curve_style,
@@ -24,6 +23,7 @@ from trunnion.plots.style import (
 )
 from trunnion.results.quantity_axes import state_axes
 from trunnion.results.speeds import rounded_speed, show_speed
+from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 from trunnion.systems.system import System
 
 POINTS = 6000

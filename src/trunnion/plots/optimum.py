@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from trunnion.analyses.optimisation.result import Optimum
+from trunnion.design.optimisation.result import Optimum
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, label_axes, new_axes, plain, printed
 from trunnion.results.units import in_words
 

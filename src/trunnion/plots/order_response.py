@@ -8,17 +8,17 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from trunnion.analyses.assessment.course import Course
-from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.orders.result import OrderResponse, order_name
 from trunnion.arrays import Array
+from trunnion.design.assessment.course import Course
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.errors import InputError
 from trunnion.plots.over_speed import hatched, over_speed
 from trunnion.plots.style import INK, PATTERNS, TEXT, curve_style, key_below, new_axes, printed
+from trunnion.response.orders.result import OrderResponse, order_name
 from trunnion.results.speeds import speed_factor
 from trunnion.results.units import angle_words
+from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
 MOST_ORDERS = 6
 """Curves of single orders drawn, the largest of them."""

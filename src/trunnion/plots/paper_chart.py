@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 
-from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.modes.resonance_speeds import Resonance
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.stability_chart import edges
 from trunnion.plots.style import INK, SMALL, label_axes, settle

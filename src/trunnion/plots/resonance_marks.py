@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.text import Annotation, Text
 from matplotlib.transforms import ScaledTranslation
 
-from trunnion.analyses.linear.resonance_speeds import Resonance
+from trunnion.modes.resonance_speeds import Resonance
 from trunnion.plots.style import FAINT, INK, SMALL
 
 PITCH = 1.45

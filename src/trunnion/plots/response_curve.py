@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.orbits.branch import PeriodicBranch
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
+from trunnion.motion.orbits.branch import PeriodicBranch
 from trunnion.plots.style import COLOURS, FAINT, INK, key_below, label_axes, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 from trunnion.results.verdict import Verdict

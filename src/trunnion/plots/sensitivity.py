@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from trunnion.analyses.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
+from trunnion.design.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
 from trunnion.errors import InputError
 from trunnion.plots.style import (
     ACCENT,

@@ -14,12 +14,12 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import ScaledTranslation
 
-from trunnion.analyses.linear.resonance_speeds import Resonance, resonance_speeds
-from trunnion.analyses.tongues.result import Tongues
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.parameters import SPEED
+from trunnion.floquet.tongues.result import Tongues
+from trunnion.modes.resonance_speeds import Resonance, resonance_speeds
 from trunnion.plots.resonance_marks import mark_resonances
 from trunnion.plots.style import ACCENT, INK, SMALL, TITLE, colour_bar, label_axes, new_axes, settle
 from trunnion.plots.tongues import draw as draw_tongues

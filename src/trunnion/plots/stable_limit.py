@@ -10,8 +10,8 @@ from matplotlib.collections import PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from trunnion.analyses.limits.result import LimitKind, StableLimit
 from trunnion.arrays import Array
+from trunnion.design.limits.result import LimitKind, StableLimit
 from trunnion.driveline.operation import Operation
 from trunnion.plots.over_speed import mark_operating
 from trunnion.plots.stability_chart import edges

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from trunnion.analyses.tolerance.study import ToleranceStudy
+from trunnion.design.tolerance.study import ToleranceStudy
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, new_axes
 from trunnion.results.speeds import show_speed
 

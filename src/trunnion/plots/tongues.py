@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from trunnion.analyses.tongues.result import Tongue, Tongues
-from trunnion.analyses.tongues.windows import StableWindows
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.floquet.tongues.result import Tongue, Tongues
+from trunnion.floquet.tongues.windows import StableWindows
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, label_axes, logarithmic, new_axes
 from trunnion.results.quantity_axes import quantity_axis
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.analyses.linear.forced_response import LINEAR_RANGE
-from trunnion.analyses.linear.speed_sweep import SpeedSweep
 from trunnion.driveline.operation import Operation
 from trunnion.plots.over_speed import hatched, over_speed
 from trunnion.plots.style import curve_style, key_below, logarithmic, new_axes
+from trunnion.response.speed_sweep import SpeedSweep
 from trunnion.results.speeds import speed_factor
 from trunnion.results.units import angle_words
+from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
 DECADES = 4.0
 """Smallest amplitude shown, in decades below the largest."""

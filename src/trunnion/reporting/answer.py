@@ -11,24 +11,24 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.assessment.assess import by_case, checks_of, judgement, subject_of
-from trunnion.analyses.assessment.check import Check, worst
-from trunnion.analyses.assessment.deciding import weighed
-from trunnion.analyses.assessment.result import STATE_APPLICATION, Assessment
-from trunnion.analyses.assessment.separation import LIMITED
-from trunnion.analyses.assessment.separation import NEEDS as MODES_NEED
-from trunnion.analyses.assessment.separation import ONE as ONE_MODE
-from trunnion.analyses.assessment.subject import NO_RESPONSE, QUICK, Case, Subject, lossy
-from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.linear.along import NoSharedMotion, StabilityAlong
-from trunnion.analyses.linear.natural_frequencies import NaturalFrequencies, natural_frequencies
-from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
+from trunnion.design.assessment.assess import by_case, checks_of, judgement, subject_of
+from trunnion.design.assessment.check import Check, worst
+from trunnion.design.assessment.deciding import weighed
+from trunnion.design.assessment.result import STATE_APPLICATION, Assessment
+from trunnion.design.assessment.separation import LIMITED
+from trunnion.design.assessment.separation import NEEDS as MODES_NEED
+from trunnion.design.assessment.separation import ONE as ONE_MODE
+from trunnion.design.assessment.subject import NO_RESPONSE, QUICK, Case, Subject, lossy
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base
 from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.charts.axes import lowest_speed
+from trunnion.floquet.stability.along import NoSharedMotion, StabilityAlong
+from trunnion.modes.natural_frequencies import NaturalFrequencies, natural_frequencies
+from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.reporting.overview_findings import (
     BEYOND,
     along_findings,

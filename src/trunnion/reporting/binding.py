@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.analyses.assessment.check import Check
-from trunnion.analyses.assessment.measures import spring_of
-from trunnion.analyses.assessment.parametric import NAME as PARAMETRIC
-from trunnion.analyses.assessment.subject import Case
-from trunnion.analyses.orders.result import OrderResponse
+from trunnion.design.assessment.check import Check
+from trunnion.design.assessment.measures import spring_of
+from trunnion.design.assessment.parametric import NAME as PARAMETRIC
+from trunnion.design.assessment.subject import Case
 from trunnion.reporting.answer import capital
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.pictures import Picture, picture
+from trunnion.response.orders.result import OrderResponse
 
 OF_TORQUE = {
     "vibratory torque of": "vibratory_torque",

@@ -9,22 +9,22 @@ from typing import TypeVar
 
 import numpy as np
 
-from trunnion.analyses.assessment.remedies.remedies import remedies_of
-from trunnion.analyses.assessment.remedies.result import Remedies
-from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.kinetostatics import kinetostatics
-from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.analyses.limits.result import LimitKind, StableLimit
-from trunnion.analyses.limits.stable_limit import limit_of_chart
-from trunnion.analyses.linear.bending import BendingSpeed, bending_speeds
-from trunnion.analyses.linear.campbell_diagram import CampbellDiagram, campbell_diagram
-from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds, resonance_speeds
-from trunnion.analyses.linear.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
+from trunnion.design.limits.result import LimitKind, StableLimit
+from trunnion.design.limits.stable_limit import limit_of_chart
+from trunnion.design.remedies.remedies import remedies_of
+from trunnion.design.remedies.result import Remedies
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.charts.axes import lowest_speed
+from trunnion.modes.bending import BendingSpeed, bending_speeds
+from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.reporting.answer import NEARLY
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
+from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
+from trunnion.response.kinetostatics import kinetostatics
+from trunnion.response.kinetostatics.result import Kinetostatics
+from trunnion.response.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import rounded_speed
 from trunnion.waiting import OutOfTime, time_kept

@@ -11,18 +11,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.analyses.assessment.subject import lossy
-from trunnion.analyses.charts.axes import lowest_speed
-from trunnion.analyses.charts.stability_chart import chart_of_report
-from trunnion.analyses.kinetostatics import Kinetostatics, kinetostatics
-from trunnion.analyses.linear.along import stability_along
-from trunnion.analyses.linear.stability import Stability, stability
+from trunnion.design.assessment.subject import lossy
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
+from trunnion.floquet.charts.axes import lowest_speed
+from trunnion.floquet.charts.stability_chart import chart_of_report
+from trunnion.floquet.stability.along import stability_along
+from trunnion.floquet.stability.stability import Stability, stability
 from trunnion.reporting.answer import Answer, answer, asked, judged
 from trunnion.reporting.overview_findings import chart_findings
 from trunnion.reporting.ranges import angle_range
+from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.verdict import Verdict

@@ -7,9 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.analyses.linear.along import StabilityAlong
-from trunnion.analyses.linear.resonance_speeds import ResonanceSpeeds
-from trunnion.analyses.linear.speed_sweep import speed_sweep
 from trunnion.arrays import Codes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
@@ -18,6 +15,9 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import quiet
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.stability.along import StabilityAlong
+from trunnion.modes.resonance_speeds import ResonanceSpeeds
+from trunnion.response.speed_sweep import speed_sweep
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import about_speed, rounded_span, rounded_speed, speed_factor
 from trunnion.results.verdict import Verdict
@@ -77,7 +77,7 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
     for first, last in bands:
         worst = first + int(np.argmax(found.growth_rate[first : last + 1]))
         # Loaded where needed: it brings the compiler with it.
-        from trunnion.analyses.linear.stability import stability
+        from trunnion.floquet.stability.stability import stability
 
         there = stability(assembly, float(found.speed[worst]))
         cause = f" ({there.resonance.in_words})" if there.resonance else ""

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operation import Operation
+from trunnion.modes.natural_frequencies import natural_frequencies
 
 MODES_IN_RANGE = 4
 """Modes that a speed range guessed from the line itself reaches up to."""

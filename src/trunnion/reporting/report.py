@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.limits.result import LimitKind
+from trunnion.design.limits.result import LimitKind
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.features import feature

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.analyses.assessment.check import Status, percent
-from trunnion.analyses.assessment.result import Assessment
+from trunnion.design.assessment.check import Status, percent
+from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
@@ -138,8 +138,8 @@ def irregularity(contents: Contents) -> Table | None:
     turn = contents.turn
     if turn is None:
         return None
-    from trunnion.analyses.kinetostatics.measures import equivalent_angle
-    from trunnion.analyses.kinetostatics.measures import irregularity as uneven
+    from trunnion.response.kinetostatics.measures import equivalent_angle
+    from trunnion.response.kinetostatics.measures import irregularity as uneven
 
     of_shafts = zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True)
     found = {name: uneven(speed, turn.input_speed * float(ratio)) for name, speed, ratio in of_shafts}

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from trunnion.analyses.orbits.periodic_response import PeriodicResponse, periodic_response
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.errors import ComputationError, InputError
+from trunnion.motion.orbits.periodic_response import PeriodicResponse, periodic_response
 from trunnion.results.finding import Finding, Gravity
 from trunnion.waiting import OutOfTime
 

@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Literal, overload
 
 from trunnion.errors import InputError
-from trunnion.studies.result import Reproduction, Reproductions
+from trunnion.studies.shared.result import Reproduction, Reproductions
 
 PAPERS = {
     "two-shaft-cardan": "trunnion.studies.two_shaft_cardan.study:two_shaft_cardan",

@@ -10,18 +10,18 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import panel as pn
 
-from trunnion.analyses.linear.forced_response import shaft_names
-from trunnion.app.calls import Call
-from trunnion.app.curves import Curves
-from trunnion.app.document import Document
-from trunnion.app.jobs import Job
-from trunnion.app.pieces import Html, Quiet, faint, joined, markup, pane, wrapped
+from trunnion.app.parts.calls import Call
+from trunnion.app.parts.curves import Curves
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.jobs import Job
+from trunnion.app.parts.pieces import Html, Quiet, faint, joined, markup, pane, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import assemble
 from trunnion.reporting import ranges
 from trunnion.results.speeds import speed_factor
+from trunnion.steady.orders.forced_response import shaft_names
 
 Setting = str | float | int | bool | None
 """Of a view; one whose default is None is a number that is found by itself where none is typed."""

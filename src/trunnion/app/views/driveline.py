@@ -6,11 +6,11 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.calls import LINE, Call
-from trunnion.app.document import LARGEST_FILE, Document
-from trunnion.app.editor import Editor
-from trunnion.app.pieces import column, pane, picture, pre, wrapped
-from trunnion.app.upload import Upload
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.document import LARGEST_FILE, Document
+from trunnion.app.parts.editor import Editor
+from trunnion.app.parts.pieces import column, pane, picture, pre, wrapped
+from trunnion.app.parts.upload import Upload
 from trunnion.app.views.base import Side, Step, View
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps

@@ -8,11 +8,11 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.analyses.assessment.own_limits import unlimited
-from trunnion.app.calls import LINE, Call
-from trunnion.app.pieces import column, markup, pane
-from trunnion.app.variants import with_number
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.pieces import column, markup, pane
+from trunnion.app.parts.variants import with_number
 from trunnion.app.views.base import Host
+from trunnion.design.assessment.own_limits import unlimited
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import TrunnionError
 

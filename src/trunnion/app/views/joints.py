@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from trunnion.app import figures
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.document import Document
-from trunnion.app.pieces import Html, Shown, column, items, joined, lines, markup, pane, picture, small
+from trunnion.app.parts import figures
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.pieces import Html, Shown, column, items, joined, lines, markup, pane, picture, small
 from trunnion.app.views.base import (
     Setting,
     Side,

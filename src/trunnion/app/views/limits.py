@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import panel as pn
 
-from trunnion.app import figures
-from trunnion.app.axis import Axis
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, pane, pre, wrapped
-from trunnion.app.variants import parameters, shown_unit, with_number
+from trunnion.app.parts import figures
+from trunnion.app.parts.axis import Axis
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.pieces import column, pane, pre, wrapped
+from trunnion.app.parts.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
     MOST_POINTS,
     Setting,

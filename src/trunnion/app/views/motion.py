@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.orbits.frequency_response import methods_of
-from trunnion.app import figures
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, pane, picture, pre
+from trunnion.app.parts import figures
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.pieces import column, pane, picture, pre
 from trunnion.app.views.base import (
     Side,
     Step,
@@ -27,6 +26,7 @@ from trunnion.app.views.base import (
     unit_of,
 )
 from trunnion.driveline.driveline import Driveline
+from trunnion.motion.orbits.frequency_response import methods_of
 
 PERIODIC, RUN_UP, RATTLE = "periodic response", "run-up", "rattle over speed"
 POINCARE, EXPONENTS, CHAOS = "Poincaré map", "Lyapunov exponents", "is it chaos?"

@@ -8,11 +8,11 @@ import numpy as np
 import panel as pn
 from bokeh.models import LegendItem
 
-from trunnion.app import figures
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.mover import Mover
-from trunnion.app.pieces import column, items, pane
+from trunnion.app.parts import figures
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.mover import Mover
+from trunnion.app.parts.pieces import column, items, pane
 from trunnion.app.views.base import (
     Side,
     Step,

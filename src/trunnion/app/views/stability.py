@@ -10,13 +10,13 @@ import panel as pn
 from bokeh.events import RangesUpdate, Tap
 from bokeh.models import BoxAnnotation, ColorBar, LinearColorMapper
 
-from trunnion.app import figures
-from trunnion.app.axis import Axis
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import column, lines, pane, small
-from trunnion.app.point import Point
-from trunnion.app.variants import parameters, shown_unit, with_number
+from trunnion.app.parts import figures
+from trunnion.app.parts.axis import Axis
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.pieces import column, lines, pane, small
+from trunnion.app.parts.point import Point
+from trunnion.app.parts.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
     MOST_POINTS,
     Setting,

@@ -8,13 +8,13 @@ import numpy as np
 import panel as pn
 from bokeh.models import Span
 
-from trunnion.analyses.assessment.own_limits import WITHOUT_LIMIT
-from trunnion.app import figures
-from trunnion.app.calls import LINE, Call
-from trunnion.app.curves import Curve, Curves
-from trunnion.app.pieces import Html, column, items, joined, markup, pane
+from trunnion.app.parts import figures
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.pieces import Html, column, items, joined, markup, pane
 from trunnion.app.views.base import Side, Step, View, load_cases, select, speed_range, unit_of
 from trunnion.app.views.helping import Help
+from trunnion.design.assessment.own_limits import WITHOUT_LIMIT
 from trunnion.driveline.driveline import Driveline
 
 ALL = "as stated and every load case"

@@ -15,10 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Places
-from trunnion.numerics.chain.chain_tables import LANES, ChainLanes, ChainProgram
+from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
 from trunnion.numerics.chain.half_period import whole_periods
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
+from trunnion.numerics.lanes import LANES
 from trunnion.numerics.threads import on_threads
 from trunnion.waiting import keep_time
 

@@ -18,8 +18,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.numerics.jit import njit
-
-LANES = 16
+from trunnion.numerics.lanes import LANES
 
 
 class ChainProgram(NamedTuple):

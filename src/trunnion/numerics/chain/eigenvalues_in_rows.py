@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import LANES
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 MOST_SWEEPS = 30
 """Steps for one eigenvalue after which a matrix is given up."""

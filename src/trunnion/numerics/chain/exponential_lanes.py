@@ -16,7 +16,6 @@ from trunnion.numerics.chain.chain_tables import (
     EXTRA_DAMPING,
     EXTRA_STIFFNESS,
     FREQUENCY,
-    LANES,
     NEAR,
     NEAR_SLOPE,
     OVER_MASS,
@@ -32,8 +31,9 @@ from trunnion.numerics.chain.chain_tables import (
     gather,
 )
 from trunnion.numerics.chain.lane_blocks import pick
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 GAUSS = 0.5 + np.array([-1.0, 0.0, 1.0]) * np.sqrt(15) / 10
 TOGETHER = STAGES // 3

@@ -19,11 +19,12 @@ import math
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, LANES, NEAR_SCALE, PER_UNKNOWN, gather
+from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ROWS, couplings, empty_series
 from trunnion.numerics.chain.lane_blocks import pick
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 
 @njit(nogil=True)

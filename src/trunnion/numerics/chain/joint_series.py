@@ -17,18 +17,10 @@ import math
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import (
-    COSINE,
-    LANES,
-    NEAR_SCALE,
-    PER_JOINT,
-    PER_UNKNOWN,
-    PHASE,
-    TURN_COS,
-    TURN_SIN,
-)
-from trunnion.numerics.chain.rows import load, spread, store
+from trunnion.numerics.chain.chain_tables import COSINE, NEAR_SCALE, PER_JOINT, PER_UNKNOWN, PHASE, TURN_COS, TURN_SIN
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 ORDER = 16
 """Order of the series: a step is then some 1.6 rad of the fastest motion at 1e-10, and cost per radian is flat."""

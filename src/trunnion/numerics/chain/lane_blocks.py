@@ -6,8 +6,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import FREQUENCY, LANES
+from trunnion.numerics.chain.chain_tables import FREQUENCY
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
 
 ROUNDING = 2e-15
 """Of each step."""

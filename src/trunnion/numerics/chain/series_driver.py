@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import LANES, NEAR_SCALE, PER_UNKNOWN, gather
+from trunnion.numerics.chain.chain_tables import NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ORDER, ROWS, couplings, empty_series
 from trunnion.numerics.chain.lane_blocks import ROUNDING, begin_block, end_block, give_back, pick
-from trunnion.numerics.chain.rows import spread
 from trunnion.numerics.chain.series_step import (
     LAST,
     PER_SPARE,
@@ -22,6 +21,8 @@ from trunnion.numerics.chain.series_step import (
     pair_series,
 )
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import spread
 
 LONGEST, STEEPEST = 4.0, 0.7
 

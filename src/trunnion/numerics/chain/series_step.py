@@ -16,10 +16,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, LANES, PER_UNKNOWN, STIFFNESS
+from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, PER_UNKNOWN, STIFFNESS
 from trunnion.numerics.chain.joint_series import ORDER, ROWS
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 LAST = 4
 """Orders whose size tells how far a step may reach."""

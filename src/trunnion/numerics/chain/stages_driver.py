@@ -10,11 +10,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.chain.chain_tables import LANES, add_damping_trace, empty_table, fill, gather
+from trunnion.numerics.chain.chain_tables import add_damping_trace, empty_table, fill, gather
 from trunnion.numerics.chain.lane_blocks import ROUNDING, begin_block, end_block, give_back, pick
 from trunnion.numerics.chain.stages_step import step_by_stages
 from trunnion.numerics.integration.runge_kutta import STAGES, B, C
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
 
 LOCAL_TO_TRUE = 0.1
 

@@ -20,7 +20,6 @@ from trunnion.numerics.chain.chain_tables import (
     EXTRA_DAMPING,
     EXTRA_STIFFNESS,
     FREQUENCY,
-    LANES,
     NEAR,
     NEAR_SLOPE,
     OVER_MASS,
@@ -30,9 +29,10 @@ from trunnion.numerics.chain.chain_tables import (
     STIFFNESS,
     WAVE,
 )
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.integration.runge_kutta import E3, E5, STAGES, A, B
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 # Rows of weights that are not 0: of the stages in front of stage m, of the result and of its two error estimates.
 _ROWS = [*A[:STAGES, :STAGES], B, E5, E3]

@@ -5,9 +5,9 @@ A library's matrix product would start threads of its own under those that share
 
 from __future__ import annotations
 
-from trunnion.numerics.chain.chain_tables import LANES
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
+from trunnion.numerics.rows import load, spread, store
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy")

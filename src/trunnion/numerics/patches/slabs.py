@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.numerics.chain.chain_tables import LANES
-from trunnion.numerics.chain.rows import load, spread, store
 from trunnion.numerics.jit import njit
+from trunnion.numerics.lanes import LANES
 from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, build, grid_by_grid
+from trunnion.numerics.rows import load, spread, store
 
 Propagate = Callable[[Array, Array, float, float], tuple[Array, Array, Array]]
 """(u, v, begin, length) → propagators (points, m, m), errors (points,), ∫tr(M⁻¹C)dτ (points,)."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.analyses.kinetostatics.measures import extremes, largest
-from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.studies.result import Conclusion, Reading, rounded, sign
+from trunnion.response.kinetostatics.measures import extremes, largest
+from trunnion.response.kinetostatics.result import Kinetostatics
+from trunnion.studies.shared.result import Conclusion, Reading, rounded, sign
 
 GUIDELINE = 0.0027
 """Irregularity that makers' guidelines allow a line: one joint of 2.98°."""

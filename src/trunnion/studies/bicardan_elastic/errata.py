@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.analyses.kinetostatics.measures import extremes
-from trunnion.analyses.kinetostatics.result import Kinetostatics
+from trunnion.response.kinetostatics.measures import extremes
+from trunnion.response.kinetostatics.result import Kinetostatics
 from trunnion.studies.bicardan_elastic.published import PRINTED_STIFFNESS
-from trunnion.studies.result import Comparison, Row, rounded
+from trunnion.studies.shared.result import Comparison, Row, rounded
 
 
 def errata(elastic: Kinetostatics, rigid: Kinetostatics, worst: Kinetostatics, even: Kinetostatics) -> Comparison:

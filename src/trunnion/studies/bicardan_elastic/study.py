@@ -11,16 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.kinetostatics.measures import extremes, largest
-from trunnion.analyses.kinetostatics.result import Kinetostatics
-from trunnion.analyses.kinetostatics.turn import kinetostatics
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.plots.kinetostatics import draw_paper
+from trunnion.response.kinetostatics.measures import extremes, largest
+from trunnion.response.kinetostatics.result import Kinetostatics
+from trunnion.response.kinetostatics.turn import kinetostatics
 from trunnion.studies.bicardan_elastic.conclusions import Turns, change, conclusions
 from trunnion.studies.bicardan_elastic.errata import errata
 from trunnion.studies.bicardan_elastic.published import bicardan_elastic as published
-from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
+from trunnion.studies.shared.result import Comparison, PaperFigure, Reproduction, Row
 
 NAME = "bicardan-elastic"
 

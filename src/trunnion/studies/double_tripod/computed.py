@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.chaos.certify_chaos import ChaosCertificate, certify_chaos
-from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
-from trunnion.analyses.chaos.lyapunov_spectrum import lyapunov_spectrum
 from trunnion.arrays import Array
+from trunnion.motion.chaos.certify_chaos import ChaosCertificate, certify_chaos
+from trunnion.motion.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
+from trunnion.motion.chaos.lyapunov_spectrum import lyapunov_spectrum
 from trunnion.numerics.integration.integration import integrate
 from trunnion.studies.double_tripod.contraction import Contraction, contraction
 from trunnion.studies.double_tripod.published import DoubleTripod

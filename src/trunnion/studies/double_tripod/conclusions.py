@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.studies.double_tripod.computed import ORDERS_OF_MOTOR, RANGES, Case, exponent_from
 from trunnion.studies.double_tripod.contraction import contraction
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
-from trunnion.studies.result import AGAINST, FOR, NEITHER, Comparison, Conclusion, Reading, Row, agreed, sign
+from trunnion.studies.shared.result import AGAINST, FOR, NEITHER, Comparison, Conclusion, Reading, Row, agreed, sign
 
 PARTS = {"input": "DIE1", "output": "DOE3"}
 EQUATIONS = {

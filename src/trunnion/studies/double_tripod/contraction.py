@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.studies.double_tripod.published import DoubleTripod
-from trunnion.studies.result import Argument
+from trunnion.studies.shared.result import Argument
 from trunnion.systems.system import System
 
 NAMES = {"input": ("DIE1", "(29)", "(25)"), "output": ("DOE3", "(30)", "(26)")}

@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.studies.double_tripod.contraction import torque_that_breaks_it
 from trunnion.studies.double_tripod.midshaft import midshaft_frequencies, ratio_that_meets
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
-from trunnion.studies.result import Comparison, Row
+from trunnion.studies.shared.result import Comparison, Row
 
 TABLE_RIGIDITY = 1.11e4
 """Torsional rigidity [N m/rad] of Tables 1 and 2."""

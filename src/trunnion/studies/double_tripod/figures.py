@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from trunnion.analyses.chaos.lyapunov_map import LyapunovSweep
-from trunnion.analyses.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.analyses.motion.simulation import Simulation, simulate_system
 from trunnion.arrays import Array
+from trunnion.motion.chaos.lyapunov_map import LyapunovSweep
+from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.motion.simulation.simulation import Simulation, simulate_system
 from trunnion.plots.style import ACCENT, COLOURS, FAINT, INK, SMALL, TITLE, VERMILION, head, label_axes
 from trunnion.studies.double_tripod.estimator import printed_estimator
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod

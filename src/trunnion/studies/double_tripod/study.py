@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.analyses.motion.simulation import Simulation
+from trunnion.motion.simulation.simulation import Simulation
 from trunnion.studies.double_tripod import figures as drawn
 from trunnion.studies.double_tripod.computed import (
     BELOW,
@@ -27,7 +27,7 @@ from trunnion.studies.double_tripod.conclusions import PARTS, START, conclusions
 from trunnion.studies.double_tripod.contraction import argument, contraction
 from trunnion.studies.double_tripod.errata import errata
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
-from trunnion.studies.result import Comparison, PaperFigure, Reproduction, Row
+from trunnion.studies.shared.result import Comparison, PaperFigure, Reproduction, Row
 
 NAME = "double-tripod"
 MOTIONS = (

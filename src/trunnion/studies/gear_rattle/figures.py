@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trunnion.analyses.orbits.basins import Basins
-from trunnion.analyses.orbits.frequency_response import FrequencyResponse, ResponseComparison
-from trunnion.analyses.orbits.piecewise_sweep import Sweep
-from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
 from trunnion.arrays import Array
+from trunnion.motion.orbits.basins import Basins
+from trunnion.motion.orbits.frequency_response import FrequencyResponse, ResponseComparison
+from trunnion.motion.orbits.piecewise_sweep import Sweep
+from trunnion.motion.perturbation.slow_flow import ApproximateResponse
 from trunnion.plots.frequency_response import DASHED, draw_basins, draw_responses
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, TITLE, VERMILION, label_axes, new_axes
 

@@ -12,21 +12,21 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.orbits.basins import Basins, basins
-from trunnion.analyses.orbits.frequency_response import (
+from trunnion.motion.orbits.basins import Basins, basins
+from trunnion.motion.orbits.frequency_response import (
     METHODS,
     FrequencyResponse,
     ResponseComparison,
     compare_responses,
     frequency_response,
 )
-from trunnion.analyses.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.analyses.orbits.piecewise_sweep import Sweep, sweep
-from trunnion.analyses.perturbation.multiple_scales import multiple_scales
-from trunnion.analyses.perturbation.slow_flow import ApproximateResponse
+from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.piecewise_sweep import Sweep, sweep
+from trunnion.motion.perturbation.multiple_scales import multiple_scales
+from trunnion.motion.perturbation.slow_flow import ApproximateResponse
 from trunnion.studies.gear_rattle.figures import basins_figure, index_figure, methods_figure, ranges_figure
 from trunnion.studies.gear_rattle.published import gear_rattle as published
-from trunnion.studies.result import (
+from trunnion.studies.shared.result import (
     AGAINST,
     NEITHER,
     Comparison,

@@ -8,8 +8,8 @@ import numpy as np
 
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-from trunnion.studies.result import NEITHER, Conclusion, Reading, sign
-from trunnion.studies.shares import change, in_bands, percents, share
+from trunnion.studies.shared.result import NEITHER, Conclusion, Reading, sign
+from trunnion.studies.shared.shares import change, in_bands, percents, share
 
 PRACTICAL = float(np.pi / 4)
 """Joint angles that S3 calls practical, up to 45° [rad]."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.analyses.linear.stability import stability
-from trunnion.studies.entries import catalogue
-from trunnion.studies.result import Comparison, Row
-from trunnion.studies.shares import sampled_share
+from trunnion.floquet.stability.stability import stability
+from trunnion.studies.shared.result import Comparison, Row
+from trunnion.studies.shared.shares import sampled_share
 from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
+from trunnion.studies.three_shaft_cardan.published import three_shaft_cardan
 from trunnion.studies.two_shaft_cardan.errata import missed
 
 ANGLES = (0.2, 0.5)
@@ -25,7 +25,7 @@ def errata() -> Comparison:
         )
         for version in ("printed", "second at input", "derived")
     }
-    line = catalogue("three-shaft-cardan", angle_1=ANGLES[0], angle_2=ANGLES[1])
+    line = three_shaft_cardan(angle_1=ANGLES[0], angle_2=ANGLES[1])
     general = np.array([stability(line, float(s), tolerance=1e-9).spectral_radius for s in SPEEDS])
     ruled = [stability(line, float(s), tolerance=1e-8) for s in RULED]
     wrong = sum(missed(np.asarray(one.multipliers)) for one in ruled)

@@ -8,16 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from trunnion.analyses.charts.stability_chart import stability_chart
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.floquet.charts.stability_chart import stability_chart
+from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.drawing import charts_figure, panel
-from trunnion.studies.entries import catalogue
-from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.result import Comparison, Reproduction, Row
-from trunnion.studies.shares import share
+from trunnion.studies.shared.drawing import charts_figure, panel
+from trunnion.studies.shared.resonance_tables import Printed, frequency_rows, resonance_table
+from trunnion.studies.shared.result import Comparison, Reproduction, Row
+from trunnion.studies.shared.shares import share
 from trunnion.studies.three_shaft_cardan.conclusions import PRACTICAL, conclusions
 from trunnion.studies.three_shaft_cardan.errata import errata
+from trunnion.studies.three_shaft_cardan.published import three_shaft_cardan as base_case
+from trunnion.studies.two_shaft_cardan.published import two_shaft_cardan
 
 NAME = "three-shaft-cardan"
 ANGLE = "HookeJoint 2.angle"
@@ -53,10 +54,10 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
     """Reproduce S3 on ``points`` × ``points`` pixels a chart."""
 
     def chart(tolerance: float = 1e-9, ends: tuple[float, float] = (LOW, HIGH), **changes: Any) -> StabilityChart:
-        line = catalogue(NAME, **changes)
+        line = base_case(**changes)
         return stability_chart(line, ("speed", *ends, points), (ANGLE, 0.0, TOP, points), tolerance=tolerance)
 
-    plane_line = catalogue("two-shaft-cardan", inertia_of_disk_2=10.0)
+    plane_line = two_shaft_cardan(inertia_of_disk_2=10.0)
     plane = stability_chart(
         plane_line, ("speed", LOW, HIGH, points), ("HookeJoint 1.angle", 0.0, TOP, points), tolerance=1e-9
     )
@@ -88,7 +89,7 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
             panel(inline[n], f"β₁ = {beta} rad, γ₂ = {gamma:g}, forks in line", two, limits),
         )
         figures.append(charts_figure(n, f"{CAPTIONS[n]}, γ₂ = {gamma:g} and β₁ = {beta} rad", beside, *panels))
-    modes = natural_frequencies(catalogue(NAME)).undamped_frequency
+    modes = natural_frequencies(base_case()).undamped_frequency
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."
     tables = (
         Comparison("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
-from trunnion.analyses.linear.resonance_speeds import resonance_speeds
+from trunnion.modes.natural_frequencies import natural_frequencies
+from trunnion.modes.resonance_speeds import resonance_speeds
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.result import Conclusion, Reading, agreed, sign
-from trunnion.studies.shares import Share, bands, change, in_bands, share
-from trunnion.studies.tips import tip
+from trunnion.studies.shared.result import Conclusion, Reading, agreed, sign
+from trunnion.studies.shared.shares import Share, bands, change, in_bands, share
+from trunnion.studies.shared.tips import tip
 from trunnion.studies.two_shaft_cardan.errata import difference_tongue
 
 PRACTICAL = float(np.pi / 6)

@@ -6,11 +6,11 @@ from functools import cache, partial
 
 import numpy as np
 
-from trunnion.analyses.linear.stability import stability
 from trunnion.arrays import Array, Complex
-from trunnion.studies.drawing import curves
-from trunnion.studies.result import Comparison, PaperFigure, Row
-from trunnion.studies.shares import sampled_share
+from trunnion.floquet.stability.stability import stability
+from trunnion.studies.shared.drawing import curves
+from trunnion.studies.shared.result import Comparison, PaperFigure, Row
+from trunnion.studies.shared.shares import sampled_share
 from trunnion.studies.two_shaft_cardan.printed_matrices import VERSIONS, printed_system
 
 BETA, GAMMA = 0.5, 100.0

@@ -10,17 +10,23 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.analyses.charts.stability_chart import stability_chart
-from trunnion.analyses.linear.natural_frequencies import natural_frequencies
+from trunnion.floquet.charts.stability_chart import stability_chart
+from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.drawing import charts_figure, panel
-from trunnion.studies.entries import catalogue
-from trunnion.studies.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.result import Comparison, Reproduction, Row
-from trunnion.studies.shares import percents, share
+from trunnion.studies.shared.drawing import charts_figure, panel
+from trunnion.studies.shared.resonance_tables import Printed, frequency_rows, resonance_table
+from trunnion.studies.shared.result import Comparison, Reproduction, Row
+from trunnion.studies.shared.shares import percents, share
 from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, Charts, conclusions
 from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
-from trunnion.studies.two_shaft_cardan.published import DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2, group_parameters
+from trunnion.studies.two_shaft_cardan.published import (
+    DAMPING_OF_SHAFT_2,
+    STIFFNESS_OF_SHAFT_2,
+    group_parameters,
+)
+from trunnion.studies.two_shaft_cardan.published import (
+    two_shaft_cardan as base_case,
+)
 from trunnion.studies.two_shaft_cardan.twists import agreement, chart_in_twists
 
 NAME = "two-shaft-cardan"
@@ -53,7 +59,7 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
     heavy = {"inertia_of_disk_2": 100.0}
 
     def over_angle(low: float, high: float, tolerance: float = 1e-9, **changes: Any) -> StabilityChart:
-        line = catalogue(NAME, **changes)
+        line = base_case(**changes)
         return stability_chart(line, ("speed", low, high, points), (ANGLE, 0.0, TOP, points), tolerance=tolerance)
 
     slow = over_angle(0.015, 0.4, 1e-10, **heavy)
@@ -97,7 +103,7 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
                 f"β = {BETA} rad (29°) and μ up to {MOST:g}: the text states neither.",
                 panel(stiffness, f"β = {BETA} rad", "stiffness of shaft 2 over shaft 1, μ [1]", whole, name=False)),
     )  # fmt: skip
-    modes = natural_frequencies(catalogue(NAME, **heavy)).undamped_frequency
+    modes = natural_frequencies(base_case(**heavy)).undamped_frequency
     note = "γ = 100, α = μ = 1. Tongues are followed at a hundredth of the damping down to β = 0."
     tables = (
         Comparison(
@@ -151,7 +157,7 @@ def _assumed(base: StabilityChart, printed: StabilityChart) -> Comparison:
 
 
 def _over_group(label: str, points: int, angle: float = BETA) -> StabilityChart:
-    line = catalogue(NAME, angle=angle)
+    line = base_case(angle=angle)
     parameter = group_parameters(line)[label]
     low = 0.0 if label == DAMPING_OF_SHAFT_2 else 0.05
     across, up = ("speed", 0.06, 2.0, points), (parameter, low, MOST, points)
@@ -160,5 +166,5 @@ def _over_group(label: str, points: int, angle: float = BETA) -> StabilityChart:
 
 def _wide(stiffness: float, points: int) -> StabilityChart:
     """One stiffness ratio over the speeds and angles its conclusion is about."""
-    line = catalogue(NAME, stiffness_of_shaft_2=stiffness)
+    line = base_case(stiffness_of_shaft_2=stiffness)
     return stability_chart(line, ("speed", *WIDE, 3 * points), (ANGLE, 0.0, PRACTICAL, points // 2), tolerance=1e-9)

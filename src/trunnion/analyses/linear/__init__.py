@@ -1,1 +1,0 @@
-"""Linear analyses of a line: natural frequencies, resonances, stability, forced response."""

@@ -1,1 +1,0 @@
-"""Motions in time: simulation, run-up, exact motion of lines with stages."""

@@ -1,1 +1,0 @@
-"""Ranges of speed searched: resonances, largest values, unstable speeds."""

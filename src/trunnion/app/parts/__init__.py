@@ -1,0 +1,1 @@
+"""What the views and the page are made of."""

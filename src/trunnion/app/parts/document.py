@@ -1,0 +1,379 @@
+"""The driveline that a session edits: the content of a file, its last valid line, what is wrong with it, undo.
+
+Whatever is typed goes through the reader of driveline files; a field whose text is refused keeps the text, with the
+refusal beside it, and the views keep the last line that was accepted.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+import warnings
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from copy import deepcopy
+from dataclasses import dataclass, replace
+from itertools import count
+from typing import Any
+
+import tomli_w
+
+from trunnion.app.parts.form import (
+    ANGLES,
+    LISTS,
+    LOAD_CASE,
+    LOADS,
+    SCHEDULE,
+    SWITCHED_OFF,
+    Group,
+    Path,
+    disks_of,
+    form,
+    joints_of,
+    names_of,
+)
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.files import dumps, loads
+from trunnion.driveline.kinds import KINDS
+from trunnion.driveline.quantities import Kind, eye_unit, parse
+from trunnion.driveline.rules import RULES
+from trunnion.errors import InputError, InputRemark
+
+MOST_STEPS = 200
+"""Steps that can be undone."""
+ROUNDING = 1e-15
+"""What a number may lose when it is written short."""
+LARGEST_FILE = 1_000_000
+"""Characters of a file that is taken from the browser."""
+_WORDS = ("name", "description", "after", "of", "speed_unit", "application", "rule", "reason")
+
+
+@dataclass(frozen=True)
+class _State:
+    """The content of the file, and a key for each of its listed tables by list, which it keeps wherever it moves."""
+
+    data: dict[str, Any]
+    keys: Mapping[Path, list[int]]
+
+
+class Document:
+    """A driveline under edit."""
+
+    def __init__(self, text: str) -> None:
+        self.line: Driveline = loads(text)
+        data = tomllib.loads(text)
+        self._fresh = count(1)
+        self._history = [_State(data, self._new_keys(data))]
+        self._now = 0
+        self.toml = text
+        self.problems: tuple[InputError, ...] = ()
+        self._mover = ""
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """The content of the file, as it is typed."""
+        return self._history[self._now].data
+
+    def groups(self) -> tuple[Group, ...]:
+        """Everything that can be edited, problems beside the fields they concern."""
+        keys, made = self._history[self._now].keys, []
+        for group in form(self.data, self.problems):
+            section = _section(group.path)
+            made.append(replace(group, key=keys[section][int(group.path[-1])]) if section else group)
+        return tuple(made)
+
+    def place(self, path: Path, key: int) -> Path | None:
+        """Where a field or a table is now whose ``path`` was read when its table had the ``key``; None: it is gone."""
+        section = _section(path)
+        if section is None:
+            return path
+        keys, at = self._history[self._now].keys[section], len(section)
+        return (*section, keys.index(key), *path[at + 1 :]) if key in keys else None
+
+    def _new_keys(self, data: dict[str, Any]) -> dict[Path, list[int]]:
+        """A key for every table of a list."""
+        return {section: [next(self._fresh) for _ in _listed(data, section)] for section in LISTS}
+
+    # -- changes ------------------------------------------------------------------------------------------------
+
+    def set_text(self, path: Path, text: str) -> None:
+        """Put what was typed into a field; an empty text takes the field away."""
+        last = path[-1]
+        with self._changing() as data:
+            owner: Any = data
+            for key, following in zip(path, path[1:], strict=False):
+                if isinstance(key, str) and key not in owner:
+                    owner[key] = [] if isinstance(following, int) else {}
+                owner = owner[key]
+            value = text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,)) else _read(text)
+            if isinstance(owner, dict) and not text.strip():
+                owner.pop(last, None)
+            elif text.strip() and isinstance(owner, list) and isinstance(last, int) and last >= len(owner):
+                owner.append(value)
+            elif text.strip():
+                owner[last] = value
+
+    def set_numbers(self, line: Driveline, by: str = "") -> None:
+        """Take over a line whose numbers were changed elsewhere; moves of one slider ``by`` are undone as one.
+
+        Raises
+        ------
+        InputError : what is typed is refused: the numbers are those of an earlier line.
+        """
+        if self.problems:
+            remedy = "mend it in the table of Driveline, or undo it"
+            raise InputError("holds what is refused, so no number can be moved", element="driveline", remedy=remedy)
+        data = _texts_kept(tomllib.loads(dumps(line)), self.data, line)
+        if by and by == self._mover:
+            self._history[self._now] = _State(data, self._history[self._now].keys)
+            self._judge()
+            return
+        self._take(data)
+        self._mover = by
+
+    def add_element(self, place: int, kind: str) -> None:
+        """A new element of a kind before ``place``, with the example of its kind."""
+        with self._changing() as data, self._names_kept(data):
+            elements = data.setdefault("element", [])
+            place = min(max(place, 0), len(elements))
+            elements.insert(place, {"type": kind} | _EXAMPLES.get(kind, {}))
+            self._changed_keys["element",].insert(place, next(self._fresh))
+
+    def add_limit(self, of: str) -> None:
+        """An empty limit of an element."""
+        with self._changing() as data:
+            data.setdefault("limit", []).append({"of": of, "vibratory_torque": "500 N*m"})
+            self._append_key("limit")
+
+    def add_load_case(self) -> None:
+        """A load case with a torque at the last disk, and a name that no other one has."""
+        with self._changing() as data:
+            cases = data.setdefault("operation", {}).setdefault(LOAD_CASE, [])
+            disks = disks_of(data.get("element", []))
+            cases.append({"name": _free_name("load", cases), LOADS: {disks[-1]: "100 N*m"} if disks else {}})
+            self._append_key("operation", LOAD_CASE)
+
+    def add_schedule(self) -> None:
+        """A schedule over suspension travel of the first joint, or without one over speed of the last disk."""
+        with self._changing() as data:
+            schedules = data.setdefault("operation", {}).setdefault(SCHEDULE, [])
+            elements = data.get("element", [])
+            name, joints, disks = _free_name("schedule", schedules), joints_of(elements), disks_of(elements)
+            if joints or not disks:
+                angle = elements[names_of(elements).index(joints[0])].get("angle", "12 deg") if joints else "12 deg"
+                follows = {"travel": ["0 mm", "100 mm"], ANGLES: {one: [angle, angle] for one in joints[:1]}}
+            else:
+                follows = {"speed": ["300 rpm", "3000 rpm"], LOADS: {disks[-1]: ["0 N*m", "100 N*m"]}}
+            schedules.append({"name": name, **follows})
+            self._append_key("operation", SCHEDULE)
+
+    def begin_empty(self) -> None:
+        """No element at all; until there are enough of them for a line, the last one stays in the views."""
+        self._take({"format": self.data.get("format", 1)}, {section: [] for section in LISTS})
+
+    def switch_off(self) -> None:
+        """Switch off a rule that is not off yet; until its reason is given the line stays as it was."""
+        with self._changing() as data:
+            off = data.setdefault("operation", {}).setdefault(SWITCHED_OFF, [])
+            taken = {one.get("rule") for one in off if isinstance(one, dict)}
+            rule = next((name for name, one in RULES.items() if one.guideline and name not in taken), "")
+            off.append({"rule": rule, "reason": ""})
+            self._append_key("operation", SWITCHED_OFF)
+
+    def remove(self, path: Path) -> None:
+        """Take an element, a limit, a load case, a schedule or a rule switched off away."""
+        *outer, section, place = path
+        with self._changing() as data, self._names_kept(data):
+            owner: Any = data
+            for key in outer:
+                owner = owner[key]
+            del owner[section][place]
+            del self._changed_keys[*outer, section][int(place)]
+            if not owner[section]:
+                del owner[section]
+
+    def move(self, place: int, by: int) -> None:
+        """Move an element toward the drive (−1) or the load (+1)."""
+        with self._changing() as data, self._names_kept(data):
+            elements, keys = data["element"], self._changed_keys["element",]
+            if 0 <= place + by < len(elements):
+                elements.insert(place + by, elements.pop(place))
+                keys.insert(place + by, keys.pop(place))
+
+    def replace_text(self, text: str) -> None:
+        """Another file.
+
+        Raises
+        ------
+        InputError : it is too large or describes no driveline; nothing is changed then.
+        """
+        if len(text) > LARGEST_FILE:
+            problem = f"has {len(text)} characters, at most {LARGEST_FILE} are taken"
+            raise InputError(problem, key="file", remedy="give a driveline file")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputRemark)
+            loads(text)
+        data = tomllib.loads(text)
+        self._take(data, self._new_keys(data))
+
+    def undo(self) -> bool:
+        """Take the last change back."""
+        return self._step(-1)
+
+    def redo(self) -> bool:
+        """Make it again."""
+        return self._step(1)
+
+    def can_step(self, by: int) -> bool:
+        """Whether there is a change to take back (−1) or to make again (+1)."""
+        return 0 <= self._now + by < len(self._history)
+
+    def _step(self, by: int) -> bool:
+        if not self.can_step(by):
+            return False
+        self._now += by
+        self._mover = ""
+        self._judge()
+        return True
+
+    @contextmanager
+    def _changing(self) -> Iterator[dict[str, Any]]:
+        """A copy of the content to change, then taken over."""
+        data = deepcopy(self.data)
+        self._changed_keys = {section: list(keys) for section, keys in self._history[self._now].keys.items()}
+        yield data
+        self._take(data, self._changed_keys)
+
+    @contextmanager
+    def _names_kept(self, data: dict[str, Any]) -> Iterator[None]:
+        """While elements come, go and move, what is said of one by the name of its kind and number stays said of it.
+
+        "HookeJoint 2" is the first once the one before it is gone; it is then given that name, where a limit, a load, a
+        schedule or a branch speaks of it or of the name that it would get."""
+        before = dict(zip(self._changed_keys["element",], names_of(data.get("element", [])), strict=True))
+        yield
+        elements, keys, spoken_of = data.get("element", []), self._changed_keys["element",], _spoken_of(data)
+        for table, key, name in zip(elements, keys, names_of(elements), strict=True):
+            if key in before and name != before[key] and {name, before[key]} & spoken_of:
+                table["name"] = before[key]
+        names = names_of(elements)
+        for table, key, name in zip(elements, keys, names, strict=True):
+            if key not in before and names.count(name) > 1:
+                table["name"] = next(n for k in count(1) if (n := f"{table['type']} {k}") not in names)
+
+    def _append_key(self, *section: str) -> None:
+        """A key for a table that was put at the end of its list."""
+        self._changed_keys[section].append(next(self._fresh))
+
+    def _take(self, data: dict[str, Any], keys: Mapping[Path, list[int]] | None = None) -> None:
+        if data == self.data:
+            return
+        if keys is None or any(len(_listed(data, section)) != len(own) for section, own in keys.items()):
+            own = self._history[self._now].keys
+            alike = all(len(_listed(data, section)) == len(one) for section, one in own.items())
+            keys = own if alike else self._new_keys(data)
+        self._history = [*self._history[: self._now + 1][-MOST_STEPS:], _State(data, keys)]
+        self._now = len(self._history) - 1
+        self._mover = ""
+        self._judge()
+
+    def _judge(self) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", InputRemark)
+            text = tomli_w.dumps(self.data)
+            try:
+                self.line = loads(text)
+            except InputError as error:
+                self.problems = error.problems
+            else:
+                self.problems = ()
+                self.toml = text  # as typed: what is stated stays so, be it a default
+
+
+def _section(path: Path) -> tuple[str, ...] | None:
+    """The list that a field or a table belongs to, if to any."""
+    return next((one for one in LISTS if path[: len(one)] == one and len(path) > len(one)), None)
+
+
+def _listed(data: dict[str, Any], section: Path) -> list[Any]:
+    """The tables of a list, none where it is no list."""
+    owner: Any = data
+    for key in section:
+        owner = owner.get(key, []) if isinstance(owner, dict) else []
+    return owner if isinstance(owner, list) else []
+
+
+def _free_name(word: str, tables: list[Any]) -> str:
+    """The first of "WORD 1", "WORD 2" that none of the tables has."""
+    taken = {str(one.get("name", "")) for one in tables if isinstance(one, dict)}
+    return next(n for k in count(1) if (n := f"{word} {k}") not in taken)
+
+
+def _spoken_of(data: dict[str, Any]) -> set[str]:
+    """Names of elements that limits, loads, schedules and branches use."""
+    found = {str(one.get("of", "")) for one in _listed(data, ("limit",)) if isinstance(one, dict)}
+    found |= {str(one["after"]) for one in data.get("element", []) if "after" in one}
+    for section in (LOAD_CASE, SCHEDULE):
+        for one in _listed(data, ("operation", section)):
+            for key in (LOADS, ANGLES) if isinstance(one, dict) else ():
+                found |= set(one.get(key) or {})
+    return found
+
+
+_EXAMPLES: dict[str, dict[str, Any]] = {
+    "Shaft": {"stiffness": "12 kN*m/rad", "damping": "3 N*m*s/rad"},
+    "Coupling": {"stiffness": "12 kN*m/rad", "relative_damping": 0.8},
+    "Clutch": {"stiffnesses": ["800 N*m/rad"], "friction": [{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}]},
+    "Disk": {"inertia": "0.4 kg*m^2"},
+    "HookeJoint": {"angle": "12 deg"},
+    "IdealJoint": {"angle": "12 deg"},
+    "TripodJoint": {"angle": "8 deg", "radius": "30 mm", "length": "0.5 m"},
+    "RzeppaJoint": {"angle": "8 deg"},
+    "DoubleCardanJoint": {"angle": "20 deg"},
+    "Ratio": {"teeth_in": 10, "teeth_out": 41},
+}
+"""What a new element starts with."""
+
+
+def _texts_kept(data: dict[str, Any], before: dict[str, Any], line: Driveline) -> dict[str, Any]:
+    """``data`` of ``line`` with the numbers of elements as ``before`` wrote them where they stay, and short where they
+    change. A field that was stated stays so with its default value too, which ``data`` leaves out."""
+    for key, value in before.items():
+        if key not in data and key in Driveline.model_fields and getattr(line, key) == value:
+            data[key] = value
+    tables = zip(data.get("element", []), before.get("element", []), line.elements, strict=False)
+    for place, (new, old, element) in enumerate(tables):
+        model = KINDS.get(str(new.get("type", "")))
+        if model is None or old.get("type") != new.get("type"):
+            continue
+        added = {k: getattr(element, k) for k in old if k not in new and k in model.model_fields}
+        stated = new | {k: v for k, v in added.items() if isinstance(v, str | int | float)}
+        new = data["element"][place] = {k: stated[k] for k in dict.fromkeys([*old, *new]) if k in stated}
+        for key, text in new.items():
+            kind = model.quantity_of(key) if key in model.model_fields else None
+            if kind is not None and isinstance(text, str | int | float):
+                new[key] = _kept(text, old.get(key), kind)
+    return data
+
+
+def _kept(text: str | float, old: Any, kind: Kind) -> Any:
+    try:
+        value = parse(text, kind)
+        if isinstance(old, str | int | float) and not isinstance(old, bool) and parse(old, kind) == value:
+            return old
+        unit, size = eye_unit(value, kind)
+        short = f"{value / size:.8g} {unit}"
+        return short if abs(parse(short, kind) - value) <= ROUNDING * abs(value) else text
+    except InputError:
+        return text
+
+
+def _read(text: str) -> Any:
+    """What was typed, as a file would hold it: a number, a list or table in TOML, or a text."""
+    text = text.strip()
+    if text[:1] in "[{\"'" or re.fullmatch(r"[+-]?[0-9][0-9_]*|[+-]?[0-9.]+([eE][+-]?[0-9]+)?|true|false", text):
+        try:
+            return tomllib.loads(f"value = {text}")["value"]
+        except (tomllib.TOMLDecodeError, RecursionError, ValueError):
+            return text
+    return text

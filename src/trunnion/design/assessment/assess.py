@@ -1,0 +1,169 @@
+"""Is the line fit for its speeds, which limit binds first, by what margin?"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from trunnion.design.assessment.bending import bending
+from trunnion.design.assessment.check import Check, in_order, worst
+from trunnion.design.assessment.compared import uncovered
+from trunnion.design.assessment.couplings import coupling_ratings
+from trunnion.design.assessment.deciding import weighed
+from trunnion.design.assessment.gear_hammer import gear_hammer
+from trunnion.design.assessment.joint_angles import joint_angles, uniformity
+from trunnion.design.assessment.own_limits import own_limits
+from trunnion.design.assessment.parametric import parametric_stability
+from trunnion.design.assessment.result import Assessment, verdict_of
+from trunnion.design.assessment.separation import separation
+from trunnion.design.assessment.ship_shafts import ship_shafts
+from trunnion.design.assessment.subject import WHOLE, Case, Effort, Subject, cases_of
+from trunnion.driveline.arguments import SpeedEnds, running_range
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
+from trunnion.driveline.operation import Operation
+from trunnion.errors import InputError
+from trunnion.numerics.threads import on_threads
+from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
+from trunnion.results.finding import Finding, by_gravity
+from trunnion.waiting import OutOfTime, keeps_time
+
+OF_RESPONSE = (own_limits, coupling_ratings, ship_shafts, gear_hammer)
+
+
+@keeps_time
+def assess(
+    line: Driveline,
+    speeds: SpeedEnds | None = None,
+    *,
+    load_case: str | None = None,
+    unit: str | None = None,
+    within: float | None = None,
+) -> Assessment:
+    """Every limit of the description and every rule that applies, over the running range.
+
+    Limits, ratings and physical checks always decide; guidelines where the ``application`` of the description says so.
+
+    Parameters
+    ----------
+    line : the driveline, with its ``limits``.
+    speeds : lowest and highest input speed [rad/s]; default the description's range, or its operating speed alone.
+    load_case : name of one of the line's load cases; by default the line is judged as stated and under each of them.
+    unit : of speeds in sentences; default the one of the description.
+    within : seconds that it may take; what is not reached by then is not judged, and says so.
+
+    Raises
+    ------
+    InputError : no speed and no range, a range that is reversed, no such load case.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> parts = [engine, tn.Shaft(stiffness=1e4, damping=2.0, name="shaft"), tn.Disk(inertia=0.8)]
+    >>> line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_torque=400.0)])
+    >>> judged = tn.assess(line, (90.0, 110.0))
+    >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
+    satisfied max torque of shaft 0.129
+    """
+    subject = subject_of(line, speeds, load_case, unit, partly=True)
+    return judgement(subject, checks_of(subject))
+
+
+def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
+    """What follows from the checks of a line."""
+    verdict, barred = verdict_of(checks, subject.speed)
+    findings = _findings(subject.cases, subject.unit)
+    return Assessment(
+        verdict, checks, barred, subject.low, subject.high, subject.speed, subject.unit, findings,
+        subject.line.operation or Operation(),
+    )  # fmt: skip
+
+
+def subject_of(
+    line: Driveline,
+    speeds: SpeedEnds | None,
+    load_case: str | None,
+    unit: str | None,
+    effort: Effort = WHOLE,
+    *,
+    partly: bool = False,
+) -> Subject:
+    """What is judged: see ``assess``; ``effort``: how closely; ``partly``: what there is where a time limit ends it."""
+    if load_case is not None:
+        line = line.with_load(load_case)
+    low, high, speed = _range(line, speeds)
+    every = cases_of(line, low, high, effort, partly=partly)
+    return Subject(line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every)
+
+
+def checks_of(subject: Subject, *, geometry: bool = True) -> tuple[Check, ...]:
+    """All checks in order, of each the load case that binds; ``geometry``: those that no load case changes, too."""
+    prepare(subject.cases)
+    found = list(worst(check for case in subject.cases for check in by_case(subject, case)))
+    if geometry:
+        found += of_line(subject)
+    return in_order(weighed(found, subject.line.operation))
+
+
+def prepare(cases: tuple[Case, ...]) -> None:
+    """Compute what the checks look at, cases side by side."""
+    try:
+        on_threads(Case.prepare, cases, os.cpu_count() or 1)
+    except OutOfTime:
+        if not all(case.partly for case in cases):
+            raise  # otherwise each check says that it was not reached
+
+
+def _range(line: Driveline, speeds: SpeedEnds | None) -> tuple[float, float, float | None]:
+    stated = line.operation.speed if line.operation else None
+    if speeds is None:
+        speeds = stated_range(line) or 2 * (operating_speed(line, None),)
+    return *running_range(speeds), stated
+
+
+def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Check]:
+    """The checks of one load case; ``growth``: parametric stability too, which takes longest."""
+    yield from of_response(subject, case)
+    yield from separation(subject, case)
+    if growth:
+        yield from parametric_stability(subject, case)
+
+
+def of_response(subject: Subject, case: Case) -> Iterator[Check]:
+    """The checks that look at the linear response by order."""
+    for rule in OF_RESPONSE:
+        yield from (uncovered(subject, case, check) for check in rule(subject, case))
+
+
+def of_line(subject: Subject) -> Iterator[Check]:
+    """The checks that no load case changes."""
+    assembly, turn = subject.cases[0].assembly, _turn(subject)
+    yield from joint_angles(subject, assembly, turn)
+    yield from uniformity(subject, turn)
+    yield from bending(subject, assembly)
+
+
+def _turn(subject: Subject) -> Kinetostatics | None:
+    try:
+        return kinetostatics(subject.line, subject.high)
+    except InputError:  # a line clamped at both ends
+        return None
+
+
+def _findings(cases: tuple[Case, ...], unit: str) -> tuple[Finding, ...]:
+    """What the responses say of themselves, once; what only one load case says, with its name."""
+    said: dict[str, tuple[Finding, list[str]]] = {}
+    for case in cases:
+        for finding in case.response.findings_in(unit) if case.response else ():
+            said.setdefault(finding.sentence, (finding, []))[1].append(case.name)
+    everywhere = sum(case.response is not None for case in cases)
+    return by_gravity(
+        finding if len(names) == everywhere or names == [""] else _of_case(finding, names)
+        for finding, names in said.values()
+    )
+
+
+def _of_case(finding: Finding, names: list[str]) -> Finding:
+    where = " and ".join(f"load case {name}" if name else "as stated" for name in names)
+    return Finding(finding.gravity, f"{where[0].upper()}{where[1:]}: {finding.sentence}")

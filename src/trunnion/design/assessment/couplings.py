@@ -1,0 +1,95 @@
+"""Ratings of elastic couplings, in the form of DIN 740-2.
+
+    T_KN ≥ T_N S_t          mean torque, S_t the temperature factor
+    T_Kmax ≥ T_peak S_t S_z     largest torque over the cycle, S_z the starting factor
+    T_KW/S_t ≥ Σ S_f T_f        rated torque: amplitudes of all orders, S_f = 1 up to 10 Hz and √(f/10 Hz) above
+    P_KV ≥ P_W S_t          heat of the damping
+
+Each order counts with the S_f of its own frequency, and phases are left out: the sum of amplitudes is an upper bound.
+The factors are inputs: check them in your edition and in the maker's catalogue.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.design.assessment.check import Check, Rule, Status
+from trunnion.design.assessment.compared import at_largest, unanswered
+from trunnion.design.assessment.course import WHOLE, course
+from trunnion.design.assessment.measures import (
+    allowed_by,
+    of_rating,
+    rating_name,
+    rating_words,
+    service_factors,
+    spring_of,
+)
+from trunnion.design.assessment.subject import Case, Subject, cause
+from trunnion.driveline.quantities import POWER, TORQUE, shown
+from trunnion.driveline.shafts import Coupling
+
+SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
+FORMULAS = {
+    "nominal_torque": "T_N S_t ≤ T_KN",
+    "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
+    "vibratory_torque": "Σ S_f(f) T_f ≤ T_KW/S_t over all orders, S_f = √(f/10 Hz), at least 1",
+    "heat_rating": "P_W S_t ≤ P_KV",
+}
+TAKEN = {
+    "nominal_torque": "mean, by S_t",
+    "maximum_torque": f"{WHOLE}, by S_t S_z",
+    "vibratory_torque": "sum of amplitudes, each by its S_f: an upper bound",
+    "heat_rating": "mean over the cycle, by S_t",
+}
+
+
+LIMITED = {"vibratory_torque": "T_KW/S_t"}
+"""How a picture calls the limit, where it is no rating by itself."""
+
+
+def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
+    """Every rating that a coupling states."""
+    for name, element in subject.line.parts:
+        if not isinstance(element, Coupling):
+            continue
+        for key, formula in FORMULAS.items():
+            rating = getattr(element, key)
+            title, rule = rating_name(name, key), Rule(formula, SOURCE, "known", "din-740")
+            if rating is None:
+                yield Check(title, Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
+            elif isinstance(case.answer, str):
+                yield unanswered(subject, case, title, rule)
+            else:
+                yield _rated(subject, case, name, key, rating, rule)
+
+
+def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rule: Rule) -> Check:
+    measure, response = of_rating(case.assembly, name, key, rating), case.answered
+    found, kind, words = case.largest(measure), POWER if key == "heat_rating" else TORQUE, rating_words(key)
+    allowed = allowed_by(rating, key, service_factors(case.assembly, name)[0])
+    by_order = np.abs(measure.parts(response)) ** (2 if measure.squared else 1)
+    leads = key != "nominal_torque"
+    seen = course(
+        response, f"{words.removesuffix(' rating')} of {name}", kind, TAKEN[key], found.values,
+        {f"{LIMITED.get(key, words)} {shown(allowed, kind, digits=4)}": allowed}, by_order if leads else None,
+    )  # fmt: skip
+    inputs = _factors(case, name, key, found.at)
+    return at_largest(
+        subject, case, measure.name, rule, found, kind, required=measure.margin, inputs=inputs,
+        more="; a sum of amplitudes, an upper bound" if key == "vibratory_torque" else "", element=name,
+        cause=cause(case, found.at, by_order[found.at]) if leads else None, course=seen,
+    )  # fmt: skip
+
+
+def _factors(case: Case, name: str, key: str, at: int) -> str:
+    """Service factors that went in, S_f of the order that leads."""
+    temperature, starting = service_factors(case.assembly, name)
+    said = f"S_t = {temperature:g}"
+    if key == "maximum_torque":
+        return f"{said}, S_z = {starting:g}"
+    size = np.abs(case.answered.torque[at, :, spring_of(case.assembly, name)])
+    if key == "vibratory_torque" and len(size):
+        return f"{said}, S_f = {case.answered.frequency_factor[at, np.argmax(size)]:.4g}"
+    return said

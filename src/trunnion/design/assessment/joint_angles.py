@@ -1,0 +1,133 @@
+"""Angles of propeller-shaft joints and how evenly the line turns, after the makers' rules of practice.
+
+    every working angle at least 0.5°                           so that needle bearings turn
+    at most 3.2° at 5000, 3.7° at 4500, 4.2° at 4000, 5.0° at 3500 rpm
+    at most 5°50′ at 3000, 7° at 2500, 8°40′ at 2000, 11°30′ at 1500, 1000 and 500 rpm; 3° beyond 5000 rpm
+    two joints: both angles equal within 1°
+    angular acceleration behind the last joint ≤ 300 rad/s², of a shaft between joints ≤ 1000 rad/s²
+    U = (largest − smallest output speed)/mean ≤ 0.0027     (Elbe), the irregularity of one joint of 2.98°, sin β tan β
+
+The angles from 3500 rpm up are those of Spicer's operating-angle calculator, which allows 3° at any speed; those up to
+3000 rpm are "Spicer universal joint operating angles" as Parker Chelsea prints them for auxiliary shafts (bulletin
+HY25-1890-M1/US, page 5). From 1500 to 3500 rpm all of them hold one acceleration, β²ω² = 1000 rad/s² within 3 %.
+Between rows they are taken on straight lines; below 500 rpm, where the table begins, a larger angle than 11°30′ is not
+judged. The two accelerations are usual acceptance values. All are taken at the highest speed of the range.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.design.assessment.check import Check, Rule, Status, above, judged
+from trunnion.design.assessment.compared import guideline
+from trunnion.design.assessment.subject import Subject
+from trunnion.driveline.driveline import hooke_joints
+from trunnion.driveline.quantities import DEGREE, RPM
+from trunnion.driveline.rules import RULES, SPICER
+from trunnion.equations.coefficients import Assembly
+from trunnion.response.kinetostatics import Kinetostatics
+from trunnion.response.kinetostatics.limits import EVEN_RUNNING
+from trunnion.response.kinetostatics.measures import ROUNDING, largest
+
+SMALLEST, EASY, APART = 0.5 * DEGREE, 3.0 * DEGREE, 1.0 * DEGREE
+TABLE_SPEED = np.array([500.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0, 5000.0]) * RPM
+TABLE_ANGLE = np.array([11.5, 11.5, 11.5, 8 + 2 / 3, 7.0, 5 + 5 / 6, 5.0, 4.2, 3.7, 3.2]) * DEGREE
+TORSIONAL, INERTIAL = 300.0, 1000.0
+"""Usual acceptance [rad/s²]."""
+LEAST = Rule("β ≥ 0.5°", SPICER, "typical", "spicer-angles")
+MOST = Rule(
+    "β ≤ 11.5° up to 1500, 8.67° at 2000, 7° at 2500, 5.83° at 3000, 5° at 3500, 4.2° at 4000, 3.7° at 4500, 3.2° at "
+    "5000 rpm, 3° beyond",
+    RULES["spicer-angles"].source, "typical", "spicer-angles",
+)  # fmt: skip
+EQUAL = Rule("|β₁ − β₂| ≤ 1°", SPICER, "typical", "equal-angles")
+ACCELERATIONS = ("usual acceptance", "typical", "acceptance-accelerations")
+SHAKES = Rule("acceleration behind the last joint ≤ 300 rad/s²", *ACCELERATIONS)
+TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", *ACCELERATIONS)
+EVEN = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical", "elbe-uniformity")
+
+
+def allowed_angle(speed: float) -> float:
+    """Largest angle [rad] at a joint's own speed [rad/s]; below the table that of its first row."""
+    return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
+
+
+def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | None) -> Iterator[Check]:
+    """The rules for every Hooke's joint, and for the line's accelerations at its highest speed."""
+    joints = hooke_joints(subject.line)
+    if not joints:
+        yield Check("joint angles", Status.NOT_APPLICABLE, MOST, "the line has no Hooke's joint")
+        return
+    topo = assembly.topology
+    places = [j for j in topo.joints if subject.line.elements[topo.stations[j].element].kind == "HookeJoint"]
+    ratios = [abs(float(topo.speed_ratio[j])) for j in places]
+    for (name, angle), ratio in zip(joints, ratios, strict=True):
+        yield from _one(subject, name, abs(angle), ratio * subject.high)
+    if len(joints) == 2:
+        apart = abs(abs(joints[0][1]) - abs(joints[1][1]))
+        said = f"{abs(joints[0][1]) / DEGREE:.4g} and {abs(joints[1][1]) / DEGREE:.4g} deg"
+        yield guideline("equal joint angles", EQUAL, (apart, APART, "rad"), said)
+    else:
+        because = "the rule is for two joints; uniformity judges the line"
+        yield Check("equal joint angles", Status.NOT_APPLICABLE, EQUAL, because)
+    if turn is not None:
+        yield from _accelerations(subject, assembly, turn)
+
+
+def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Check]:
+    said = f"{angle / DEGREE:.4g} deg"
+    margin = above(angle, SMALLEST)
+    yield Check(f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin, 0.0, angle,
+                SMALLEST, "rad", element=name)  # fmt: skip
+    limit = allowed_angle(speed)
+    title, at = f"angle of {name}", f"at {subject.shown(speed)} of its shaft"
+    if angle > limit and speed < TABLE_SPEED[0]:
+        because = f"{said} {at}: the table begins at {subject.shown(float(TABLE_SPEED[0]))}"
+        yield Check(title, Status.NOT_APPLICABLE, MOST, because)
+        return
+    numbers = f"{said} against {limit / DEGREE:.3g} deg {at}"
+    yield guideline(title, MOST, (angle, limit, "rad"), numbers, speed=subject.high, element=name)
+
+
+def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
+    topo = assembly.topology
+    last = max((topo.speed_ratio[j] for j in topo.joints), key=abs)
+    for branch in turn.branches:
+        end = turn.on_branch(branch)
+        value = float(end.peak_acceleration) * abs(float(last) / end.mean_ratio)
+        where = f" on the way to {branch}" if len(turn.branches) > 1 else ""
+        yield _acceleration(subject, f"acceleration behind the joints{where}", SHAKES, value, TORSIONAL)
+    inner = [
+        (float(largest(turn.acceleration[s])), name)
+        for s, name in enumerate(turn.shafts)
+        if np.any(turn.acceleration[s]) and not np.allclose(np.abs(turn.acceleration[s] / turn.shaft_ratio[s]),
+                                                            np.abs(turn.output_acceleration / turn.mean_ratio))
+    ]  # fmt: skip
+    if inner:
+        value, name = max(inner)
+        yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL)
+
+
+def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit: float) -> Check:
+    value = value if value > ROUNDING * subject.high**2 else 0.0
+    numbers = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}"
+    return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
+
+
+def uniformity(subject: Subject, turn: Kinetostatics | None) -> Iterator[Check]:
+    """U at the end of every branch, shafts rigid."""
+    if not hooke_joints(subject.line):
+        yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the line has no Hooke's joint")
+        return
+    if turn is None:
+        yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the output is prescribed")
+        return
+    for branch in turn.branches:
+        end = turn.on_branch(branch)
+        u = end.irregularity
+        angle = end.equivalent_angle / DEGREE
+        numbers = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg"
+        title = "uniformity" if len(turn.branches) == 1 else f"uniformity of {branch}"
+        yield guideline(title, EVEN, (u, EVEN_RUNNING, "1"), numbers, inputs="rigid shafts")

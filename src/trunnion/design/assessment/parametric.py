@@ -1,0 +1,176 @@
+"""Parametric stability along the range: no disturbance may grow.
+
+    growth rate σ(Ω) = ln|largest multiplier| / period < 0     at every speed
+
+The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
+slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
+looked at, and the ends of unstable ranges are located (``range_search.unstable``); bent lines with play or stages that
+start free, where each speed takes its own periodic motion, are looked at at 25 speeds and at named resonances.
+
+Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
+exceeded all the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import suppress
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.design.assessment.check import Check, Rule, Status
+from trunnion.design.assessment.compared import not_reached
+from trunnion.design.assessment.subject import Case, Subject
+from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.ranges.span import Piece
+from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
+from trunnion.floquet.stability.along import NoSharedMotion, StabilityAlong, straight_decay
+from trunnion.modes.resonance_speeds import resonance_speeds
+from trunnion.results.counts import counted
+from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
+
+RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived", "stability")
+EACH, COARSE = 25, 1e-8
+ROUGHLY = 1e-3
+"""How closely the ends of unstable ranges are located there, as a share of the speed."""
+MOST_SAID = 4
+NAME = "parametric stability"
+QUIET = "no joint is bent and no mesh varies: nothing excites the line parametrically"
+
+
+def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
+    """One check: the speed at which the slowest disturbance dies out slowest."""
+    try:
+        found = _ranges_of(case)
+    except (InputError, ComputationError) as error:
+        if not case.parametric:
+            yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+            return
+        yield Check(NAME, Status.NOT_JUDGED, RULE, str(error).splitlines()[0], load_case=case.name)
+        return
+    except OutOfTime as error:
+        case.end(error)
+        yield not_reached(subject, case, NAME, RULE, error.why)
+        return
+    speeds, growth = found.along.speed, found.along.growth_rate
+    if not case.parametric and not found.ranges:
+        yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+        return
+    known = np.isfinite(growth)
+    if not np.any(known):
+        yield Check(NAME, Status.NOT_JUDGED, RULE, "the computation failed at every speed" + case.suffix)
+        return
+    at = int(np.argmax(np.where(known, growth, -np.inf)))
+    straight = straight_decay(case.assembly, float(speeds[at]), case.span.table(speeds[[at]])[0])
+    worst = (float(growth[at]), float(speeds[at]), _looked_at(subject, found))
+    here = f"at {subject.shown(speeds[at])}{case.suffix}"
+    covered = _covered(case, found)
+    gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
+    if found.ranges:
+        if not case.parametric:
+            why = f"{here}: negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
+            margin = -np.inf
+        else:
+            why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
+            margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
+        because = (
+            f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}{gaps}"
+        )
+        yield _judged(case, Status.EXCEEDED, because, float(margin), worst, found.ranges, covered)
+        return
+    if np.any(found.untold):
+        verdicts = found.along.verdict[found.untold]
+        words = " and ".join(sorted({str(Verdict(int(v))) for v in verdicts}))
+        remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
+        because = f"{words} at some speeds: {remedy}{case.suffix}"
+        yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=worst[2], load_case=case.name)
+        return
+    share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
+    because = (
+        f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
+        "the straight line's damping"
+    )
+    status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
+    yield _judged(case, status, because + gaps, float(share), worst, (), covered)
+
+
+def _covered(case: Case, found: UnstableRanges) -> tuple[tuple[float, float], ...]:
+    """The range without what was not looked at."""
+    left = [Piece(case.low, case.high)]
+    for gap in found.gaps:
+        left = [part for piece in left for part in piece.without(gap.low, gap.high)]
+    return tuple((piece.low, piece.high) for piece in left)
+
+
+Worst = tuple[float, float, str]
+"""Growth rate [1/s] and speed [rad/s] where it is largest, and how many speeds were looked at."""
+
+
+def _judged(
+    case: Case,
+    status: Status,
+    because: str,
+    margin: float,
+    worst: Worst,
+    barred: tuple[tuple[float, float], ...],
+    covered: tuple[tuple[float, float], ...],
+) -> Check:
+    growth, speed, inputs = worst
+    return Check(
+        NAME, status, RULE, because, margin, 0.0, growth, 0.0, "1/s", speed, inputs, case.name, barred, covered=covered
+    )  # fmt: skip
+
+
+def _looked_at(subject: Subject, found: UnstableRanges) -> str:
+    speeds = found.along.speed
+    said = f"searched from {subject.shown(speeds[0])} to {subject.shown(speeds[-1])} at {counted(len(speeds), 'speed')}"
+    return f"{said}; stable by a bound up to {subject.shown(found.slow)}" if found.slow else said
+
+
+def _ranges(subject: Subject, found: UnstableRanges) -> str:
+    """ "at 300 rpm", "between 300 rpm and 400 rpm, between …"."""
+    if all(subject.shown(a) == subject.shown(b) for a, b in found.ranges):
+        return f"at {' and '.join(subject.shown(a) for a, _ in found.ranges)}"
+    words = [f"between {subject.shown(a)} and {subject.shown(b)}" for a, b in found.ranges[:MOST_SAID]]
+    more = f" and in {len(found.ranges) - MOST_SAID} more ranges" if len(found.ranges) > MOST_SAID else ""
+    return ", ".join(words) + more
+
+
+def _resonance(case: Case, speed: float) -> str:
+    # Loaded where needed: it brings the compiler with it.
+    from trunnion.floquet.stability.stability import stability
+
+    try:
+        found = stability(case.assembly, speed).resonance
+    except (InputError, ComputationError):
+        return ""
+    return f" ({found})" if found else ""
+
+
+def _ranges_of(case: Case) -> UnstableRanges:
+    try:
+        return case.unstable
+    except NoSharedMotion:
+        return _one_by_one(case)
+
+
+def _one_by_one(case: Case) -> UnstableRanges:
+    """The same at few speeds, each about its own motion, found by shooting."""
+    # Loaded where needed: it brings the compiler with it.
+    from trunnion.floquet.stability.stability import stability
+
+    def judge(speeds: Array) -> StabilityAlong:
+        radius, growth = np.full(len(speeds), np.nan), np.full(len(speeds), np.nan)
+        verdict, period = np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8), 1.0
+        for i, speed in enumerate(speeds):
+            with suppress(ComputationError):
+                found = stability(case.assembly, float(speed), tolerance=COARSE)
+                radius[i], growth[i], verdict[i] = found.spectral_radius, found.growth_rate, int(found.verdict)
+        return StabilityAlong(speeds, radius, np.zeros(len(speeds)), radius.astype(complex), verdict, growth, period)
+
+    low, high = case.span.start, case.high
+    named = [r.speed for r in resonance_speeds(case.assembly).within(low, high) if r.opens] if low < high else []
+    every = np.union1d(np.linspace(low, high, EACH if high > low else 1), named)
+    return UnstableRanges(*closed_in(judge(every), judge, ROUGHLY), 0.0, ())

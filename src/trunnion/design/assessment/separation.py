@@ -1,0 +1,94 @@
+"""Separation of natural frequencies from the orders that excite the line.
+
+    |kΩ/ω − 1| ≥ 10 %   for every order k that shakes the line and every mode ω, over the running range
+
+(API 617/684, typical.) A mode that an order comes nearer to is no fault by itself: the standard then asks that it be
+moved, or for a check of torque or stress there, which limits of the description give; who takes that for an answer
+switches the rule off with this reason. Orders below 1 % of the largest torque by one order are left
+out. ω is the damped frequency of the loaded line, all joints straight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.design.assessment.check import Check, Rule, Status, above
+from trunnion.design.assessment.compared import unanswered
+from trunnion.design.assessment.own_limits import unlimited
+from trunnion.design.assessment.subject import Case, Subject
+from trunnion.results.counts import counted, few
+from trunnion.results.units import amplification_words, order_words
+
+REQUIRED = 0.10
+WORTH = 0.01
+"""Share of a spring's largest torque by one order from which an order counts."""
+RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical", "separation")
+ALL, ONE = "separation of modes", "separation of mode "
+NEEDS = "; a resonance needs "
+"""Between where a mode meets an order and what would judge it."""
+LIMITED = "limits of torque or stress, which are stated"
+
+
+def separation(subject: Subject, case: Case) -> Iterator[Check]:
+    """One check a mode that an order meets, one for all the others together."""
+    if case.response is None or case.ended_by:
+        yield unanswered(subject, case, ALL, RULE)
+        return
+    orders = shaking_orders(case)
+    if not len(orders):
+        yield Check(ALL, Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
+        return
+    clear: list[tuple[float, str, float]] = []
+    frequency = case.modes.imag
+    for m in range(frequency.shape[1]):
+        near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
+        if not np.isfinite(near):
+            continue
+        hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
+        shown = f"at {subject.shown(case.speeds[at])}"
+        if near >= REQUIRED:
+            said = f"{order_words(order)} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
+            clear.append((near, said, float(case.speeds[at])))
+            continue
+        what = "meets" if met else f"comes within {100 * near:.2g} % of"
+        here = case.modes[at, m]
+        gain = abs(here) / max(-2 * here.real, 1e-300)
+        without = few(unlimited(case.assembly))
+        needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
+        said = f"{order_words(order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
+        yield _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))
+    if clear:
+        nearest, said, speed = min(clear)
+        yield _near(case, ALL, Status.SATISFIED, said, nearest, speed, counted(len(orders), "order"))
+
+
+def _near(case: Case, name: str, status: Status, said: str, near: float, speed: float, inputs: str = "") -> Check:
+    return Check(
+        name, status, RULE, said + case.suffix, above(near, REQUIRED), 0.0, near, REQUIRED, "1", speed, inputs,
+        case.name,
+    )  # fmt: skip
+
+
+def shaking_orders(case: Case) -> Array:
+    """Orders that make up 1 % of any spring's torque at least."""
+    response = case.answered
+    if not len(response.order):
+        return np.zeros(0)
+    size = np.nan_to_num(np.abs(response.torque)).max(axis=0)
+    worth = np.any(size >= WORTH * np.maximum(size.max(axis=0), 1e-300), axis=1)
+    return np.unique(response.order[worth & (response.frequency == 0) & (response.order > 0)])
+
+
+def _nearest(speeds: Array, frequency: Array, orders: Array) -> tuple[float, float, int, bool]:
+    """Smallest |kΩ/ω − 1| over orders and speeds, with the order and the speed's number; 0 where they meet between."""
+    off = np.multiply.outer(orders, speeds) / frequency - 1
+    if not np.any(np.isfinite(off)):
+        return np.inf, 0.0, 0, False
+    size = np.where(np.isfinite(off), np.abs(off), np.inf)
+    crossed = np.any(off[:, 1:] * off[:, :-1] <= 0, axis=1)
+    size[crossed] = np.where(size[crossed] == size[crossed].min(axis=1, keepdims=True), 0.0, size[crossed])
+    k, at = np.unravel_index(int(size.argmin()), size.shape)
+    return float(size[k, at]), float(orders[k]), int(at), bool(crossed[k])

@@ -1,0 +1,276 @@
+"""How frequencies, stability, torques, tips of tongues and checks follow every number of a description."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array
+from trunnion.design.assessment.assess import checks_of, subject_of
+from trunnion.design.assessment.check import Check, Status
+from trunnion.design.assessment.parametric import NAME as GROWTH
+from trunnion.design.sensitivity.checks import check_slopes
+from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, directions_of
+from trunnion.design.sensitivity.growth import radius_slope
+from trunnion.design.sensitivity.modes import mode_slopes
+from trunnion.design.sensitivity.result import (
+    DIFFERENCES,
+    EXACT,
+    Quantity,
+    Rows,
+    Sensitivities,
+)
+from trunnion.design.sensitivity.tips import tip_slopes
+from trunnion.design.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
+from trunnion.driveline.arguments import several, speeds_of
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
+from trunnion.driveline.parameters import Parameter
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import moves_by_itself
+from trunnion.errors import ComputationError, InputError
+from trunnion.features import left_out
+from trunnion.floquet.tongues.result import Tongues
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed
+from trunnion.steady.orders.forced_response import shaft_names
+
+KINDS = ("frequencies", "growth", "torques", "checks")
+MOST_CHECKS = 6
+"""Checks that are differentiated unless they are named."""
+
+
+def sensitivity(
+    line: Driveline,
+    speeds: ArrayLike | None = None,
+    parameters: Iterable[str | Parameter] | None = None,
+    *,
+    of: Iterable[str] = KINDS,
+    checks: Iterable[str] | None = None,
+    tips: Tongues | None = None,
+    load_case: str | None = None,
+    unit: str | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Sensitivities:
+    """Derivatives of what the line does by the numbers of its description, plain and logarithmic, ranked.
+
+    Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint,
+    torques and what is limited of them through the equations of the response, all exact; tips by implicit
+    differentiation; other checks, and the torques of bent lines that start free, by differences of fourth order.
+
+    Parameters
+    ----------
+    speeds : input speed or speeds [rad/s] of growth rates and torques; default the operating speed of the description,
+        or the ends of its range, or none.
+    parameters : paths; "HookeJoint *.angle" is each joint's, "factor of Shaft *.damping" all together; default
+        every number that the description states, zeros of angles included.
+    of : any of "frequencies", "growth", "torques", "checks".
+    checks : names of checks of ``assess``; default the six with the least to spare. They are judged over the range of
+        the description, or else over that of ``speeds``.
+    tips : ``tongues`` of this line with the speed along an axis: where they close.
+    load_case : name of one of the line's load cases.
+    unit : of speeds in print; default the one of the description.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : no such parameter, check or load case; speeds that are not positive; a line that an analysis asked for
+        refuses, if nothing else was asked for.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]
+    >>> found = tn.sensitivity(tn.Driveline(parts), of=["frequencies"])
+    >>> print(found)
+    sensitivity of 2 quantities to 4 parameters
+      natural frequency of mode 1 (17.7941 Hz): -0.5 % for +1 % of Disk 1.inertia, +0.5 % for +1 % of Shaft 1.stiffness
+      damping ratio of mode 1 (0.01118): +1 % for +1 % of Shaft 1.damping, -0.5 % for +1 % of Disk 1.inertia, \
+-0.5 % for +1 % of Shaft 1.stiffness
+    """
+    kinds = _kinds(of)
+    stated = line if load_case is None else line.with_load(load_case)
+    question = _Question(
+        line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
+        load_case=load_case, unit=unit or speed_unit(line),
+    )  # fmt: skip
+    parts: dict[str, Callable[[], Iterator[Rows]]] = {
+        "frequencies": partial(mode_slopes, question.near, question.directions),
+        "growth": partial(_growth, question),
+        "torques": partial(_torques, question),
+        "checks": partial(_checks, question, line, checks),
+    }
+    rows: list[Rows] = []
+    refusals: list[TrunnionProblem] = []
+    for k, kind in enumerate(kinds):
+        question.progress = partial(_tell_part, progress, k, len(kinds))
+        try:
+            rows += parts[kind]()
+        except (InputError, ComputationError) as error:
+            if kind == "checks" and checks is not None:
+                raise
+            refusals.append(error)
+    if tips is not None:
+        if not isinstance(tips, Tongues):
+            raise InputError("are no tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
+        rows += tip_slopes(question.near, tips, question.directions)
+    if not rows and refusals:
+        raise refusals[0]
+    said = [Finding(Gravity.CAUTION, str(error).splitlines()[0]) for error in refusals]
+    return _result(question, rows, [*said, *question.findings, *_left_out(stated, kinds)])
+
+
+TrunnionProblem = InputError | ComputationError
+ANALYSES = {"frequencies": "natural_frequencies", "growth": "stability", "torques": "order_response"}
+
+
+@dataclass
+class _Question:
+    """The line under its load case, speeds (speed,) and directions; findings that come up on the way."""
+
+    line: Driveline
+    at: Array
+    directions: tuple[Direction, ...]
+    load_case: str | None
+    unit: str
+    progress: Callable[[float], None] = lambda share: None
+    findings: list[Finding] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.assembly: Assembly = assemble(self.line)
+        self.near, self.lines = Neighbourhood(self.assembly), Neighbours(self.assembly)
+
+    def shown(self, speed: float) -> str:
+        return show_speed(float(f"{speed:.12g}"), self.unit)
+
+
+def _tell_part(progress: Callable[[float], None] | None, part: int, parts: int, share: float) -> None:
+    if progress:
+        progress((part + share) / parts)
+
+
+def _kinds(of: Iterable[str]) -> tuple[str, ...]:
+    asked = several(of, "of", f"use {', '.join(KINDS)}")
+    for one in asked:
+        if one not in KINDS:
+            raise InputError("is nothing to differentiate", key="of", value=one, remedy=f"use {', '.join(KINDS)}")
+    return tuple(kind for kind in KINDS if kind in asked)
+
+
+def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
+    if speeds is None:
+        operation = line.operation
+        if operation is None or (operation.speed is None and not operation.speed_range):
+            return np.zeros(0)
+        return np.array([operation.speed] if operation.speed is not None else operation.speed_range, dtype=float)
+    at = speeds_of(speeds, "tn.rpm(1500)")
+    return np.array([operating_speed(line, float(one)) for one in at])
+
+
+def _growth(question: _Question) -> Iterator[Rows]:
+    if moves_by_itself(question.assembly):
+        # Its own motion follows every parameter, so lines beside it are judged.
+        if len(question.at):
+            here, slope, error = _by_differences(question, own_growth)
+            for k, speed in enumerate(question.at.tolist()):
+                yield _stability_rows(question, speed, DIFFERENCES, "", here[:, k], slope[:, k], error[:, k])
+        return
+    for speed in question.at.tolist():
+        found = radius_slope(question.near, question.near.row(speed), question.directions)
+        by = np.array([speed / found.period, found.radius])
+        yield _stability_rows(
+            question, speed, EXACT, found.refused, np.array([found.growth_rate(speed), found.radius]),
+            by[:, None] * found.slope, by[:, None] * found.error,
+        )  # fmt: skip
+
+
+def _by_differences(question: _Question, look: Callable[[Array, Driveline], Array]) -> tuple[Array, Array, Array]:
+    """What ``look`` sees of the line at the speeds, its derivatives and errors."""
+    values = partial(look, question.at)
+    return values(question.line), *slopes(values, question.lines, question.directions, question.progress)
+
+
+def _stability_rows(
+    question: _Question, speed: float, method: str, refused: str, value: Array, slope: Array, error: Array
+) -> Rows:
+    at = f"at {question.shown(speed)}"
+    both = [
+        Quantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
+        for kind, unit, v in zip(("growth rate", "spectral radius"), ("1/s", "1"), value.tolist(), strict=True)
+    ]
+    return Rows(both, slope, error)
+
+
+def _torques(question: _Question) -> Iterator[Rows]:
+    if not len(question.at):
+        return
+    exact = not moves_by_itself(question.assembly)
+    if exact:
+        here, slope, error = exact_torque_slopes(
+            question.near, question.lines, question.at, question.directions, question.progress
+        )
+    else:
+        here, slope, error = _by_differences(question, torques)
+    springs, words = shaft_names(question.assembly), ("peak torque", "vibratory torque")
+    for w, v, s in np.ndindex(here.shape):
+        speed, value = float(question.at[v]), float(here[w, v, s])
+        name = f"{words[w]} of {springs[s]} at {question.shown(speed)}"
+        why = "" if np.isfinite(value) else "there is no steady state"
+        one = Quantity(name, "torque", value, "N*m", EXACT if exact else DIFFERENCES, speed, why)
+        yield Rows([one], slope[w, v, s], error[w, v, s])
+
+
+def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[Rows]:
+    span = None
+    if stated_range(line) is None:
+        if not len(question.at):
+            return
+        span = (float(question.at.min()), float(question.at.max()))
+    subject = subject_of(line, span, question.load_case, question.unit)
+    chosen = _chosen(checks_of(subject), names)
+    found = check_slopes(subject, question.lines, question.directions, chosen, question.progress)
+    for c, check in enumerate(chosen):
+        method, at = EXACT if found.exact[c] else DIFFERENCES, float(found.speed[c])
+        value, margin = found.value[c].tolist()
+        both = [Quantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
+        if check.name != GROWTH or not found.exact[c]:  # its margin follows another speed's straight line besides
+            both.append(Quantity(f"margin of {check.name}", "margin", margin, "1", method, at))
+        yield Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
+
+
+def _chosen(every: tuple[Check, ...], names: Iterable[str] | None) -> list[Check]:
+    judged = [c for c in every if c.status in (Status.SATISFIED, Status.EXCEEDED) and np.isfinite(c.value)]
+    if names is None:
+        return judged[:MOST_CHECKS]
+    known = {check.name: check for check in judged}
+    chosen = []
+    for name in several(names, "checks", 'checks=["uniformity"], say'):
+        if name not in known:
+            problem = "is not judged" if any(c.name == name for c in every) else "is not a check of this line"
+            remedy = f"there are {', '.join(known)}" if known else "nothing is judged; state limits"
+            raise InputError(problem, key="checks", value=name, remedy=remedy)
+        chosen.append(known[name])
+    return chosen
+
+
+def _left_out(line: Driveline, kinds: Sequence[str]) -> list[Finding]:
+    return [finding for kind in kinds if kind in ANALYSES for finding in left_out(ANALYSES[kind], line)]
+
+
+def _result(question: _Question, rows: Sequence[Rows], findings: Sequence[Finding]) -> Sensitivities:
+    width = len(question.directions)
+    once = {finding.sentence: finding for finding in findings}
+    return Sensitivities(
+        quantities=tuple(q for part in rows for q in part.quantities),
+        parameters=tuple(one.label for one in question.directions),
+        parameter_value=np.array([one.value for one in question.directions]),
+        parameter_unit=tuple(one.unit for one in question.directions),
+        derivative=np.concatenate([part.slope.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
+        error=np.concatenate([part.error.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
+        unit=question.unit,
+        findings=by_gravity(once.values()),
+    )

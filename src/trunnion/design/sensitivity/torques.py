@@ -1,0 +1,90 @@
+"""How torques by all orders, and the growth rate of bent lines that start free, follow parameters.
+
+The torque of a spring is the largest over the cycle, at a speed that is kept. A bent line that starts free is judged
+about its own periodic motion, which follows every parameter too: lines beside it are computed and compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.design.sensitivity.differences import slope
+from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
+from trunnion.design.sensitivity.responses import spectrum_slope
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.stability.along import stability_along
+from trunnion.response.orders.response import order_response
+from trunnion.steady.orders.amplitudes import OrderSpectrum
+
+Values = Callable[[Driveline], Array]
+
+
+def exact_torque_slopes(
+    near: Neighbourhood,
+    lines: Neighbours,
+    speeds: Array,
+    directions: Sequence[Direction],
+    progress: Callable[[float], None] | None = None,
+) -> tuple[Array, Array, Array]:
+    """Peak and vibratory torque (2, speed, spring) [N m], their derivatives (…, direction) and errors, through the
+    equations of the response; NaN where no line lies beside."""
+    here = np.full((2, len(speeds), len(near.assembly.topology.compliances)), np.nan)
+    found, errors = np.full((2, *here.shape, len(directions)), np.nan)
+    for v, speed in enumerate(speeds.tolist()):
+        values = partial(torques, speeds[[v]])
+        here[:, v] = values(near.assembly)[:, 0]
+        every = {one.label: spectrum_slope(near, speed, one) for one in directions}
+        pace = max((around.pace for around in every.values() if around is not None), default=0.0)
+
+        def look(one: Direction, v=v, values=values, every=every, pace=pace) -> tuple[Array, Array] | None:  # type: ignore[no-untyped-def]
+            around = every[one.label]
+            if around is None or all(lines.line(one, side * around.step) is None for side in (1, -1)):
+                both = slope(partial(_beside, values, lines, here[:, [v]], one))
+                return both and (both[0][:, 0], both[1][:, 0])
+            return around.slope(lambda share: _extremes(around.moved(share)), pace)
+
+        tell = progress and (lambda share, v=v: progress((v + share) / len(speeds)))  # type: ignore[misc]
+        found[:, v], errors[:, v] = along_each(directions, look, (2, here.shape[2]), tell)
+    return here, found, errors
+
+
+def _extremes(spectrum: OrderSpectrum) -> Array:
+    """Peak and vibratory torque (2, spring) [N m] at the one speed of a spectrum."""
+    found = spectrum.extremes_at(spectrum.channels.torque)
+    return np.stack([found.largest[0], found.swing[0]])
+
+
+def torques(speeds: Array, line: Driveline | Assembly) -> Array:
+    """Peak and vibratory torque (2, speed, spring) [N m]."""
+    found = order_response(line, speeds)
+    return np.stack([found.peak_torque, found.vibratory_torque])
+
+
+def own_growth(speeds: Array, line: Driveline) -> Array:
+    """Growth rate and spectral radius (2, speed) of a bent line that starts free."""
+    found = stability_along(assemble(line), speeds)
+    return np.stack([found.growth_rate, found.radius])
+
+
+def slopes(
+    values: Values, near: Neighbours, directions: Sequence[Direction], progress: Callable[[float], None] | None = None
+) -> tuple[Array, Array]:
+    """Derivatives (…, direction) of ``values(line)`` and their errors; NaN where lines beside it are refused."""
+    here = values(near.assembly.line)
+    return along_each(directions, lambda one: slope(partial(_beside, values, near, here, one)), here.shape, progress)
+
+
+def _beside(values: Values, near: Neighbours, here: Array, one: Direction, share: float) -> Array | None:
+    if not share:
+        return here
+    line = near.line(one, share)
+    try:
+        return None if line is None else values(line)
+    except (InputError, ComputationError):
+        return None

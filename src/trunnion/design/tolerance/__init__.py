@@ -1,0 +1,1 @@
+"""Tolerances against every check of ``assess``."""

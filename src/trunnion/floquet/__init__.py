@@ -1,0 +1,1 @@
+"""Floquet theory: what grows, where, and how sure that is."""

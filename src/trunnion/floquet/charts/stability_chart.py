@@ -1,0 +1,326 @@
+"""Stability over any two parameters, as a function known to a stated error everywhere.
+
+The chart samples analytic quantities at the nodes of adaptive Chebyshev patches, interpolates them to the
+pixels and finds multipliers there; small regions are evaluated pixel by pixel. At the end it checks itself
+at random pixels by direct integration at a much smaller tolerance, and is built in another way where that
+check fails (see ``building``). Where its kernels would have to be compiled and NumPy takes less time, NumPy builds it.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion.arrays import Array, Codes, Complex
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.topology import require_period
+from trunnion.errors import InputError
+from trunnion.features import left_out
+from trunnion.floquet.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
+from trunnion.floquet.charts.building import Built, build, decide, family_for, fill, way_named
+from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
+from trunnion.floquet.charts.chart_pixels import judge, multipliers_of, tells_all
+from trunnion.floquet.charts.own_families import OwnFamily, PatchesAlone
+from trunnion.floquet.charts.plain_chart import MOST_FIRST, Plain, build_plainly
+from trunnion.floquet.charts.prices import compiling_pays, instead_of_compiling
+from trunnion.numerics.patches.patches import PatchedFunction
+from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
+from trunnion.results.verdict import Verdict
+from trunnion.systems.family import PeriodicLinearFamily
+
+Progress = Callable[[float], None]
+IN_NUMPY, SHARPEST = 0.01, 1e-12
+"""Share of the tolerance that is asked for in NumPy: the kernels, too, know their samples that much better."""
+
+
+def stability_chart(
+    line: Driveline | Assembly | PeriodicLinearFamily,
+    x: AxisRequest,
+    y: AxisRequest,
+    *,
+    speed: float | str | None = None,
+    tolerance: float = 1e-9,
+    statically_twisted: bool = True,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> StabilityChart:
+    """Verdict, spectral radius and its error over two parameters.
+
+    Parameters
+    ----------
+    line : a driveline, or a ``PeriodicLinearFamily`` of your own.
+    x, y : ``(parameter, low, high, points)``, optionally with ``"log"`` at the end. For a driveline a
+        parameter is a path ("speed", "HookeJoint 1.angle", "factor of Shaft *.damping") or a ``Parameter``,
+        values in SI; for a family it is the name of one of its parameters.
+    speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
+    tolerance : error asked of the interpolated quantities, relative to their size where that exceeds 1.
+        Multipliers that collide are known to its square root; the error estimate of each pixel says so.
+    statically_twisted : as in ``stability``.
+    threads : default one per core.
+    progress : called as progress(share done) from the calling thread.
+
+    Returns
+    -------
+    StabilityChart, arrays of shape (y, x); ``chart.at(x, y)`` answers anywhere in its box.
+
+    Raises
+    ------
+    InputError : see ``axes.axis``; both axes the same; no speed.
+    ComputationError : the chart's check of itself fails in every way of building it.
+    KeyboardInterrupt : passed on; nothing is kept.
+    """
+    require_pixels(*(_points_of(request) for request in (x, y)))
+    task = chart_task(line, x, y, speed, statically_twisted, plain=not compiling_pays())
+    if not tolerance > 0 or not np.isfinite(tolerance):
+        raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
+    tell, built = progress or (lambda share: None), None
+    if isinstance(task.family, LineFamily) and not compiling_pays():
+        with instead_of_compiling():
+            asked = max(tolerance * IN_NUMPY, SHARPEST)
+            built = build_plainly(task.family, task.x.values, task.y.values, asked, tell, MOST_FIRST)
+    return _chart(task, built, tolerance, statically_twisted, threads, tell)
+
+
+def chart_of_report(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, tolerance: float, progress: Progress | None = None
+) -> StabilityChart:
+    """As ``stability_chart`` of a driveline, in plain NumPy where that takes seconds: nothing is compiled then."""
+    tell, task = progress or (lambda share: None), chart_task(assembly, x, y, None, True, plain=True)
+    assert isinstance(task.family, LineFamily)
+    built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
+    return _chart(task, built, tolerance, True, None, tell)
+
+
+def _chart(
+    task: Task, built: Built | None, tolerance: float, twisted: bool, threads: int | None, tell: Progress
+) -> StabilityChart:
+    """What was built, by compiled kernels if it is not yet, as a result."""
+    workers = threads or os.cpu_count() or 1
+    if built is None:
+        built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
+    tell(1.0)
+    x_axis, y_axis, pixels = task.x, task.y, built.pixels
+    remarks = [*task.remarks, *built.remarks]
+    if isinstance(task.family, OwnFamily):
+        remarks += task.family.failures(x_axis.values, y_axis.values, pixels.verdict == Verdict.FAILED, tolerance)
+    return StabilityChart(
+        x=x_axis.values,
+        y=y_axis.values,
+        x_parameter=x_axis.parameter,
+        y_parameter=y_axis.parameter,
+        x_unit=x_axis.unit,
+        y_unit=y_axis.unit,
+        spectral_radius=pixels.radius,
+        error_estimate=pixels.error,
+        critical_multiplier=pixels.critical,
+        verdict=pixels.verdict,
+        speed=task.speed,
+        period=task.family.period,
+        tolerance=tolerance,
+        statically_twisted=twisted,
+        remarks=tuple(remarks),
+        line=task.line,
+        function=built.function,
+        evaluate_point=_pointwise(built.family, built.function, built.tolerance),
+        resample=_resampler(built.family, built.function, built.tolerance, workers),
+        spot_check=built.check,
+        way=built.way.name,
+    )
+
+
+def _points_of(request: AxisRequest) -> int:
+    """The points an axis asks for, as far as it can be read; what is wrong with it is said later."""
+    asked = request[3] if isinstance(request, Sequence) and not isinstance(request, str) and len(request) > 3 else 1
+    return int(asked) if isinstance(asked, int | np.integer) else 1
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be searched: a family over two axes, the speed where neither is it, the line, and what to say."""
+
+    family: ChartFamily
+    x: Axis
+    y: Axis
+    speed: float | None
+    line: Driveline | None
+    remarks: tuple[str, ...]
+
+
+def chart_task(
+    line: Driveline | Assembly | PeriodicLinearFamily,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | str | None,
+    twisted: bool,
+    analysis: str = "stability_chart",
+    *,
+    plain: bool = False,
+) -> Task:
+    """A line or family over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
+
+    ``plain``: nothing is compiled for it, where the line suits that.
+
+    Raises
+    ------
+    InputError : see ``stability_chart``.
+    """
+    if not isinstance(line, PeriodicLinearFamily):
+        return _line_task(line, x, y, speed, twisted, analysis, plain)
+    if speed is not None:
+        raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
+    return _own_task(line, x, y)
+
+
+def _line_task(
+    line: Driveline | Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | str | None,
+    twisted: bool,
+    analysis: str,
+    plain: bool,
+) -> Task:
+    assembly = assemble(line)
+    require_period(assembly.line, assembly.topology)
+    across, said_x = axis(assembly, x, "x")
+    up, said_y = axis(assembly, y, "y")
+    both = set(across.columns.index.tolist()) & set(up.columns.index.tolist())
+    if both:
+        name = assembly.packed.labels[min(both)]
+        raise InputError(
+            f"is moved by both axes ({across.label} and {up.label}), so one would overwrite the other",
+            key=name,
+            remedy="give y a parameter that leaves it alone",
+        )
+    check_corners(assembly, across, up)
+    refuse_own_motion(
+        assembly,
+        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
+        bends=across.is_joint_angle or up.is_joint_angle,
+    )
+    swept = across.is_speed or up.is_speed
+    if swept and speed is not None:
+        raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
+    base = float("nan") if swept else operating_speed(assembly.line, speed)
+    corners = assembly.table(4, base)
+    across.columns.put(corners, across.values[[0, 0, -1, -1]])
+    up.columns.put(corners, up.values[[0, -1, 0, -1]])
+    require_steady_base(assembly, corners)
+    family = LineFamily(assembly, across, up, base, twisted)
+
+    said = [finding.sentence for finding in left_out(analysis, assembly.line)]
+    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", plain), *said) if s)
+    return Task(family, across, up, None if swept else base, assembly.line, remarks)
+
+
+def _idle(family: ChartFamily, x: Axis, y: Axis, what: str, plain: bool = False) -> list[str]:
+    """Sentences about axes that change nothing."""
+
+    def decisive(x: Array, y: Array) -> Array:
+        return family.evaluate(x, y, 1e-12, 1)[0]
+
+    differ = family.differ
+    if plain and isinstance(family, LineFamily) and family.uncompiled:
+        decisive, differ = Plain(family).decisive, Plain(family).differ
+    return [
+        f"{own.label} changes nothing in this {what}"
+        for own in (x, y)
+        if moves_nothing(decisive, x, y, own is x, differ)
+    ]
+
+
+def _middle(x: Array, y: Array) -> tuple[float, float]:
+    return float(np.median(x)), float(np.median(y))
+
+
+def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
+    """A family of one's own over two of its parameters, checked."""
+    across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
+    if across.label == up.label:
+        raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
+    family.require_period(dict(zip((across.label, up.label), _middle(across.values, up.values), strict=True)))
+    own = OwnFamily(family, across.label, up.label, _middle(across.values, up.values))
+    return Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
+
+
+def _pointwise(
+    family: ChartFamily, function: PatchedFunction, tolerance: float
+) -> Callable[[float, float], ChartPoint]:
+    def at(x: float, y: float) -> ChartPoint:
+        u, v = float(family.to_patch(np.array(x), True)), float(family.to_patch(np.array(y), False))
+        where, patch = (np.array([x]), np.array([y])), function.find(u, v)
+        if patch is not None:
+            values, bounds = (
+                part(np.array([u]), np.array([v])).reshape(-1, 1) for part in (patch.grid, patch.error_grid)
+            )
+        else:
+            values, bounds = (part.T.copy() for part in family.evaluate(*where, tolerance / 4, 1))
+        found = judge(values, bounds, family.size, family.set_aside)
+        # Patches of a stiff line tell its largest multipliers alone.
+        every = values if tells_all(values, family.size) else family.evaluate(*where, tolerance / 4, 1)[0].T
+        found = found.shaped((1, 1))
+        decide(family, found, *where, tolerance, 1)
+        return ChartPoint(
+            x=x,
+            y=y,
+            spectral_radius=found.radius.item(),
+            error_estimate=found.error.item(),
+            verdict=Verdict(found.verdict.item()),
+            multipliers=multipliers_of(every[:, 0], family.size, family.set_aside),
+            interpolated=patch is not None,
+        )
+
+    return at
+
+
+def _resampler(
+    family: ChartFamily, function: PatchedFunction, tolerance: float, threads: int
+) -> Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]:
+    return lambda x, y: fill(family, function, x, y, tolerance, threads)
+
+
+def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | None = None) -> StabilityChart:
+    """Read a chart that ``StabilityChart.save`` wrote; it answers ``at`` and ``zoom`` as before.
+
+    A chart of a family of your own is in the file without its function: give ``family`` again, or regions that
+    were not patched are out of reach of ``at`` and ``zoom``.
+    """
+    from trunnion.results.chart import read_chart
+
+    chart = read_chart(path)
+    assert chart.function is not None
+    own: ChartFamily | None
+    if family is not None:
+        own = OwnFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
+    elif chart.line is None:
+        own = PatchesAlone(chart) if chart.function.patches else None
+    else:
+        own = family_of_chart(chart)
+    if own is None:
+        return chart
+    way = way_named(chart.way)
+    own, tolerance = family_for(way, own), chart.tolerance * way.share
+    return replace(
+        chart,
+        evaluate_point=_pointwise(own, chart.function, tolerance),
+        resample=_resampler(own, chart.function, tolerance, os.cpu_count() or 1),
+    )
+
+
+def family_of_chart(chart: StabilityChart) -> LineFamily:
+    """The family behind a chart of a driveline."""
+    assert chart.line is not None
+    assembly = assemble(chart.line)
+    ends = [
+        (label, float(values.min()), float(values.max()), 2 if len(values) > 1 else 1)
+        for label, values in ((chart.x_parameter, chart.x), (chart.y_parameter, chart.y))
+    ]
+    (across, _), (up, _) = axis(assembly, ends[0], "x"), axis(assembly, ends[1], "y")
+    speed = float("nan") if chart.speed is None else chart.speed
+    return LineFamily(assembly, across, up, speed, chart.statically_twisted)

@@ -1,0 +1,1 @@
+"""A periodic linear system over one period."""

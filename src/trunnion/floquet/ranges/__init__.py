@@ -1,0 +1,1 @@
+"""Ranges of speed searched: resonances, unstable speeds."""

@@ -1,0 +1,169 @@
+"""Floquet exponents of chosen modes at chosen speeds, by Hill's blocks: where modes lie once joints are bent.
+
+A free motion Re[e^{λt} Σ_h X_h e^{ihbΩt}], b = 2π/period of the equations in the input angle, makes
+
+    Σ_l [(λ + ilbΩ)² M_{h−l} + (λ + ilbΩ) C_{h−l} + K_{h−l} (+ i sgn H)] X_l = 0.
+
+Each exponent is followed from an eigenvalue of the straight line by inverse iteration,
+
+    A(λ) u = A′(λ) x,    λ − x*x/x*u,
+
+in a few harmonics about the mode's own, for every speed and mode by itself: so the cost does not grow with how slowly
+the line turns, as that of a monodromy matrix does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Array, Complex, Integers, Places
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.linear import line_matrices
+from trunnion.equations.topology import require_period
+from trunnion.numerics.sparse_matrices import SparseMatrices
+from trunnion.steady.orders.groups import offsets
+from trunnion.steady.orders.hill import HillBlocks
+from trunnion.waiting import keep_time
+
+REACH = 2
+"""Layers of side orders about the mode's own: what is left out shifts it by the fourth power of the joints' spread."""
+STEPS, PAIR_STEPS = 6, 4
+SETTLED = 1e-9
+"""Share of |λ| by which the last step may still move it."""
+ASIDE = (0.0, 2e-3 * (1 + 1j), -5e-3 * (1 + 1j))
+"""Where the iteration begins, as shares of |λ| beside the straight line's: where two exponents lie alike about that, it
+does not decide for one of them."""
+STRAYED = 0.2
+"""Share of |λ| by which no joint shifts an exponent: the iteration fell into another one."""
+MOST_NUMBERS = 2_000_000
+"""Complex numbers of a batch of matrices."""
+
+
+@dataclass(frozen=True)
+class SideOrders:
+    """How far the coefficients of a line reach: harmonics (h,) about an order, in ``turns``⁻¹ cycles per turn, and the
+    samples over the period that resolve them."""
+
+    turns: Fraction
+    harmonics: Integers
+    times: int
+
+    @classmethod
+    def of(cls, assembly: Assembly, reach: int = REACH) -> SideOrders:
+        """Raises InputError where the line has no period."""
+        turns = require_period(assembly.line, assembly.topology)
+        layers = sorted(offsets({int(rate * turns) for rate in assembly.topology.rates}, reach))
+        width = layers[-1] - layers[0] + 1
+        return cls(turns, np.array(layers, dtype=np.int64), 1 << int(np.ceil(np.log2(max(64, 4 * width)))))
+
+
+def floquet_exponents(
+    assembly: Assembly, sides: SideOrders, table: Array, start: Complex, shape: NDArray[Any]
+) -> Complex:
+    """Exponents λ (case,) [1/s] at rows of packed numbers ``table`` (case, column) of the modes that are ``start``
+    (case,) with ``shape`` (case, n) on the straight line. NaN where the iteration does not settle.
+    """
+    found = np.full(len(table), np.nan, dtype=complex)
+    for aside in ASIDE:
+        left = np.flatnonzero(np.isnan(found) & np.isfinite(start))
+        for some in _batches(left, sides, assembly):
+            near = start[some] + aside * np.abs(start[some])
+            value = _one(_Blocks(assembly, sides, table[some]), near, shape[some])
+            with np.errstate(invalid="ignore"):
+                same = np.abs(value - start[some]) < STRAYED * np.abs(start[some])
+            found[some] = np.where(same, value, np.nan)
+    return found
+
+
+def meeting_exponents(
+    assembly: Assembly,
+    sides: SideOrders,
+    table: Array,
+    cycles: Fraction,
+    starts: tuple[Complex, Complex],
+    shapes: tuple[NDArray[Any], NDArray[Any]],
+) -> Complex:
+    """The two exponents (case, 2) that are near λ_i and λ_j* + icΩ, of modes that meet or have met: with
+    ``cycles`` c of the coefficients per turn, as of ``floquet_exponents``.
+    """
+    away = -int(cycles * sides.turns)
+    both = replace(sides, harmonics=np.union1d(sides.harmonics, sides.harmonics + away))
+    found = np.full((len(table), 2), np.nan, dtype=complex)
+    for some in _batches(np.arange(len(table)), both, assembly):
+        keep_time()
+        blocks = _Blocks(assembly, both, table[some])
+        partner = starts[1][some].conj() + 1j * float(cycles) * table[some, 0]
+        x = np.zeros((len(some), len(both.harmonics), assembly.topology.size, 2), dtype=complex)
+        x[:, int(np.searchsorted(both.harmonics, 0)), :, 0] = shapes[0][some]
+        x[:, int(np.searchsorted(both.harmonics, away)), :, 1] = shapes[1][some].conj()
+        found[some] = _two(blocks, (starts[0][some] + partner) / 2, x.reshape(len(some), -1, 2))
+    return found
+
+
+def _batches(cases: Places, sides: SideOrders, assembly: Assembly) -> Iterator[Places]:
+    at_once = max(1, MOST_NUMBERS // (len(sides.harmonics) * assembly.topology.size) ** 2)
+    for begin in range(0, len(cases), at_once):
+        yield cases[begin : begin + at_once]
+
+
+class _Blocks:
+    """A(λ) of some rows of packed numbers and A′(λ), each (case, m, m)."""
+
+    def __init__(self, assembly: Assembly, sides: SideOrders, table: Array) -> None:
+        co = assembly.coefficients(table, any_frequency=True)
+        tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
+        self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
+        matrices = line_matrices(assembly.topology, co, tau)
+        self.blocks = HillBlocks(assembly.topology, matrices, co.loss, self.step)
+
+    def at(self, value: Complex) -> SparseMatrices:
+        """A at λ (case,)."""
+        s = value[:, None] + 1j * self.harmonics * self.step[:, None]
+        return self.blocks.matrices(s, self.harmonics)
+
+    def slope_times(self, value: Complex, x: Complex) -> Complex:
+        """A′x, exact by differences of any width: A is of second degree in λ."""
+        width = np.abs(value)
+        change = self.at(value + width).times(x) - self.at(value - width).times(x)
+        return np.asarray(change / (2 * width)[:, None, None])
+
+    def step_from(self, value: Complex, x: Complex) -> Complex:
+        """A⁻¹A′x of x (case, m, …)."""
+        keep_time()
+        right = self.slope_times(value, x)
+        found = self.at(value).solved(right)
+        if np.isnan(found).any():  # one lies on an exponent already
+            found = self.at(value * (1 + 1e-12)).solved(right)
+        return found
+
+
+def _one(blocks: _Blocks, value: Complex, shape: NDArray[Any]) -> Complex:
+    cases, n = shape.shape
+    x = np.zeros((cases, len(blocks.harmonics), n), dtype=complex)
+    x[:, int(np.searchsorted(blocks.harmonics, 0))] = shape
+    x, moved = x.reshape(cases, -1, 1), np.full(cases, np.inf)
+    for _ in range(STEPS):
+        x /= np.linalg.norm(x, axis=1, keepdims=True)
+        u = blocks.step_from(value, x)
+        change = 1 / (x.conj() * u).sum(axis=(1, 2))
+        value, moved, x = value - change, np.abs(change), u
+    with np.errstate(invalid="ignore"):
+        return np.where(moved <= SETTLED * np.abs(value), value, np.nan)
+
+
+def _two(blocks: _Blocks, middle: Complex, x: Complex) -> Complex:
+    """Two exponents about their ``middle`` (case,), from a plane x (case, m, 2) near that of their motions."""
+    pair = np.stack([middle, middle], axis=1)
+    for _ in range(PAIR_STEPS):
+        x = np.linalg.qr(x)[0]
+        u = blocks.step_from(middle, x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            pair = middle[:, None] - 1 / np.linalg.eigvals(x.conj().transpose(0, 2, 1) @ u)
+        middle, x = pair.mean(axis=1), u
+    return pair

@@ -1,0 +1,35 @@
+"""Unstable speeds of a line that nothing varies: only what feeds energy in makes it grow."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
+from trunnion.floquet.stability.along import StabilityAlong, straight_decay
+from trunnion.floquet.stability.stable_speeds import verdicts_at
+from trunnion.results.verdict import Verdict
+
+POINTS = 65
+TURN = 2 * np.pi
+"""Stands for a period, which a straight line has not."""
+
+
+def straight_ranges(span: Span) -> UnstableRanges:
+    """Negative damping, or a torque that grows with the speed, over a range."""
+    speeds = np.unique(np.concatenate([[span.start], np.linspace(span.start, span.high, POINTS)]))
+
+    def judge(at: Array) -> StabilityAlong:
+        verdict = verdicts_at(span.assembly, at, table=span.table(at))
+        growth = np.array(
+            [-straight_decay(span.assembly, speed, row) for speed, row in zip(at, span.table(at), strict=True)]
+        )
+        with np.errstate(under="ignore", over="ignore"):
+            radius = np.exp(growth * TURN / at)
+        return StabilityAlong(at, radius, np.zeros(len(at)), radius.astype(complex), verdict, growth, TURN)
+
+    verdict = verdicts_at(span.assembly, speeds, table=span.table(speeds))
+    if not np.any(verdict == Verdict.UNSTABLE):
+        return UnstableRanges(judge(np.unique(speeds[[0, -1]])), (), 0.0, ())
+    return UnstableRanges(*closed_in(judge(speeds), judge), 0.0, ())

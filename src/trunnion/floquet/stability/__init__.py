@@ -1,0 +1,1 @@
+"""Stability at one speed, at many, and of a steady response."""

@@ -1,0 +1,185 @@
+"""Floquet stability at many speeds at once: what the verdicts along a running range stand on.
+
+All speeds share the work. Up to ``LARGEST_DENSE`` unknowns the monodromy matrices come from exponentials in plain
+NumPy, so that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain
+kernel. Bent lines that start free are taken about their own periodic motions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Codes, Complex, Flags, Places
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.first_order import (
+    LARGEST_DENSE,
+    LineRates,
+    fastest_cycles,
+    first_order,
+    period_of,
+    scales,
+    steps_that_see,
+)
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.linear import line_matrices, rigid_motions
+from trunnion.equations.steady_base import moves_by_itself, require_balance
+from trunnion.errors import InputError
+from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
+from trunnion.numerics.spectrum import without
+from trunnion.results.verdict import Verdict, verdicts
+
+if TYPE_CHECKING:
+    from trunnion.steady.own.own_motions import MotionsBySpeed
+
+TOLERANCE = 1e-7
+UNDAMPED = 1e-12
+OVER_SPEED = ("speed", "radius", "error", "critical", "verdict", "growth_rate")
+
+
+class NoSharedMotion(InputError):
+    """A bent line that starts free and has stages or play: ``stability`` judges it speed by speed."""
+
+
+@dataclass(frozen=True)
+class StabilityAlong:
+    """speed [rad/s], radius, error (its estimate), critical (the largest multiplier), verdict (code), growth_rate of
+    the fastest disturbance [1/s], negative where it decays, each (speed,); period [rad of input angle]."""
+
+    speed: Array
+    radius: Array
+    error: Array
+    critical: Complex
+    verdict: Codes
+    growth_rate: Array
+    period: float
+
+    def of(self, which: Flags | Places) -> StabilityAlong:
+        """At some of the speeds, in the order named."""
+        return _of_parts({key: getattr(self, key)[which] for key in OVER_SPEED}, self.period)
+
+    def beside(self, other: StabilityAlong) -> StabilityAlong:
+        """Both, by rising speed."""
+        both = {key: np.concatenate([getattr(self, key), getattr(other, key)]) for key in OVER_SPEED}
+        return _of_parts(both, self.period).of(np.argsort(both["speed"], kind="stable"))
+
+
+def _of_parts(parts: dict[str, Any], period: float) -> StabilityAlong:
+    return StabilityAlong(**parts, period=period)
+
+
+def _along(
+    speed: Array, radius: Array, error: Array, critical: Complex, verdict: Codes, period: float
+) -> StabilityAlong:
+    with np.errstate(divide="ignore"):
+        growth = np.log(radius) * speed / period
+    return StabilityAlong(speed, radius, error, critical, verdict, np.asarray(growth), period)
+
+
+def stability_along(
+    assembly: Assembly,
+    speeds: ArrayLike,
+    *,
+    statically_twisted: bool = True,
+    motions: MotionsBySpeed | None = None,
+    table: Array | None = None,
+) -> StabilityAlong:
+    """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with bent joints or varying meshes.
+
+    ``motions`` : own motions that are known already; ``table`` (speed, column): packed numbers at every speed, where
+    they follow it.
+
+    Raises
+    ------
+    InputError : no period; torques that do not balance. NoSharedMotion is one.
+    """
+    speed = np.asarray(speeds, dtype=float)
+    if moves_by_itself(assembly):
+        return _about_own_motions(assembly, speed, motions)
+    table = assembly.table(len(speed), speed) if table is None else table
+    co = assembly.coefficients(table, statically_twisted=statically_twisted)
+    small = assembly.topology.size <= LARGEST_DENSE
+    return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
+
+
+def straight_decay(assembly: Assembly, speed: float, row: Array | None = None) -> float:
+    """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even;
+    ``row`` (column,): its packed numbers there, where they follow the speed.
+
+    What is no disturbance is left out: a turn of the whole line that starts free, its speed where no torque depends on
+    it. What rounding cannot tell from no decay is 0.
+    """
+    topo, table = assembly.topology, assembly.table(1, speed) if row is None else row[None]
+    co = replace(assembly.coefficients(table, any_frequency=True).straight, waves=())
+    m = line_matrices(topo, co, np.zeros(1))
+    root, unit = scales(m, co.speed)
+    slopes = first_order(m, co.speed, root, unit)[0, 0]
+    aside = rigid_motions(topo, co) * np.concatenate([root[0], root[0] / unit[0]])[:, None]
+    left = without(slopes, aside)[0] if aside.shape[1] else slopes
+    decay = float(-np.linalg.eigvals(left).real.max(initial=-np.inf))
+    rounding = len(left) * np.finfo(float).eps * float(np.linalg.norm(left))
+    return decay * speed if abs(decay) > rounding else 0.0
+
+
+def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> StabilityAlong:
+    rates = LineRates.of(assembly, table, twisted)
+    rest = rates.rest()
+    judged = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+    size = assembly.topology.size
+    found = exponential_monodromies(
+        rates, len(table), 2 * size, rates.period, least_steps=rates.steps, aside=judged
+    )  # fmt: skip
+    code = verdicts(found.radius, found.error, np.abs(rates.trace) < UNDAMPED * size)
+    return _along(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
+
+
+def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed | None) -> StabilityAlong:
+    from trunnion.steady.own.own_motions import own_motions
+
+    require_balance(assembly, assembly.table(len(speed), speed))
+    motions = own_motions(assembly.line, speed, solved)
+    if motions is None:
+        raise NoSharedMotion(
+            "starts free and has stages or play, so that each speed takes its own motion",
+            element="driveline",
+            remedy="ask stability at single speeds",
+        )
+    there = np.flatnonzero(motions.found)
+    radius, error = np.full(len(speed), np.nan), np.full(len(speed), np.nan)
+    critical = np.full(len(speed), np.nan, dtype=complex)
+    if len(there):
+        cycles = fastest_cycles(assembly, motions.period)
+        found = exponential_monodromies(
+            lambda which, tau: motions.rates(there[which], tau),
+            len(there),
+            2 * assembly.topology.size,
+            motions.period,
+            least_steps=steps_that_see(cycles),
+            aside=lambda which, z: motions.beside_neutral(there[which], z),
+        )
+        radius[there], error[there], critical[there] = found.radius, found.error, found.critical
+    code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
+    return _along(speed, radius, error, critical, code.astype(np.int8), motions.period)
+
+
+def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
+    # Loaded here, as they bring the compiler with them, which lines of up to ``LARGEST_DENSE`` unknowns do without.
+    from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+    from trunnion.floquet.charts.chart_families import quantities
+    from trunnion.floquet.charts.chart_pixels import judge, judge_matrices
+    from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
+
+    topo, by_speed = assembly.topology, loaded_by_speed(assembly.topology, co)
+    period = period_of(assembly)
+    lanes = chain_lanes(topo, co, by_speed)
+    program = chain_program(topo, co, by_speed)
+    matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
+    if topo.free:
+        values, bounds = quantities(matrix, error, trace)
+        found = judge(values.T.copy(), bounds.T.copy(), topo.size, rigid_motions(topo, co).shape[1])
+    else:
+        found = judge_matrices(matrix, error, trace)
+    return _along(co.speed, found.radius, found.error, found.critical, found.verdict, period)

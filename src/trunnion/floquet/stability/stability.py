@@ -1,0 +1,378 @@
+"""Floquet stability of a line, or of any periodic linear system, at one speed.
+
+The propagator Z over one period maps a disturbance to itself one period later; the motion is stable if all
+its multipliers (eigenvalues) lie inside the unit circle. Z is integrated until two step sizes agree, and
+that agreement becomes the error of every multiplier (see ``numerics.spectrum``). Liouville's identity
+ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property, partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex
+from trunnion.driveline.arguments import one_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.linear import periodic_linear_system, rigid_motions
+from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.topology import require_period
+from trunnion.errors import ComputationError, InputError
+from trunnion.features import left_out
+from trunnion.floquet.propagation.carried_modes import carried_mode, judged_multipliers, propagated
+from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
+from trunnion.modes.natural_frequencies import natural_frequencies
+from trunnion.modes.resonance_speeds import Resonance, Source, sources
+from trunnion.numerics.spectrum import multipliers, spectral_radius
+from trunnion.results.declared import Held, Judged, fields_over, over, remarks
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_speed
+from trunnion.results.units import angle_words, with_error
+from trunnion.results.verdict import MEANING, Verdict, verdicts
+from trunnion.steady.orders.forced_response import LINEAR_RANGE, LinearResponse, linear_response
+from trunnion.steady.shooting.periodic_orbit import speed_in_words
+from trunnion.systems.periodic_linear import PeriodicLinearSystem
+
+if TYPE_CHECKING:
+    from trunnion.numerics.chain.dense_monodromy import Propagation
+
+NEAR = 0.1
+"""As FARTHEST, on a stability boundary."""
+OWN = 0.1
+"""Tolerance of the motion that a free line is judged about, over that of its multipliers."""
+SPEED_ALONE = 0.05
+"""A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
+SET_ASIDE = {
+    1: "the multiplier at 1 of a turn of the whole line is set aside",
+    2: "the rigid-body pair of multipliers at 1 is set aside",
+}
+
+
+@dataclass(frozen=True, repr=False)
+class Stability(Judged):
+    """Floquet stability at one speed.
+
+    multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
+    error_estimate leave out the ``set_aside`` multipliers, exactly 1, of a line that starts free: a turn of the whole
+    line, and its speed where no torque depends on it; period [rad of input angle]; speed [rad/s]
+    (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
+    floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
+    resonance: the one the critical multiplier names; forced: computes the ``response``; extra_torque: of a bent line
+    that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
+    beyond the balance of the loads (None elsewhere); speed_sentence: of such a line none of whose torques depends on
+    the speed, what becomes of a change of its mean speed; left_out: findings about what the line has and this does
+    not count.
+    """
+
+    multipliers: Complex
+    multiplier_error: Array
+    floquet_modes: Complex
+    spectral_radius: float
+    error_estimate: float
+    verdict: Verdict
+    period: float
+    speed: float
+    resonance: Resonance | None
+    forced: Callable[[], LinearResponse] | None
+    liouville_defect: float
+    names: tuple[str, ...]
+    set_aside: int
+    left_out: tuple[Finding, ...] = ()
+    unit: str = "rad/s"
+    extra_torque: float | None = None
+    speed_sentence: str = ""
+
+    @property
+    def response(self) -> LinearResponse | None:
+        """The linear forced response, computed when it is first asked for; None for a system of your own, and where
+        ``no_response`` says why there is none."""
+        return self._asked[0]
+
+    @property
+    def no_response(self) -> str:
+        """Why the forced response of a line cannot be computed; empty where it can."""
+        return self._asked[1]
+
+    @cached_property
+    def _asked(self) -> tuple[LinearResponse | None, str]:
+        try:
+            return self.forced and self.forced(), ""
+        except (InputError, ComputationError) as error:  # the verdict stands without it
+            return None, str(error)
+
+    @property
+    def exponents(self) -> Complex:
+        """Characteristic exponents ln σ / period, in 1/s (imaginary part modulo the excitation)."""
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.log(self.multipliers) * (self.speed / self.period), dtype=complex)
+
+    @property
+    def growth_rate(self) -> float:
+        """Growth of the fastest disturbance [1/s]; negative when it decays."""
+        return float(np.log(self.spectral_radius) * self.speed / self.period)
+
+    @property
+    def growth_rate_error(self) -> float:
+        """Error estimate of the growth rate [1/s]."""
+        return float(self.error_estimate / self.spectral_radius * self.speed / self.period)
+
+    def disturbance(self, size: float = 1e-3) -> Array:
+        """A small disturbance of the kind that grows fastest, or decays slowest.
+
+        Parameters
+        ----------
+        size : its largest rotation [rad] at the start.
+
+        Returns
+        -------
+        State (2n,): rotations [rad], then their rates [rad/s], to be added to a ``start`` of ``simulate``. Of two such
+        motions, with it and without, the difference is multiplied by the critical multiplier in every period.
+        """
+        n = len(self.names)
+        critical = int(np.abs(np.abs(self.multipliers) - self.spectral_radius).argmin())
+        mode = self.floquet_modes[:, critical]
+        largest = mode[np.abs(mode[:n]).argmax()]
+        state = np.real(mode * (size / largest))
+        return np.concatenate([state[:n], state[n:] * self.speed])
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        return by_gravity([*_findings(self, unit), *self.left_out])
+
+    def declared(self) -> Iterator[Held]:
+        """Multipliers, growth and verdict, and what the forced response holds."""
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s")
+        yield over("", "period", self.period, "rad", "period in input angle")
+        yield over("", "speed", self.speed, "rad/s")
+        yield from remarks(
+            verdict=str(self.verdict), resonance=str(self.resonance or ""), liouville_defect=self.liouville_defect
+        )
+        if self.response is not None:
+            yield from (held for held in self.response.declared() if held.axes is not None)
+
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
+        lines = [
+            f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
+            f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)} per period of "
+            f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle",
+            f"  growth rate {with_error(self.growth_rate, self.growth_rate_error, 4, sign='+')} 1/s",
+        ]
+        if self.resonance is not None:
+            at = f" (at {show_speed(self.resonance.speed, unit)})" if np.isfinite(self.resonance.speed) else ""
+            lines.append(f"  the critical multiplier belongs to the {self.resonance.in_words}{at}")
+        if self.set_aside:
+            lines.append(f"  {SET_ASIDE[self.set_aside]}")
+        if self.extra_torque is not None:
+            lines.append(
+                f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
+                "beyond the balance of the loads"
+            )
+        if self.speed_sentence:
+            lines.append(f"  {self.speed_sentence}")
+        if self.response is not None:
+            lines.append("  " + str(self.response).replace("\n", "\n  "))
+        if self.no_response:
+            lines.append(f"  without the forced response: {self.no_response}")
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
+
+
+def stability(
+    line: Driveline | Assembly | PeriodicLinearSystem,
+    speed: float | str | None = None,
+    *,
+    tolerance: float = 1e-10,
+    statically_twisted: bool = True,
+) -> Stability:
+    """Floquet stability of ``line`` at input ``speed`` [rad/s], with the linear forced response.
+
+    Parameters
+    ----------
+    line : a driveline, or any ``PeriodicLinearSystem`` (which carries its own rate; leave ``speed`` out).
+    speed : mean input speed [rad/s]; default the operating speed of the file.
+    tolerance : error asked of Z in energy-like units.
+    statically_twisted : linearise about the line twisted by its load torques (joint phases and η′T̄);
+        False takes zero twist, as S1 and S3 do. A bent line that starts free is judged about its own periodic
+        motion, twist and all, whatever this says.
+
+    Raises
+    ------
+    InputError : no speed; a line without inertia, period or steady base motion.
+    ComputationError : the integration did not settle.
+    """
+    if not 0 < one_number(tolerance, "tolerance", "1e-10, say") < 1:
+        raise InputError("must lie between 0 and 1", key="tolerance", value=tolerance, remedy="1e-10, say")
+    if isinstance(line, PeriodicLinearSystem):
+        if speed is not None:
+            raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
+        scaled, nothing = np.array(line.frequencies) * line.period / np.pi, np.zeros((2 * line.size, 0))
+        run = propagated(line, tolerance)
+        return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
+    assembly = assemble(line)
+    table = assembly.table(1, operating_speed(assembly.line, speed))
+    if moves_by_itself(assembly):
+        found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
+    else:
+        found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
+    return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
+
+
+def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
+    system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
+    run = propagated(system, tolerance)
+    forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
+    turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
+    coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+    aside = rigid_motions(assembly.topology, coefficients)
+    return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
+
+
+def _named(
+    motion: ModeMotion | None,
+    verdict: Verdict,
+    rate: float,
+    frequency: Array,
+    excited: tuple[Source, ...],
+    turns: Fraction,
+) -> Resonance | None:
+    """The resonance that a critical mode belongs to; frequencies over the ``rate`` [rad/s]."""
+    if motion is None:
+        return None
+    # Tongues are wide at large angles: named from far away.
+    farthest = FARTHEST if verdict is Verdict.UNSTABLE else NEAR
+    named = named_resonance(mode_content(motion, turns), frequency, excited, turns, farthest)
+    return named and replace(named, speed=named.speed * rate)
+
+
+def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability:
+    """Of a free line with bent joints, which no motion of rigid shafts stands for."""
+    topo = assembly.topology
+    turns = require_period(assembly.line, topo)
+    from trunnion.steady.own.own_motion import own_motion
+
+    motion = own_motion(assembly.line, speed, tolerance=OWN * tolerance)
+    orbit = motion.orbit
+    scale = np.repeat([1.0, 1 / speed], topo.size)
+    values, vectors = np.linalg.eig(orbit.monodromy)
+    by_modulus = np.argsort(-np.abs(values))
+    critical = np.argmin(np.abs(np.abs(values) - orbit.spectral_radius))
+    named = None
+    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
+        moving = motion.mode_motion(complex(values[critical]))
+        frequency = natural_frequencies(assembly).undamped_frequency / speed
+        named = _named(moving, orbit.verdict, speed, frequency, sources(assembly), turns)
+    shapes = vectors[:, by_modulus] * scale[:, None]
+    return Stability(
+        multipliers=orbit.multipliers,
+        multiplier_error=orbit.multiplier_error,
+        floquet_modes=shapes / np.abs(shapes).max(0),
+        spectral_radius=orbit.spectral_radius,
+        error_estimate=orbit.error_estimate,
+        verdict=orbit.verdict,
+        period=2 * np.pi * float(turns),
+        speed=speed,
+        resonance=named,
+        forced=partial(linear_response, assembly, speed),
+        liouville_defect=orbit.liouville_defect,
+        names=topo.names,
+        set_aside=1,
+        extra_torque=motion.extra_torque,
+        speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
+    )
+
+
+def _judge(
+    system: PeriodicLinearSystem,
+    run: Propagation,
+    excited: tuple[Source, ...],
+    turns: Fraction,
+    frequency: Array,
+    forced: Callable[[], LinearResponse] | None,
+    aside: Array,
+) -> Stability:
+    matrix = run.scaled_monodromy
+    values, bound = multipliers(matrix, np.array(run.error))
+    order = np.argsort(-np.abs(values))
+    values, bound = values[order], bound[order]
+    modes = np.linalg.eig(matrix)[1][:, order] * run.scale[:, None]
+    judged, off = judged_multipliers(run, aside) if aside.shape[1] else (values, bound)
+    # A line of one inertia that turns freely has nothing left to judge: it neither grows nor decays.
+    radius, error = spectral_radius(judged, off) if len(judged) else (np.array(1.0), np.array(0.0))
+    undamped = abs(run.damping_trace) < 1e-13 * system.size
+    verdict = Verdict(int(verdicts(radius, error, undamped)))
+    named = None
+    if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+        # Only what grows belongs to a resonance.
+        critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
+        motion = carried_mode(system, run, complex(values[critical]))
+        named = _named(motion, verdict, system.rate, frequency, excited, turns)
+    sign, log_det = np.linalg.slogdet(matrix)
+    return Stability(
+        multipliers=values,
+        multiplier_error=bound,
+        floquet_modes=modes / np.abs(modes).max(0),
+        spectral_radius=float(radius),
+        error_estimate=float(error),
+        verdict=verdict,
+        period=system.period,
+        speed=system.rate,
+        resonance=named,
+        forced=forced,
+        liouville_defect=float(abs(log_det + run.damping_trace)) if sign > 0 else float("inf"),
+        names=system.names,
+        set_aside=aside.shape[1],
+    )
+
+
+def _findings(result: Stability, unit: str) -> Iterable[Finding]:
+    at = show_speed(result.speed, unit)
+    if result.verdict is Verdict.UNSTABLE:
+        doubling = np.log(2) / result.growth_rate
+        where = f"; it belongs to the {result.resonance.in_words}" if result.resonance else ""
+        yield Finding(
+            Gravity.DANGER,
+            f"The line is unstable at {at}: a small torsional disturbance doubles every {doubling:.3g} s{where}.",
+        )
+    elif result.verdict is Verdict.UNDECIDED:
+        yield Finding(
+            Gravity.CAUTION,
+            f"The line stands on a stability boundary at {at}: |multiplier| is 1 to within "
+            f"{result.error_estimate:.1e}; give damping its true value or ask for a smaller tolerance.",
+        )
+    elif result.verdict is Verdict.MARGINAL:
+        yield Finding(
+            Gravity.NOTE,
+            f"Without damping the line is marginal at {at}: disturbances neither grow nor die out.",
+        )
+    else:
+        yield Finding(Gravity.NOTE, f"The line is stable at {at}: disturbances decay at {-result.growth_rate:.3g} 1/s.")
+    response = result.response
+    if result.no_response:
+        yield Finding(Gravity.CAUTION, f"Without the forced response: {result.no_response}.")
+    if response is not None and not np.all(np.isfinite(response.torque_amplitude)):
+        yield Finding(
+            Gravity.DANGER,
+            f"No steady forced motion exists at {at}: an excitation meets a natural frequency without damping.",
+        )
+    elif response is not None and not response.linear:
+        worst = int(response.joint_rotation.argmax())
+        shaft = int(response.twist_amplitude.argmax())
+        steady = "Stable does not mean quiet: its" if result.verdict is Verdict.STABLE else "Its"
+        yield Finding(
+            Gravity.DANGER,
+            f"{steady} excitation forces a rotation of {angle_words(response.joint_rotation[worst])} at the input of "
+            f"{response.joints[worst]} at {at} (twist of {response.shafts[shaft]} "
+            f"±{angle_words(response.twist_amplitude[shaft])} by linear theory), beyond the linear range of "
+            f"{angle_words(LINEAR_RANGE)}: read it as resonance, not as an amplitude; the verdict holds for small "
+            "twist only.",
+        )

@@ -1,0 +1,127 @@
+"""Stability of very many lines that differ in their numbers, on the compiled kernels.
+
+The ordinary kernel follows every mode. Of a stiff line at a slow speed the fastest ones make the error of the matrix
+far larger than what the radius is wanted to: there steps of exponentials are halved until the largest multipliers stay.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array, Flags
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
+from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.topology import require_period
+from trunnion.floquet.charts.chart_families import quantities
+from trunnion.floquet.charts.chart_pixels import Pixels, judge
+from trunnion.numerics.chain.chain_exponentials import ChainExponentials
+from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
+from trunnion.numerics.chain.exponential_monodromy import by_halving
+from trunnion.numerics.threads import on_threads
+
+AT_ONCE = 1 << 15
+"""Lines in one call of the kernel."""
+STEPPED_AT_ONCE = 256
+"""Lines whose steps are halved together."""
+FIRST = 16
+"""Lines that tell which way suits the others."""
+COARSE, SHARE = 1e-6, 1e-2
+"""Errors of ρ above this, and above this share of 1 − ρ, are too large."""
+UNKNOWN = 0.1
+"""Error of ρ from which nothing is known of it."""
+
+
+@dataclass(frozen=True)
+class ManyLines:
+    """One line's structure, ready to be judged for any rows of numbers; ``statically_twisted`` as in ``stability``."""
+
+    assembly: Assembly
+    statically_twisted: bool
+    threads: int
+
+    @classmethod
+    def of(cls, assembly: Assembly, table: Array, twisted: bool, threads: int) -> ManyLines:
+        """Refuses lines without period, without a steady base at any row of ``table``, and bent free ones."""
+        require_period(assembly.line, assembly.topology)
+        refuse_own_motion(assembly, "put a ConstantSpeed in front", bends=False)
+        require_steady_base(assembly, table)
+        return cls(assembly, twisted, threads)
+
+    @property
+    def period(self) -> float:
+        """Period [rad of input angle]."""
+        return 2 * np.pi * float(require_period(self.assembly.line, self.assembly.topology))
+
+    def matrices(self, table: Array, tolerance: float) -> tuple[Array, Array, Array]:
+        """Monodromy matrices of rows of ``table`` in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
+        topo = self.assembly.topology
+        coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
+        by_speed = loaded_by_speed(topo, coefficients)
+        program, lanes = chain_program(topo, coefficients, by_speed), chain_lanes(topo, coefficients, by_speed)
+        begin = symmetry_phase(program, lanes, self.period)
+        window = Window(0.0 if begin is None else begin, self.period, begin is not None)
+        return chain_monodromy(program, lanes, window, tolerance, self.threads)
+
+    def set_aside(self, table: Array) -> int:
+        """Multipliers exactly 1 of a free line, as ``Stability.set_aside``."""
+        if not self.assembly.topology.free:
+            return 0
+        coefficients = self.assembly.coefficients(table[:1], statically_twisted=self.statically_twisted)
+        return 1 if loaded_by_speed(self.assembly.topology, coefficients) else 2
+
+    def judged(self, table: Array, tolerance: float) -> Pixels:
+        """Radius, error, critical multiplier and verdict of rows of ``table``, each (rows,)."""
+        stiff = np.mean(_too_coarse(self.integrated(table[:FIRST], tolerance))) > 0.5
+        ways = (lambda rows: self.integrated(rows, tolerance)), self.stepped
+        way, other = ways[::-1] if stiff else ways
+        found = _joined([way(table[start : start + AT_ONCE]) for start in range(0, len(table), AT_ONCE)])
+        coarse = np.flatnonzero(_too_coarse(found))
+        if len(coarse):
+            found.put_better(other(table[coarse]), coarse)
+        return found
+
+    def integrated(self, table: Array, tolerance: float) -> Pixels:
+        values, bounds = quantities(*self.matrices(table, tolerance))
+        size, aside = self.assembly.topology.size, self.set_aside(table)
+        return judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), size, aside)
+
+    def stepped(self, table: Array) -> Pixels:
+        """The same by steps of exponentials; an infinite error where the shortest ones do not tell."""
+        topo = self.assembly.topology
+        steps = steps_that_see(fastest_cycles(self.assembly, self.period))
+
+        def run(rows: Array) -> Pixels:
+            co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
+            by_speed = loaded_by_speed(topo, co)
+            lanes = chain_lanes(topo, co, by_speed)
+            points = ChainExponentials(chain_program(topo, co, by_speed), lanes, self.period, steps)
+            rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.free else None
+            beside = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
+            found = by_halving(
+                lambda which, count: points.monodromies(which, count)[0],
+                len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside,
+            )  # fmt: skip
+            _, trace = points.monodromies(np.arange(len(rows)), steps)
+            error = np.where(np.isfinite(found.radius), found.error, np.inf)
+            return Pixels.of(found.radius, error, found.critical, trace, topo.size)
+
+        parts = np.array_split(table, max(1, -(-len(table) // STEPPED_AT_ONCE)))
+        return _joined(on_threads(run, parts, self.threads))
+
+    def growth(self, table: Array, found: Pixels) -> Array:
+        """Growth rates [1/s] at the speeds of ``table``; of a radius smaller than its error that of the error, NaN
+        where nothing is known."""
+        known = np.where(found.error <= UNKNOWN, np.maximum(found.radius, found.error), np.nan)
+        return np.asarray(np.log(np.maximum(known, 1e-300)) / self.period * table[:, 0])
+
+
+def _too_coarse(found: Pixels) -> Flags:
+    return ~(found.error <= np.maximum(COARSE, SHARE * np.abs(1 - found.radius)))
+
+
+def _joined(parts: list[Pixels]) -> Pixels:
+    return Pixels._make(map(np.concatenate, zip(*parts, strict=True)))

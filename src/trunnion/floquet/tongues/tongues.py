@@ -1,0 +1,357 @@
+"""Every instability region in a box, as smooth curves with the resonance that names it.
+
+Rows y = const are searched from end to end (``rows``), joined into tongues (``joining``), and closed at their tips
+(``ridges``). All that is printed of a tongue is solved for with integrations of its own at 1e-13; the patches only tell
+where to look.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.stability_chart import Task, chart_task
+from trunnion.floquet.tongues.from_resonances import followed, in_words
+from trunnion.floquet.tongues.joining import HALVINGS, Search, Strand, joined
+from trunnion.floquet.tongues.levels import levels_of, own_value
+from trunnion.floquet.tongues.naming import resonances
+from trunnion.floquet.tongues.region import FAINT, Region, patched
+from trunnion.floquet.tongues.result import Tongue, Tongues, Unknown
+from trunnion.floquet.tongues.ridges import ridge
+from trunnion.floquet.tongues.rows import Kind, Row, unstable_intervals
+from trunnion.floquet.tongues.shapes import Shape, lost, shapes
+from trunnion.modes.resonance_speeds import Resonance
+from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
+from trunnion.systems.family import PeriodicLinearFamily
+
+Range = Sequence[object]
+Progress = Callable[[float], None]
+Words = Callable[[str, list[Strand]], str]
+"""How rows were searched, from how many there are and how far apart, and from the strands found."""
+
+ROWS = 65
+PATCH_TOLERANCE = 1e-11
+FASTEST = 5
+"""Rows of a tongue that grow fastest in their middle, on which its largest growth rate is looked for."""
+
+
+def tongues(
+    line: Driveline | Assembly | PeriodicLinearFamily,
+    x: Range,
+    y: Range,
+    *,
+    speed: float | str | None = None,
+    rows: int = ROWS,
+    statically_twisted: bool = True,
+    threads: int | None = None,
+    progress: Progress | None = None,
+) -> Tongues:
+    """All instability regions in a box of two parameters.
+
+    Parameters
+    ----------
+    line : a driveline, or a ``PeriodicLinearFamily`` of your own.
+    x, y : ``(parameter, low, high)``, parameters as of a chart, SI units. Tongues are followed along y: take an angle
+    or a
+        damping for it, and the speed for x.
+    speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
+    rows : values of y searched to begin with, more where tongues are born, close or meet.
+
+    Up to three unknowns every row is searched completely: every change of stability is a zero of one of three analytic
+    functions, and their zeros on a row are all found. Longer lines are sampled. ``search`` in the result says which.
+
+    Raises
+    ------
+    InputError : see ``stability_chart``; fewer than three rows.
+    """
+    if isinstance(rows, bool) or not isinstance(rows, int | np.integer) or rows < 3:
+        raise InputError("must be a whole number, 3 or more", key="rows", value=rows)
+    task = task_of(line, x, y, speed, statically_twisted, "tongues")
+    workers, tell = threads or os.cpu_count() or 1, progress or (lambda share: None)
+    region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
+    own = own_value(task.family.assembly, task.y) if isinstance(task.family, LineFamily) else None
+    levels = np.sort(task.family.to_patch(levels_of(task.y, int(rows), own), False))
+    search, words = _search(region)
+    regions = regions_on(region, search, levels, lambda s: tell(0.3 + 0.6 * s))
+    found = described(task, region, search, regions, words)
+    tell(1.0)
+    return found
+
+
+@dataclass(frozen=True)
+class Regions:
+    """Regions as strands closed at their tips, and all ``rows`` that were searched for them."""
+
+    shaped: list[Shape]
+    rows: list[Row]
+
+
+def regions_on(region: Region, search: Search, levels: Array, tell: Progress, known: Sequence[Row] = ()) -> Regions:
+    """Regions that meet the rows ``levels`` or those ``known``, with as many rows between as it takes to close them."""
+    strands, rows = joined(search, levels, lambda s: tell(0.9 * s), known)
+    shaped = shapes(region, search, strands)
+    for _ in range(HALVINGS):
+        if not len(open_ends := lost(shaped)):
+            break
+        between = np.unique([(end.last + end.beyond) / 2 for end in open_ends])
+        strands, rows = joined(search, between, lambda s: None, rows)
+        shaped = shapes(region, search, strands)
+    tell(1.0)
+    return Regions(shaped, rows)
+
+
+def described(task: Task, region: Region, search: Search, regions: Regions, words: Words) -> Tongues:
+    """The result: names, growth rates and what was searched."""
+    shaped, searched = regions.shaped, regions.rows
+    places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
+    growths, names = _growths(region, shaped), _names(region, shaped)
+    find = _finder(region, search)
+    found = [_tongue(task, region, find, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
+    steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
+    untold, open_ends = _unknown(region, searched), _open_ends(region, shaped)
+    unit = speed_unit(task.line) if task.line else None
+    across, up = (parameter_axis(axis.label, axis.unit, unit) for axis in (task.x, task.y))
+    return Tongues(
+        _numbered(found),
+        task.x.label,
+        task.y.label,
+        task.x.unit,
+        task.y.unit,
+        (float(task.x.values[0]), float(task.x.values[-1])),
+        (float(task.y.values[0]), float(task.y.values[-1])),
+        "1/s" if task.line is not None else "1",
+        len(searched),
+        float(np.abs(steps).max()),
+        region.by_coefficients and not region.uncovered and not untold and not open_ends,
+        words(
+            f"{len(searched)} rows, at most {up.number(float(np.abs(steps).max()), 3)} apart,",
+            [shape.strand for shape in shaped],
+        )
+        + _faint_words(shaped)
+        + _unknown_words(untold, across, up)
+        + _open_words(open_ends, up),
+        tuple(sorted((*untold, *open_ends), key=lambda place: (place.y, place.x))),
+        task.line,
+        task.remarks,
+        find,
+    )
+
+
+def task_of(
+    line: Driveline | Assembly | PeriodicLinearFamily,
+    x: Range,
+    y: Range,
+    speed: float | str | None,
+    twisted: bool,
+    analysis: str,
+) -> Task:
+    """What is to be searched, checked; ranges are ``(parameter, low, high)``."""
+    for key, request in (("x", x), ("y", y)):
+        if isinstance(request, str) or not isinstance(request, Sequence) or len(request) != 3:
+            remedy = f'write {key}=("speed", 10, 200)'
+            raise InputError("must be (parameter, low, high)", key=key, value=request, remedy=remedy)
+    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis)
+
+
+def rows_in_words(region: Region, apart: str) -> str:
+    """How rows ``apart`` were searched."""
+    if not region.by_coefficients:
+        few = "more than three unknowns have no boundary functions that could be searched completely"
+        return (
+            f"{apart} were sampled ({few}), and looked at closely wherever two multipliers meet: both searches are "
+            "heuristics, so narrow regions may be missing"
+        )
+    if region.uncovered:
+        return f"{apart} were searched; {region.uncovered} parts of the box resisted and were sampled"
+    return f"{apart} were searched completely; a region that lies wholly between two rows is not listed"
+
+
+def _unknown(region: Region, rows: list[Row]) -> tuple[Unknown, ...]:
+    """Where rows could not be told, each with the rows next to it: what lies between is not known either."""
+    found = []
+    for k, row in enumerate(rows):
+        beside = (rows[max(k - 1, 0)].v, rows[min(k + 1, len(rows) - 1)].v)
+        low, high = sorted(float(region.y(np.array(v))) for v in beside)
+        ends = [(float(a), float(b)) for a, b in region.in_x(*row.unknown.T)]
+        found += [Unknown(float(region.y(np.array(row.v))), x, (low, high)) for x in ends]
+    return tuple(sorted(found, key=lambda place: (place.y, place.x)))
+
+
+def _unknown_words(unknown: tuple[Unknown, ...], across: QuantityAxis, up: QuantityAxis) -> str:
+    if not unknown:
+        return ""
+    rows, first = len({place.y for place in unknown}), unknown[0]
+    return (
+        f"; on {rows} of them it could not be told whether the motion grows, first at "
+        f"{up.value(first.y)} for {across.said(np.array(first.x))}"
+    )
+
+
+def _faint_words(shaped: list[Shape]) -> str:
+    if not any(any(shape.fades) for shape in shaped):
+        return ""
+    return f"; without damping, what grows by less than {FAINT:g} a period cannot be told from what does not grow"
+
+
+def _open_ends(region: Region, shaped: list[Shape]) -> tuple[Unknown, ...]:
+    """Ends of regions that were not found: between their last row and the next nothing is known."""
+    found = []
+    for end in lost(shaped):
+        y, beyond = (float(region.y(np.array(v))) for v in (end.last, end.beyond))
+        ((low, high),) = region.in_x(np.array([end.low]), np.array([end.high])).tolist()
+        found.append(Unknown(y, (low, high), (min(y, beyond), max(y, beyond))))
+    return tuple(found)
+
+
+def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
+    if not open_ends:
+        return ""
+    first, many = open_ends[0], "1 region" if len(open_ends) == 1 else f"{len(open_ends)} regions"
+    return f"; where {many} end was not found, first between {up.said(np.array(first.between))}"
+
+
+def _search(region: Region) -> tuple[Search, Words]:
+    """How rows are searched, and what there is to say of it when tongues are known."""
+    alone = ""
+    if not region.by_coefficients:
+        found = followed(region)
+        if found is not None:
+            return (
+                found.rows,
+                lambda apart, strands: f"{rows_in_words(region, apart)}; {in_words(found, [s.by for s in strands])}",
+            )
+        line = isinstance(region.family, LineFamily)
+        why = "x is no speed" if line else "a family of your own has no straight line"
+        alone = f"; resonances were not followed, as {why}"
+    return lambda v: unstable_intervals(region, v), lambda apart, strands: rows_in_words(region, apart) + alone
+
+
+def _finder(region: Region, search: Search) -> Callable[[float], Array]:
+    def find(y: float) -> Array:
+        v = float(region.family.to_patch(np.array(y), False))
+        row = search(np.array([v]))[0]
+        return region.in_x(row.low, row.high)
+
+    return find
+
+
+def _growths(region: Region, shapes: list[Shape]) -> list[tuple[float, tuple[float, float]]]:
+    """The largest growth rate on the rows of each tongue and where it is."""
+    owner = np.concatenate([np.full(len(s.v), k) for k, s in enumerate(shapes)] or [np.zeros(0)])
+    v, low, high = (
+        np.concatenate([getattr(s, part) for s in shapes] or [np.zeros(0)]) for part in ("v", "low", "high")
+    )
+    rough = _rate(region, (low + high) / 2, v, np.maximum(region.above_one((low + high) / 2, v), 0.0))
+    own = [np.flatnonzero(owner == k) for k in range(len(shapes))]
+    pick = np.concatenate([o[np.argsort(-rough[o])[:FASTEST]] for o in own] or [np.zeros(0, dtype=np.intp)])
+    u, top = ridge(region, low[pick], high[pick], v[pick])
+    rate, x, y = _rate(region, u, v[pick], top), region.x(u), region.y(v[pick])
+    found = []
+    for k in range(len(shapes)):
+        mine = np.flatnonzero(owner[pick] == k)
+        best = mine[int(np.argmax(rate[mine]))]
+        found.append((float(rate[best]), (float(x[best]), float(y[best]))))
+    return found
+
+
+def _rate(region: Region, u: Array, v: Array, over: Array) -> Array:
+    """Growth rates [1/s] at points where ρ − 1 is ``over``."""
+    family = region.family
+    speed = family.table(region.x(u), region.y(v))[:, 0] if isinstance(family, LineFamily) else 1.0
+    return np.asarray(np.log1p(over) / family.period * speed)
+
+
+def _tongue(
+    task: Task,
+    region: Region,
+    find: Callable[[float], Array],
+    shape: Shape,
+    growth: tuple[float, tuple[float, float]],
+    named: Resonance | None,
+    places: dict[Strand | None, int],
+) -> Tongue:
+    strand = shape.strand
+    y = _snapped(region.y(shape.v), task.y.values)
+    ends = _snapped(np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0), task.x.values)
+    tip, top = (_point(region, t) for t in shape.tips)
+    order = np.argsort(y, kind="stable")
+    falling = bool(y[0] > y[-1])
+    if falling:
+        tip, top = top, tip
+    return Tongue(
+        places[strand],
+        str(Kind(strand.held[0].kind)),
+        named,
+        y[order],
+        ends[0][order],
+        ends[1][order],
+        tip if tip is not None else top,
+        top if tip is not None else None,
+        *growth,
+        places.get(strand.into[1]),
+        places.get(strand.into[0]),
+        _cut(task, region, strand),
+        _fades(shape, falling),
+        find,
+    )
+
+
+def _fades(shape: Shape, falling: bool) -> tuple[str, ...]:
+    ends = shape.fades[::-1] if falling else shape.fades
+    return tuple(name for name, fades in zip(("below", "above"), ends, strict=True) if fades)
+
+
+def _snapped(y: Array, box: Array) -> Array:
+    """Ends of the box exactly as they were asked for: there and back through 1/Ω or tan β they are rounded."""
+    for end in box[[0, -1]]:
+        y = np.where(np.abs(y - end) <= 1e-12 * np.ptp(box), end, y)
+    return y
+
+
+def _point(region: Region, place: tuple[float, float] | None) -> tuple[float, float] | None:
+    return None if place is None else (float(region.x(np.array(place[0]))), float(region.y(np.array(place[1]))))
+
+
+def _cut(task: Task, region: Region, strand: Strand) -> tuple[str, ...]:
+    clipped = [any(held.clipped[side] for held in strand.held) for side in (0, 1)]
+    falling = float(region.x(np.array(region.box.u0))) > float(region.x(np.array(region.box.u1)))
+    left, right = clipped[::-1] if falling else clipped
+    sides = {
+        f"low {task.x.label}": left, f"high {task.x.label}": right,
+        f"low {task.y.label}": strand.beyond[0] is None and strand.into[0] is None,
+        f"high {task.y.label}": strand.beyond[1] is None and strand.into[1] is None,
+    }  # fmt: skip
+    return tuple(name for name, is_cut in sides.items() if is_cut)
+
+
+def _names(region: Region, shapes: list[Shape]) -> list[Resonance | None]:
+    """The resonance of each tongue, at its tip where it has one."""
+    if not isinstance(region.family, LineFamily) or not shapes:
+        return [None] * len(shapes)
+    begins = np.array([s.tips[0] or s.tips[1] or (s.strand.held[0].inside, s.strand.held[0].v) for s in shapes])
+    kinds = np.array([s.strand.held[0 if s.tips[0] or not s.tips[1] else -1].kind for s in shapes])
+    return resonances(region.family, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, region.threads)
+
+
+def _numbered(found: list[Tongue]) -> tuple[Tongue, ...]:
+    """By falling growth rate, numbered from 1, references to others with them."""
+    ordered = sorted(found, key=lambda t: -t.growth_rate)
+    number = {t.number: k for k, t in enumerate(ordered, start=1)}
+    return tuple(
+        replace(
+            t,
+            number=number[t.number],
+            joins=None if t.joins is None else number[t.joins],
+            parts=None if t.parts is None else number[t.parts],
+        )
+        for t in ordered
+    )

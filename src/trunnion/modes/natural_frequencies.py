@@ -1,0 +1,186 @@
+"""Natural frequencies, damping and mode shapes of the aligned line (all joint angles zero)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.aligned import frequencies, loaded_matrices, rigid_rotation
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.features import left_out
+from trunnion.modes.damped_modes import LineModes, line_modes
+from trunnion.results.declared import Held, Result, axis, fields_over, over
+from trunnion.results.drawing import Figure, drawing
+from trunnion.results.finding import Finding
+from trunnion.results.speeds import four_figures, show_speed, speed_factor
+
+ALIKE = 5e-4
+"""Share by which damped and undamped frequencies may differ before a sentence gives both."""
+
+
+@dataclass(frozen=True, repr=False)
+class NaturalFrequencies(Result):
+    """Modes of the aligned line as it is damped, beside the undamped ones, by whose frequency they are numbered.
+
+    undamped_frequency (mode,) [rad/s], ascending, 0 of the rigid body; names (rotation,); ``rigid_body`` tells that
+    mode 1 is the free rotation of the whole line. Everything else follows when it is asked for: ``eigenvalue``,
+    ``frequency``, ``damping_ratio``, ``decay_rate``, ``shape``, and ``findings``, which say what of the line is left
+    out. Eigenvalues hold to rounding, 1e-12 of the highest frequency or damping rate.
+    """
+
+    undamped_frequency: Array
+    names: tuple[str, ...]
+    rigid_body: bool
+    assembly: Assembly
+
+    @cached_property
+    def eigenvalue(self) -> Complex:
+        """Both eigenvalues λ (mode, root) [1/s]: −ζ|λ| ± iω_d, or two real ones of an overdamped mode."""
+        return self.modes.eigenvalue
+
+    @property
+    def frequency(self) -> Array:
+        """Damped frequency ω_d = Im λ of each mode (mode,) [rad/s]; NaN of an overdamped mode, 0 of the rigid body."""
+        return np.where(self.overdamped, np.nan, self.eigenvalue[:, 0].imag)
+
+    @property
+    def damping_ratio(self) -> Array:
+        """ζ = −Re λ/|λ| of each mode (mode,) [1]; NaN of an overdamped mode, 0 of the rigid body."""
+        first, size = self.eigenvalue[:, 0], np.abs(self.eigenvalue[:, 0])
+        ratio = np.divide(-first.real, size, out=np.zeros(len(size)), where=first.imag > 0)
+        return np.where(self.overdamped, np.nan, ratio + 0.0)
+
+    @property
+    def decay_rate(self) -> Array:
+        """−Re λ (mode, root) [1/s]: motion dies out with e^(−rate · t); twice the same for a mode that oscillates."""
+        return np.asarray(0.0 - self.eigenvalue.real)
+
+    @property
+    def overdamped(self) -> Flags:
+        """Which modes do not oscillate (mode,), the rigid body aside."""
+        still = self.eigenvalue[:, 0].imag == 0
+        still[: int(self.rigid_body)] = False
+        return np.asarray(still)
+
+    @cached_property
+    def modes(self) -> LineModes:
+        """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
+        return line_modes(*_matrices(self.assembly), _rigid(self.assembly) if self.rigid_body else None)
+
+    @cached_property
+    def shape(self) -> Array:
+        """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
+        mass = self.assembly.aligned.mass[0]
+        root = np.sqrt(mass)
+        shape = np.linalg.eigh(self.assembly.aligned.stiffness[0] / np.outer(root, root))[1] / root[:, None]
+        return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """What of the line is left out."""
+        return left_out("natural_frequencies", self.assembly.line)
+
+    @property
+    def hertz(self) -> Array:
+        """Damped frequencies in Hz."""
+        return self.frequency / (2 * np.pi)
+
+    @property
+    def elastic(self) -> Array:
+        """Undamped frequencies without the rigid-body mode [rad/s]."""
+        return self.undamped_frequency[int(self.rigid_body) :]
+
+    def declared(self) -> Iterator[Held]:
+        """Frequencies, damping ratio and decay over the modes, mode shapes over (rotation, mode)."""
+        yield axis("mode", np.arange(1, len(self.undamped_frequency) + 1))
+        yield axis("rotation", self.names)
+        yield over("mode", "frequency", self.frequency, "rad/s", "damped")
+        yield from fields_over("mode", self, undamped_frequency="rad/s", damping_ratio="1")
+        yield over("mode root", "decay_rate", self.decay_rate, "1/s", "of both eigenvalues")
+        yield over("rotation mode", "shape", self.shape, "1", "undamped mode shape")
+
+    def table(self, unit: str = "Hz") -> list[dict[str, object]]:
+        """One row per mode, frequencies in ``unit``; what dies out without oscillating and what moves most named."""
+        factor = speed_factor(unit)
+        still = any(self.overdamped)
+        return [
+            {
+                "mode": i + 1,
+                f"frequency [{unit}]": float(self.frequency[i] * factor),
+                "damping ratio": float(self.damping_ratio[i]),
+                f"undamped [{unit}]": float(self.undamped_frequency[i] * factor),
+                **({"overdamped": self._decay(i)} if still else {}),
+                "moves most": "whole line" if self._rigid(i) else self.names[np.argmax(np.abs(self.shape[:, i]))],
+            }
+            for i in range(len(self.undamped_frequency))
+        ]
+
+    def _rigid(self, mode: int) -> bool:
+        return self.rigid_body and mode == 0
+
+    def _decay(self, mode: int) -> str:
+        """How an overdamped mode dies out; "" of others."""
+        if not self.overdamped[mode]:
+            return ""
+        slow, fast = (four_figures(rate) for rate in self.decay_rate[mode])
+        return f"decays at {slow} and {fast} 1/s"
+
+    def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
+        """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
+        return drawing(self, "plot")(self, unit=unit, drive=drive)
+
+    def __str__(self) -> str:
+        many = len(self.undamped_frequency)
+        lines = [f"{many} natural frequencies of the aligned line (joint angles zero)"]
+        lines += [f"  mode {i + 1}: {self._said(i)}" for i in range(many)]
+        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+
+    def _said(self, mode: int) -> str:
+        if self._rigid(mode):
+            return "0, rigid body (the line turns as a whole)"
+        undamped = self._shown(self.undamped_frequency[mode])
+        if self.overdamped[mode]:
+            return f"overdamped, {self._decay(mode)}; undamped {undamped}"
+        ratio, frequency = self.damping_ratio[mode], self.frequency[mode]
+        apart = abs(frequency - self.undamped_frequency[mode]) > ALIKE * frequency
+        return f"{self._shown(frequency)}, damping ratio {ratio:.3g}{f'; undamped {undamped}' if apart else ''}"
+
+    def _shown(self, frequency: float) -> str:
+        unit = speed_unit(self.assembly.line)
+        first = "" if unit == "Hz" else f"{show_speed(frequency, unit)} = "
+        return f"{first}{show_speed(frequency, 'Hz')}"
+
+
+def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
+    """Natural frequencies and damping of ``line`` as it stands, with all joint angles zero.
+
+    M q̈ + C q̇ + (K + iH) q = 0 in absolute rotations; C holds viscous loads too, H loss factors that hold at all
+    frequencies: a mode whose energy is all in such springs has the damping ratio sin(½ arctan η), nearly η/2. The
+    frequencies are those of the damped line, from the complex eigenvalues λ: ω_d = Im λ = √(1 − ζ²)|λ|. Undamped ones,
+    with C and H left out, stand beside them; resonance speeds are named after those. Ratios turn at their constant
+    speed ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order.
+    """
+    assembly = assemble(line)
+    topo = assembly.topology
+    found = frequencies(assembly.aligned, free=topo.free)[0]
+    return NaturalFrequencies(found, topo.names, topo.free, assembly)
+
+
+def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
+    """Damping, stiffness and loss of unit masses, viscous loads among the damping."""
+    coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
+    matrices = loaded_matrices(assembly.topology, coefficients, np.zeros(1))
+    root = np.sqrt(matrices.mass[0])
+    scale = np.outer(root, root)
+    return matrices.damping[0] / scale, matrices.stiffness[0] / scale, matrices.loss[0] / scale
+
+
+def _rigid(assembly: Assembly) -> Array:
+    """How the whole line turns, in coordinates scaled with the roots of the inertias."""
+    return np.asarray(rigid_rotation(assembly.topology) * np.sqrt(assembly.aligned.mass[0]))

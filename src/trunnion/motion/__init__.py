@@ -1,0 +1,1 @@
+"""Motions in time: simulated, periodic, swept, passing a resonance, chaotic."""

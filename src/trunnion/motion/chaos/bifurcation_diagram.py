@@ -1,0 +1,154 @@
+"""Bifurcation diagrams: the points of the Poincaré map as one parameter moves up, and down again.
+
+At each value the motion begins where it ended at the one before, so it stays on its attractor for as long as
+that exists; where up and down differ, there are several.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Flags, Integers
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.motion.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
+from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
+from trunnion.numerics.memory import require_memory
+from trunnion.results.declared import Held, Result, about, axis, over
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import axis_of_parameter
+from trunnion.systems.events import Event
+from trunnion.systems.system import System
+
+DIRECTIONS = ("up", "down")
+
+
+@dataclass(frozen=True, repr=False)
+class BifurcationDiagram(Result):
+    """Points (directions, values, points, n) of the map over a parameter, NaN where the motion failed.
+
+    repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed; settling
+    (directions, values): where it does not repeat and comes closer to it, so that a longer ``transient`` would tell.
+    """
+
+    system: System
+    parameter: str
+    values: Array
+    directions: tuple[str, ...]
+    points: Array
+    repeat: Integers
+    settling: Flags
+    section: str
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    def declared(self) -> Iterator[Held]:
+        """Every state over (direction, value, point), and after how many points the motion repeats."""
+        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
+        yield axis("direction", self.directions)
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("direction value point", name, self.points[..., i], unit)
+        yield over("direction value", "repeat", self.repeat)
+        yield over("direction value", "settling", self.settling)
+        remarks = {"section": self.section, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **remarks)
+
+    def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
+        """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
+        return drawing(self, "plot")(self, axes, state=state)
+
+    def __str__(self) -> str:
+        along = axis_of_parameter(self.system, self.parameter)
+        low, high = self.values[0] * along.factor, along.number(float(self.values[-1]))
+        rows = [
+            f"bifurcation diagram of {self.system.name} over {self.parameter} = {low:.6g} … {high}, "
+            f"{len(self.values)} values, {self.points.shape[2]} points each, {self.section}"
+        ]
+        for direction, repeat, settling in zip(self.directions, self.repeat, self.settling, strict=True):
+            counts = {int(k): int(np.sum(repeat == k)) for k in np.unique(repeat[repeat > 0])}
+            told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
+            told = f"{told or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
+            late = f"; {int(np.sum(settling))} still settle: raise transient" if settling.any() else ""
+            rows.append(f"  {direction}: {told}{late}")
+        return "\n".join([*rows, f"  {self.outcome}"])
+
+
+def bifurcation_diagram(
+    subject: System | Driveline,
+    parameter: str,
+    values: ArrayLike | tuple[float, float, int],
+    *,
+    directions: Sequence[str] = DIRECTIONS,
+    points: int = 60,
+    transient: int = 300,
+    speed: float | str | None = None,
+    section: Event | None = None,
+    start: ArrayLike | None = None,
+    tolerance: float = 1e-9,
+    progress: Callable[[float], None] | None = None,
+) -> BifurcationDiagram:
+    """Points of the Poincaré map over one parameter of the system.
+
+    Parameters
+    ----------
+    parameter : a name among the system's parameters; of a driveline "speed" or "HookeJoint 1.angle", say.
+    values : (first, last, how many), or rising values.
+    directions : "up", "down", or both.
+    points, transient : kept and left out at each value.
+    section : of an autonomous system, as for ``poincare_map``.
+
+    Raises
+    ------
+    InputError : no such parameter or direction; what ``poincare_map`` refuses.
+    """
+    system = as_system(subject, speed)
+    chosen = values_of(system, parameter, values)
+    whole_number("points", points, 8)
+    if not directions or any(d not in DIRECTIONS for d in directions):
+        raise InputError("is not a direction", key="directions", value=list(directions), remedy='write "up" or "down"')
+    needed = 8.0 * len(directions) * len(chosen) * points * system.size
+    require_memory(needed, key="points", value=points, remedy="ask for fewer values, or fewer points of each")
+    first = first_starts(system, start, 1)[0]
+    tell = progress or (lambda share: None)
+    found = np.full((len(directions), len(chosen), points, system.size), np.nan)
+    repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
+    settling = np.zeros(repeat.shape, dtype=bool)
+    told: list[str] = []
+    shown: PoincareMap | None = None
+    for d, direction in enumerate(directions):
+        state = first
+        order = range(len(chosen)) if direction == "up" else range(len(chosen) - 1, -1, -1)
+        for done, i in enumerate(order):
+            here = system.with_parameters({parameter: float(chosen[i])})
+            mapped = poincare_map(here, points, section=section, start=state, transient=transient, tolerance=tolerance)
+            tell((d + (done + 1) / len(chosen)) / len(directions))
+            if not mapped.outcome.ok:
+                told.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
+                state = first
+                continue
+            shown = mapped
+            found[d, i], repeat[d, i], settling[d, i] = mapped.wrapped, mapped.repeat, mapped.settling
+            state = mapped.points[-1]
+    outcome = Outcome(True, "reached", "every value was reached")
+    if told:
+        outcome = Outcome(False, "failed in part", f"{len(told)} of {repeat.size} values failed, the first {told[0]}")
+    words = shown.section if shown else ""
+    return BifurcationDiagram(
+        system,
+        parameter,
+        chosen,
+        tuple(directions),
+        found,
+        repeat,
+        settling,
+        words.split(" of ")[0],
+        transient,
+        tolerance,
+        outcome,
+    )

@@ -1,0 +1,259 @@
+"""Lyapunov exponents over one parameter, and the largest over two; values are shared by threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextvars import copy_context
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Flags
+from trunnion.driveline.driveline import Driveline
+from trunnion.motion.chaos.chaos_subject import (
+    BYTES_A_VALUE,
+    as_system,
+    first_starts,
+    tilted_frame,
+    values_of,
+    whole_number,
+)
+from trunnion.motion.chaos.lyapunov_result import shear_bound
+from trunnion.motion.simulation.long_motion import usual_time
+from trunnion.numerics.averages import average
+from trunnion.numerics.integration.integration import End
+from trunnion.numerics.memory import require_memory
+from trunnion.results.declared import Held, Result, about, axis, fields_over, over
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import axis_of_parameter
+from trunnion.systems.maps import TimedMap
+from trunnion.systems.system import System
+
+Request = tuple[str, float, float, int]
+
+
+@dataclass(frozen=True, repr=False)
+class LyapunovSweep(Result):
+    """exponents, half_width (values, k) [1/s] over one parameter, the largest first; NaN where the motion failed."""
+
+    system: System
+    parameter: str
+    values: Array
+    exponents: Array
+    half_width: Array
+    periods: int
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    @property
+    def positive(self) -> Flags:
+        """Where (values,) the largest exponent is above 0 by more than its interval."""
+        return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
+
+    def declared(self) -> Iterator[Held]:
+        """Exponents [1/s] and their half-widths over (value, order)."""
+        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
+        yield axis("order", np.arange(1, self.exponents.shape[1] + 1))
+        yield over("value order", "exponent", self.exponents, "1/s")
+        yield over("value order", "half_width", self.half_width, "1/s")
+        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **effort)
+
+    def plot(self, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
+        """Exponents over the parameter."""
+        return drawing(self, "plot")(self, axes, mark=mark)
+
+    def __str__(self) -> str:
+        known = np.isfinite(self.exponents[:, 0])
+        along = axis_of_parameter(self.system, self.parameter)
+        head = (
+            f"Lyapunov exponents of {self.system.name} over {self.parameter} = {self.values[0] * along.factor:.6g} … "
+            f"{along.number(float(self.values[-1]))}, {len(self.values)} values, {self.periods} periods each"
+        )
+        if not known.any():
+            return f"{head}\n  {self.outcome}"
+        top = int(np.nanargmax(self.exponents[:, 0]))
+        at = along.number(float(self.values[top]))
+        most = f"{self.exponents[top, 0]:+.5g} ± {self.half_width[top, 0]:.2g} 1/s at {at}"
+        share = f"positive at {int(self.positive.sum())} of {int(known.sum())}"
+        return f"{head}\n  {share}; the largest is {most}\n  {self.outcome}"
+
+
+@dataclass(frozen=True, repr=False)
+class LyapunovMap(Result):
+    """exponent, half_width (y, x) [1/s]: the largest exponent over two parameters; NaN where the motion failed."""
+
+    system: System
+    parameters: tuple[str, str]
+    x: Array
+    y: Array
+    exponent: Array
+    half_width: Array
+    periods: int
+    transient: int
+    tolerance: float
+    threads: int
+    outcome: Outcome
+
+    @property
+    def positive(self) -> Flags:
+        """Where (y, x) the exponent is above 0 by more than its interval."""
+        return np.asarray(self.exponent - self.half_width > 0)
+
+    def declared(self) -> Iterator[Held]:
+        """Largest exponent [1/s] and its half-width over (y, x)."""
+        for name, values, parameter in zip("xy", (self.x, self.y), self.parameters, strict=True):
+            yield axis(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
+        yield from fields_over("y x", self, exponent="1/s", half_width="1/s")
+        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
+        yield from about(self.system, self.outcome, **effort)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
+        return drawing(self, "plot")(self, axes)
+
+    def __str__(self) -> str:
+        known = int(np.isfinite(self.exponent).sum())
+        share = 100 * float(self.positive.sum()) / max(known, 1)
+        return (
+            f"largest Lyapunov exponent of {self.system.name} over {self.parameters[0]} and {self.parameters[1]}, "
+            f"{len(self.x)} × {len(self.y)} points, {self.periods} periods each\n"
+            f"  positive at {share:.3g} % of {known}; from {np.nanmin(self.exponent):+.4g} to "
+            f"{np.nanmax(self.exponent):+.4g} 1/s\n  {self.outcome}"
+        )
+
+
+def lyapunov_sweep(
+    subject: System | Driveline,
+    parameter: str,
+    values: ArrayLike | tuple[float, float, int],
+    *,
+    periods: int = 1000,
+    transient: int = 300,
+    exponents: int | None = None,
+    speed: float | str | None = None,
+    start: ArrayLike | None = None,
+    interval: float | None = None,
+    tolerance: float = 1e-9,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> LyapunovSweep:
+    """Exponents at every value of one parameter, each motion beginning at ``start``.
+
+    Parameters
+    ----------
+    parameter, values : as for ``bifurcation_diagram``.
+    periods, transient : averaged over, and left out before.
+    interval : length of a period [s] where the system has none; by default about once around.
+
+    Raises
+    ------
+    InputError : no such parameter; a wrong count.
+    """
+    system = as_system(subject, speed)
+    chosen = values_of(system, parameter, values)
+    count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)
+    points = [{parameter: float(v)} for v in chosen]
+    mean, width, told = _all(
+        system, points, count, periods, transient, start, interval, tolerance, _threads(threads), progress
+    )
+    order = np.argsort(-mean, axis=1, kind="stable")
+    mean, width = np.take_along_axis(mean, order, 1), np.take_along_axis(width, order, 1)
+    return LyapunovSweep(
+        system, parameter, chosen, mean, width, periods, transient, tolerance, _told(told, len(chosen))
+    )
+
+
+def lyapunov_map(
+    subject: System | Driveline,
+    x: Request,
+    y: Request,
+    *,
+    periods: int = 500,
+    transient: int = 100,
+    speed: float | str | None = None,
+    start: ArrayLike | None = None,
+    interval: float | None = None,
+    tolerance: float = 1e-8,
+    threads: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> LyapunovMap:
+    """The largest exponent over two parameters, each motion beginning at ``start``.
+
+    Parameters
+    ----------
+    x, y : (parameter, first, last, how many).
+    threads : by default one per processor.
+
+    Raises
+    ------
+    InputError : no such parameter; a wrong count or range.
+    """
+    system = as_system(subject, speed)
+    columns, rows = values_of(system, x[0], x[1:]), values_of(system, y[0], y[1:])
+    needed = float(BYTES_A_VALUE) * len(rows) * len(columns)
+    require_memory(needed, key="x, y", value=f"{len(columns)} x {len(rows)}", remedy="ask for fewer values")
+    points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
+    used = _threads(threads)
+    mean, width, told = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
+    shape = (len(rows), len(columns))
+    return LyapunovMap(
+        system, (x[0], y[0]), columns, rows, mean.reshape(shape), width.reshape(shape), periods, transient, tolerance,
+        used, _told(told, len(points)),
+    )  # fmt: skip
+
+
+def _all(
+    system: System, points: list[dict[str, float]], count: int, periods: int, transient: int, start: ArrayLike | None,
+    interval: float | None, tolerance: float, threads: int, progress: Callable[[float], None] | None,
+) -> tuple[Array, Array, list[str]]:  # fmt: skip
+    whole_number("periods", periods, 1)
+    whole_number("transient", transient, 0)
+    state = first_starts(system, start, 1)[0]
+    mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
+    told: list[str] = []
+    tell = progress or (lambda share: None)
+
+    def one(place: int) -> None:
+        here = system.with_parameters(points[place])
+        length = interval or here.forcing_period or usual_time(here, state, tolerance)
+        motion = TimedMap.over(here, length, tolerance=tolerance).motion(state, tilted_frame(system, count))
+        found = motion.run(transient)
+        if found.end is End.REACHED:
+            found = motion.run(periods)
+        if found.end is not End.REACHED:
+            told.append(str(points[place]))
+            return
+        result, bound = average(found.growth / length), shear_bound(periods, length)
+        mean[place], width[place] = result.mean, result.half_width
+        # What lies within the bound may be 0 and only seem not to be.
+        width[place] = np.where(np.abs(result.mean) <= bound, np.fmax(width[place], bound), width[place])
+
+    with ThreadPoolExecutor(threads if system.compiled else 1) as pool:
+        waiting = [pool.submit(copy_context().run, one, place) for place in range(len(points))]
+        try:
+            for done, each in enumerate(waiting, start=1):
+                each.result()
+                tell(done / len(points))
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+    return mean, width, told
+
+
+def _threads(threads: int | None) -> int:
+    if threads is not None:
+        return whole_number("threads", threads, 1)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _told(told: list[str], total: int) -> Outcome:
+    if not told:
+        return Outcome(True, "reached", "every point was reached")
+    return Outcome(
+        False, "failed in part", f"at {len(told)} of {total} points the motion did not reach its end, first {told[0]}"
+    )

@@ -1,0 +1,201 @@
+"""Poincaré maps: the points in which a motion meets a section, once it has settled.
+
+Stroboscopic: x(t₀ + kT), one point per forcing period (or per any other time). Section: the states at which a
+function of the state crosses zero in one direction. A periodic motion gives as many points as it takes forcing
+periods to close, a quasi-periodic one closed curves, a chaotic one a cloud with structure at every scale.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array
+from trunnion.driveline.driveline import Driveline
+from trunnion.errors import InputError
+from trunnion.motion.chaos.chaos_subject import as_system, first_starts, turns, whole_number
+from trunnion.motion.simulation.long_motion import failure, motion_size, usual_time
+from trunnion.numerics.integration.integration import End
+from trunnion.numerics.memory import require_memory
+from trunnion.results.declared import Held, Result, about, over
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import state_axes
+from trunnion.steady.shooting.integration_outcomes import outcome_of
+from trunnion.steady.shooting.repetition import Repetition, modulo, repetition
+from trunnion.systems.events import Event
+from trunnion.systems.maps import SectionMap, TimedMap
+from trunnion.systems.system import System
+
+MOST_STEPS = 10_000_000
+"""Of the integrator between two looks at a section."""
+
+
+@dataclass(frozen=True, repr=False)
+class PoincareMap(Result):
+    """Points of a motion on a section.
+
+    points (points, n); time (points,) [s] of each, after the transient; size (n,): how far each state moves
+    between the points, against which returns are measured; turns (k, n): what may be added to a state without
+    changing any rate, 2π of an angle, say: points count modulo these; section: what the points have in common, in
+    words.
+    """
+
+    system: System
+    points: Array
+    time: Array
+    size: Array
+    turns: Array
+    section: str
+    transient: int
+    tolerance: float
+    outcome: Outcome
+
+    @cached_property
+    def repetition(self) -> Repetition:
+        """After how many points the map repeats, and whether it still settles."""
+        return repetition(self.points, self.size, np.asarray(self.system.scale), self.turns)
+
+    @property
+    def repeat(self) -> int:
+        """After how many points the map repeats; 0 if it does not, or not within 64 points, or still settles."""
+        return self.repetition.after
+
+    @property
+    def settling(self) -> bool:
+        """Whether the map does not repeat but comes closer to it: give a longer ``transient``."""
+        return self.repetition.settling
+
+    @property
+    def wrapped(self) -> Array:
+        """The points modulo their turns; angles lie between −π and π."""
+        return modulo(self.points, self.turns, np.asarray(self.system.scale))
+
+    def declared(self) -> Iterator[Held]:
+        """Every state and the time over the points."""
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("point", name, self.points[:, i], unit)
+        yield over("point", "time", self.time, "s")
+        yield from about(
+            self.system, self.outcome, section=self.section, repeat=self.repeat, settling=int(self.settling),
+            transient=self.transient, tolerance=self.tolerance,
+        )  # fmt: skip
+
+    def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
+        """One state over another; see ``trunnion.plots.chaos.draw_map``."""
+        return drawing(self, "plot")(self, axes, x=x, y=y, points=points)
+
+    def __str__(self) -> str:
+        count = f"{len(self.points)} point{'s' * (len(self.points) != 1)}"
+        head = f"Poincaré map of {self.system.name}: {count}, {self.section}"
+        axes = state_axes(self.system)
+        rows = [
+            f"  {name}: {column.min() * axis.factor:.6g} … {axis.number(float(column.max()))}"
+            for name, axis, column in zip(self.system.states, axes, self.wrapped.T, strict=True)
+            if len(column)
+        ]
+        if self.outcome.ok or self.repeat:
+            rows.append(f"  {self.repetition}")
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+
+def poincare_map(
+    subject: System | Driveline,
+    points: int = 2000,
+    *,
+    speed: float | str | None = None,
+    section: Event | None = None,
+    every: float | None = None,
+    phase: float = 0.0,
+    start: ArrayLike | None = None,
+    transient: int = 500,
+    longest: float | None = None,
+    tolerance: float = 1e-10,
+) -> PoincareMap:
+    """Points of a settled motion on a section.
+
+    Parameters
+    ----------
+    subject : a ``System``, or a ``Driveline`` at ``speed`` [rad/s].
+    section : crossings of an event with a direction; by default stroboscopic, at ``phase`` [s] of the forcing.
+    every : time [s] between stroboscopic points instead of the forcing period.
+    transient : points left out at the beginning.
+    longest : time [s] after which a section counts as not met any more; by default 1000 forcing periods, or as
+        many times what the motion needs to get about once around.
+
+    Returns
+    -------
+    PoincareMap; its ``outcome`` says if the motion blew up or the section was not met, and what there was is kept.
+
+    Raises
+    ------
+    InputError : neither a forcing period nor a section nor ``every``; a section without a direction.
+    """
+    system = as_system(subject, speed)
+    whole_number("points", points, 1)
+    needed = 16.0 * (points + transient) * (system.size + 1)
+    require_memory(needed, key="points", value=points, remedy="ask for fewer points")
+    whole_number("transient", transient, 0)
+    state = first_starts(system, start, 1)[0]
+    if section is not None:
+        if every is not None:
+            raise InputError("and section are two ways to say one thing", key="every", remedy="leave one out")
+        return _sectioned(system, section, state, points, transient, longest, tolerance)
+    interval = every if every is not None else system.forcing_period
+    if interval is None:
+        raise InputError(
+            "is autonomous: it has no period for a stroboscopic map", element=system.name, key="period",
+            remedy=f'give a section, tn.Event("{system.states[0]}", 0.0, direction=1), or every=, a time',
+        )  # fmt: skip
+    if not (np.isfinite(interval) and interval > 0):
+        raise InputError("must be a positive time", key="every", value=interval)
+    over_interval = TimedMap.over(system, interval, phase=phase, tolerance=tolerance)
+    motion = over_interval.motion(state, np.empty((0, system.size)))
+    early = motion.run(transient)
+    found = motion.run(points) if early.end is End.REACHED else early
+    settled = found.states if early.end is End.REACHED else found.states[:0]
+    words = f"every {interval:.6g} s" if every is not None else f"every forcing period of {interval:.6g} s"
+    outcome = Outcome(True, "reached", f"{len(settled)} points after {transient} left out")
+    if found.end is not End.REACHED:
+        outcome = failure(
+            system, motion, 2 * interval, f"after {early.finished + len(settled)} points, time counted from there: "
+        )
+    times = np.asarray(interval * np.arange(len(settled)), dtype=float)
+    return _result(system, settled, times, words, transient, tolerance, outcome, interval)
+
+
+def _sectioned(
+    system: System, section: Event, state: Array, points: int, transient: int, longest: float | None, tolerance: float
+) -> PoincareMap:
+    if longest is None and system.forcing_period is None:
+        longest = 1000 * usual_time(system, state, tolerance)
+    cut = SectionMap(system, section, longest, tolerance, MOST_STEPS)
+    met = cut.crossings(state, points + transient)
+    found, at, have = met.points[transient:], met.time[transient:], len(met.points)
+    outcome = Outcome(True, "reached", f"{points} points after {transient} left out")
+    if met.run.end is not End.REACHED:
+        guards = (*(system.regimes.guards if system.regimes else ()), section.label)
+        outcome = outcome_of(system, met.run, tolerance, guards)
+    elif have < points + transient:
+        outcome = Outcome(
+            False, "never crossed",
+            f"{section.label} was crossed {have} times and then not within {cut.limit:.6g} s; choose a level the "
+            "motion passes, the other direction, or raise longest",
+        )  # fmt: skip
+    length = float(np.mean(np.diff(at))) if len(at) > 1 else cut.limit / 100
+    at = at - (at[0] if len(at) else 0.0)
+    arrow = "rising" if section.direction > 0 else "falling"
+    return _result(system, found, at, f"{section.label} {arrow}", transient, tolerance, outcome, length)
+
+
+def _result(
+    system: System, points: Array, time: Array, words: str, transient: int, tolerance: float, outcome: Outcome,
+    interval: float,
+) -> PoincareMap:  # fmt: skip
+    turning = turns(system, points) if len(points) else np.zeros((0, system.size))
+    size = motion_size(system, points[-1], interval, tolerance) if len(points) else np.zeros(system.size)
+    return PoincareMap(system, points, time, size, turning, words, transient, tolerance, outcome)

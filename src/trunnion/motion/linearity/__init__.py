@@ -1,0 +1,1 @@
+"""The linear steady response beside the nonlinear one."""

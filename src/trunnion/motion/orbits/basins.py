@@ -1,0 +1,90 @@
+"""Basins of attraction: which motion of a piecewise linear oscillator is reached from where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Integers
+from trunnion.motion.orbits.exact_map import OscillatorMap
+from trunnion.motion.orbits.exact_orbit_result import PiecewiseOrbit
+from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit, refuse_unbounded
+from trunnion.numerics.memory import require_memory
+from trunnion.results.declared import Held, Result, axis, over
+from trunnion.results.drawing import Axes, drawing
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+LEAST, MOST, SAME = 20, 2000, 1e-9
+"""Periods that a start gets at least and at most; change per period that counts as settled."""
+ONE_ATTRACTOR = 1e-5
+"""Distance below which two settled states belong to one motion."""
+BYTES_A_START = 64.0
+"""What one start holds."""
+
+
+@dataclass(frozen=True, repr=False)
+class Basins(Result):
+    """Which motion is reached from where: numbers (starts of x, starts of x′) into ``attractors``, −1 for none."""
+
+    position: Array
+    velocity: Array
+    number: Integers
+    attractors: tuple[PiecewiseOrbit, ...]
+
+    @property
+    def shares(self) -> Array:
+        """Share of the starts that each attractor draws (attractors,)."""
+        return np.array([np.mean(self.number == i) for i in range(len(self.attractors))])
+
+    def declared(self) -> Iterator[Held]:
+        """The number of the attractor over the starts, and what each attractor does."""
+        yield axis("position", self.position)
+        yield axis("velocity", self.velocity)
+        yield over("position velocity", "attractor", self.number, about="number of the attractor, -1 for none")
+        yield over("attractor_number", "share", self.shares, "1")
+        for name in ("peak_to_peak", "mean"):
+            yield over("attractor_number", name, np.array([getattr(orbit, name) for orbit in self.attractors]))
+        yield over("attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str))
+
+    def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
+        """Map of the starts; see ``trunnion.plots.frequency_response``."""
+        return drawing(self, "plot")(self, axes, length=length)
+
+    def __str__(self) -> str:
+        rows = [
+            f"  {share:.1%}: {orbit.peak_to_peak:.6g} peak to peak, mean {orbit.mean:.6g}, contact {orbit.contact}"
+            for share, orbit in zip(self.shares, self.attractors, strict=True)
+        ]
+        left = float(np.mean(self.number < 0))
+        rest = [f"  {left:.1%}: no motion of that period within the time"] if left else []
+        return "\n".join([f"{len(self.attractors)} attractors from {self.number.size} starts", *rows, *rest])
+
+
+def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
+    """Basins of attraction at the oscillator's own frequency, from all pairs of ``position`` and ``velocity``.
+
+    Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.
+    """
+    refuse_unbounded(oscillator)
+    x, v = (np.atleast_1d(np.asarray(a, dtype=float)) for a in (position, velocity))
+    require_memory(
+        BYTES_A_START * float(len(x)) * len(v),
+        key="position, velocity", value=f"{len(x)} x {len(v)}", remedy="ask for fewer starts",
+    )  # fmt: skip
+    starts = np.ascontiguousarray(np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2))
+    settled = OscillatorMap.of(oscillator).steady_from(starts, LEAST, most, SAME)
+    number = np.full(len(starts), -1, dtype=np.int64)
+    found: list[PiecewiseOrbit] = []
+    for i in np.flatnonzero(np.isfinite(settled[:, 0])):
+        near = [j for j, orbit in enumerate(found) if np.abs(orbit.start - settled[i]).max() < ONE_ATTRACTOR]
+        if not near:
+            orbit = piecewise_orbit(oscillator, settled[i], settle=False)
+            if not orbit.outcome.ok:
+                continue
+            found.append(orbit)
+            near = [len(found) - 1]
+        number[i] = near[0]
+    return Basins(x, v, number.reshape(len(x), len(v)), tuple(found))

@@ -1,0 +1,260 @@
+"""Periodic motions as Fourier series whose harmonics balance, followed over a parameter.
+
+For ẋ = f(t, x) with period T the series x(t) of H harmonics must satisfy the first H harmonics of the equation.
+f is evaluated in the time domain, at samples of the period, and transformed (alternating frequency–time: Cameron
+and Griffin, J. Appl. Mech. 56, 1989); the Jacobian is exact, from ∂f/∂x at the same samples, also across the kinks
+of a piecewise force. Any forced ``System`` will do: an oscillator, a backlash, a driveline.
+
+Stability comes from the monodromy matrix along the motion that starts where the series starts; how far that
+motion misses its start after a period is the ``defect``, the error of the series measured by another method.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Complex
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.parameters import Parameter
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.motion.orbits.balancing import Series, SeriesBranch, balanced
+from trunnion.motion.orbits.branch import STEP
+from trunnion.motion.orbits.periodic_branch import SystemOver, system_over
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.continuation.arclength import CurvePoint
+from trunnion.numerics.curves import extremes
+from trunnion.numerics.integration.sampled_rates import sampled_rates
+from trunnion.results.declared import Held, over
+from trunnion.steady.shooting.judging import CLEAR, IntegratedClosing
+from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
+from trunnion.systems.system import System
+
+FEWEST, MOST = 8, 256
+"""Harmonics to begin with, whose samples are the fewest taken, and the most that a tail is answered with."""
+SMOOTH_SAMPLES, KINKED_SAMPLES = 8, 128
+"""Samples per harmonic: what is not resolved of a kink folds back, and must stay below what the series leaves out."""
+TAIL, KINKED_TAIL = 1e-6, 1e-4
+"""Of a smooth motion, whose coefficients fall exponentially; of one with kinks, whose rates fall like k⁻³."""
+FAR = 100.0
+"""Distance of a spectral radius from 1, over that of the series from the motion, at which its error does not matter."""
+
+
+@dataclass(frozen=True, repr=False)
+class HarmonicBalance(SeriesBranch):
+    """A branch of periodic motions as Fourier series; see ``SeriesBranch``."""
+
+    @cached_property
+    def defect(self) -> Array:
+        """Distance (points,) between start and end of the true motion through the series' start, in units of the
+        states' scales; NaN where that motion cannot be computed (at a grazing)."""
+        assert isinstance(self.branch.problem, _Balance)
+        return np.array([self.branch.problem.defect(CurvePoint(z, z, 0)) for z in self.branch.unknowns])
+
+    def declared(self) -> Iterator[Held]:
+        """What the branch holds, with the series and how far it is off."""
+        yield from super().declared()
+        yield over("point", "defect", self.defect)
+
+    def motion(self, point: int, count: int = 1024) -> Array:
+        """States (count, n) at equidistant times of the period of one point."""
+        return np.ascontiguousarray(fourier.samples(self.rows[point], count).T)
+
+    @property
+    def _worst(self) -> str:
+        return f"{super()._worst}, defect up to {np.nanmax(self.defect):.1e}"
+
+
+def harmonic_balance(
+    line: Driveline | Assembly | System,
+    parameter: str | Parameter,
+    low: float,
+    high: float,
+    *,
+    begin: float | None = None,
+    start: ArrayLike | None = None,
+    speed: float | str | None = None,
+    periods: int = 1,
+    harmonics: int | None = None,
+    tail: float | None = None,
+    longest_step: float = 0.01,
+    most_points: int = 2000,
+) -> HarmonicBalance:
+    """Follow a periodic motion over a parameter by harmonic balance.
+
+    Parameters
+    ----------
+    line, parameter, low, high, begin, speed, periods, longest_step, most_points : as in ``periodic_branch``;
+        ``periods`` > 1 gives subharmonic motions, an isolated branch is followed from a ``start`` on it.
+    start : a state near the first motion at t = 0, or its series (n, 2H + 1).
+    harmonics : number of harmonics H of the motion's own period; by default as many as bring the last ones below
+        ``tail`` times the motion everywhere on the branch (at most 256; the outcome says if these are too few).
+    tail : 1e-6 by default, 1e-4 for systems with regimes.
+
+    Returns
+    -------
+    A branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no points.
+
+    Raises
+    ------
+    InputError : an unknown parameter, a reversed range, an autonomous system, a number of harmonics below 1.
+    """
+    if harmonics is not None and not 1 <= harmonics <= 10_000:
+        raise InputError("must be a whole number of at least 1", key="harmonics", value=harmonics)
+    if tail is not None and not 0 < tail < 1:
+        raise InputError("must lie between 0 and 1", key="tail", value=tail, remedy="write 1e-6, say")
+    family = system_over(line, parameter, low, high, begin, speed, longest_step / STEP)
+    limit = tail or (TAIL if family.at(family.begin).regimes is None else KINKED_TAIL)
+    begun = _first_rows(family, start, periods, harmonics or FEWEST * periods)
+    return balanced(
+        HarmonicBalance, lambda h: _Balance(family, periods, h, begun), harmonics, FEWEST * periods, MOST, limit,
+        family.begin, low, high, most_points,
+    )  # fmt: skip
+
+
+def _first_rows(family: SystemOver, start: ArrayLike | None, periods: int, h: int) -> Array:
+    """A series to begin with: the one given, or that of a motion found by shooting, or none but zeros."""
+    system = family.at(family.begin)
+    if start is not None and np.ndim(start) == 2:
+        return fourier.resized(np.asarray(start, dtype=float), h)
+    orbit = periodic_orbit(system, start=start, periods=periods)
+    if not orbit.outcome.ok:
+        return np.zeros((system.size, 2 * h + 1))
+    times = orbit.period * np.arange(32 * h) / (32 * h)
+    return fourier.rows_of(orbit.trajectory.at(times).T, h)
+
+
+@dataclass
+class _Balance(Series):
+    """The balance of h harmonics as equations of a curve z = (series, value), and what its points tell."""
+
+    over: SystemOver
+    periods: int
+    h: int
+    begun: Array
+
+    @property
+    def size(self) -> int:
+        return len(self.over.scale) - 1
+
+    @property
+    def scale(self) -> Array:
+        wide = 2 * self.h + 1
+        return np.append(np.repeat(self.over.scale[:-1], wide), self.over.scale[-1])
+
+    def equations(self, z: Array) -> tuple[Array, Array]:
+        """What the balance leaves over one radian, in units of the states' scales, and its derivative."""
+        unknowns, wide, value = len(z) - 1, 2 * self.h + 1, float(z[-1])
+        rows = z[:-1].reshape(-1, wide)
+        # The parameter enters in any way, the period included: central differences, good to some 1e-9.
+        step = 1e-4 * float(self.over.scale[-1])
+        here = self._left(rows, value, with_slope=True)
+        before, after = (self._left(rows, value + side * step, with_slope=False) for side in (-1, 1))
+        if here is None or before is None or after is None:
+            return np.full(unknowns, np.nan), np.full((unknowns, unknowns + 1), np.nan)
+        left, slope = here
+        by_parameter = (after[0] - before[0]) / (2 * step)
+        over = 1 / np.repeat(self.over.scale[:-1], wide)
+        return left * over, np.hstack([slope, by_parameter[:, None]]) * over[:, None]
+
+    def _left(self, rows: Array, value: float, *, with_slope: bool) -> tuple[Array, Array] | None:
+        """(D X − F)/ω (n (2h + 1),) and its derivative by the rows."""
+        try:
+            system = self.over.at(value)
+        except InputError:  # a trial value may be no value of this parameter
+            return None
+        if system.forcing_period is None or not np.isfinite(rows).all():
+            return None
+        n, wide, h = self.size, 2 * self.h + 1, self.h
+        period = self.periods * system.forcing_period
+        omega = 2 * np.pi / period
+        per_harmonic = SMOOTH_SAMPLES if system.regimes is None else KINKED_SAMPLES
+        count = 1 << int(np.ceil(np.log2(per_harmonic * max(h, FEWEST))))
+        states = np.ascontiguousarray(fourier.samples(rows, count).T)
+        evaluated = sampled_rates(
+            system.equations, period * np.arange(count) / count, states, system.regime_at(0.0, states[0])
+        )
+        if evaluated is None:
+            return None
+        rates, jacobians, _ = evaluated
+        left = (fourier.rate(rows, omega) - fourier.rows_of(rates.T, h)) / omega
+        if not with_slope:
+            return left.ravel(), np.zeros((0, 0))
+        slope = -fourier.product_blocks(jacobians, h)
+        slope[np.arange(n), :, np.arange(n), :] += fourier.rate_matrix(h, omega)
+        return left.ravel(), slope.reshape(n * wide, n * wide) / omega
+
+    @cached_property
+    def true(self) -> IntegratedClosing:
+        """The true motions through the starts of the series."""
+        return IntegratedClosing(self.over.map(self.periods, TOLERANCE), self.over.scale)
+
+    def first(self) -> Array:
+        return fourier.resized(self.begun, self.h)
+
+    def start(self, point: CurvePoint) -> Array:
+        rows = self.rows(point)
+        return np.asarray(rows[:, : self.h + 1].sum(axis=1))
+
+    def on_motion(self, point: CurvePoint) -> CurvePoint:
+        """The point of the true motion through the series' start."""
+        z = np.append(self.start(point), point.parameter)
+        return CurvePoint(z, np.zeros_like(z), point.corrections)
+
+    def defect(self, point: CurvePoint) -> float:
+        """How far the motion misses its start, in units of the states' scales."""
+        passage = self.true.passage(self.on_motion(point))
+        missed = (passage.state - self.start(point)) / self.over.scale[:-1]
+        return float(np.abs(missed).max()) if passage.done else np.nan
+
+    def multipliers(self, point: CurvePoint) -> Complex:
+        """By falling modulus; NaN where the motion cannot be computed."""
+        return self.true.multipliers(self.on_motion(point))
+
+    def radius_error(self, point: CurvePoint, radius: float) -> float:
+        """Against the multipliers of the motion that one step of Newton's method takes the series' start to.
+
+        Where the radius is far from 1, the distance from there on which only the side of 1 matters.
+        """
+        here = self.on_motion(point)
+        passage, scale = self.true.passage(here), self.over.scale[:-1]
+        if not passage.done:
+            return FAR
+        over_period = passage.run.final[1:].T * scale / scale[:, None]
+        missed = (passage.state - self.start(point)) / scale
+        step = np.linalg.lstsq(np.eye(self.size) - over_period, missed, rcond=1e-12)[0]
+        far = max(CLEAR, FAR * float(np.abs(step).max()))
+        if abs(radius - 1) > far:
+            return far
+        closer = replace(here, z=here.z + np.append(step * scale, 0.0))
+        if not self.true.passage(closer).done:
+            return far
+        better = float(np.abs(self.true.multipliers(closer)).max())
+        return 2 * abs(better - radius) + self.true.radius_error(closer, better)
+
+    def undamped(self, point: CurvePoint) -> bool:
+        """Whether nothing damps the motion."""
+        return self.true.undamped(self.on_motion(point))
+
+    def changes(self, point: CurvePoint) -> int:
+        """Changes of regime in a period."""
+        return self.true.changes(self.on_motion(point))
+
+    def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
+        """Peak-to-peak and largest absolute value of the curves, amplitude of the fundamental of the states, period."""
+        system, rows = self.over.at(point.parameter), self.rows(point)
+        assert system.forcing_period is not None
+        period = self.periods * system.forcing_period
+
+        def curves(phases: Array) -> Array:
+            states = np.ascontiguousarray(fourier.at(rows, phases).T)
+            return self.over.observe(system, period / (2 * np.pi) * phases, states)
+
+        seen = extremes(curves, fourier.cuts(self.h))
+        amplitude = np.hypot(rows[:, self.periods], rows[:, self.h + self.periods])
+        return seen.span, seen.largest, amplitude, period

@@ -1,0 +1,443 @@
+"""A piecewise linear oscillator, or a driveline, on the bench: a value raised or lowered step by step.
+
+Each step goes on from where the last one ended, settles and is then measured. Also the rattle index, what the impacts
+of a period amount to, over frequency.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Flags, Integers
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.clutch_capacity import refuse_overload
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.staged_line import StagedLine
+from trunnion.errors import InputError
+from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
+from trunnion.motion.orbits.jumps import jumps
+from trunnion.motion.orbits.piecewise_branch import line_over
+from trunnion.motion.orbits.piecewise_orbit import CONTACT, contacts_of, refuse_unbounded
+from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.motion.simulation.exact_motion import start_state
+from trunnion.numerics.memory import require_memory
+from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
+from trunnion.numerics.piecewise_linear.staged_flow import kernel
+from trunnion.results.declared import Described, Held, Result, axis, ending, fields_over, over, remarks
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.steady.shooting.closing import refuse_speed
+from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Place = TypeVar("Place", OscillatorMap, LineMap)
+Seen = TypeVar("Seen")
+Torques = tuple[Array, Array, Array, tuple[SpringContact, ...]]
+"""Lowest and highest torque of every spring, the state that they follow from, and the contacts."""
+LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
+"""Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
+BYTES_A_STEP = 128.0
+"""What one frequency holds for each number of the state."""
+NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "settled")
+
+
+@dataclass(frozen=True, repr=False)
+class Sweep(Result):
+    """Steady motion over frequency, in the order it was swept.
+
+    frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
+    impacts, impact_energy Σ m v²/2 and impact_impulse Σ m |v| per period (points,); settled (points,): whether the
+    motion repeats every period; periods (points,): run until then; state (points, 2) at phase zero.
+    """
+
+    oscillator: PiecewiseOscillator
+    frequency: Array
+    lowest: Array
+    highest: Array
+    mean: Array
+    contact: tuple[str, ...]
+    impacts: Array
+    impact_energy: Array
+    impact_impulse: Array
+    settled: Flags
+    periods: Integers
+    state: Array
+    outcome: Outcome
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Highest minus lowest (points,)."""
+        return self.highest - self.lowest
+
+    @property
+    def up(self) -> bool:
+        """Whether the frequency was raised."""
+        return bool(self.frequency[-1] >= self.frequency[0])
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
+        return jumps(self.frequency, self.peak_to_peak)
+
+    def declared(self) -> Iterator[Held]:
+        """Extremes, impacts and contact over frequency."""
+        yield axis("frequency", self.frequency, "rad/s")
+        yield from fields_over("frequency", self, **dict.fromkeys(NUMBERS, ""))
+        yield over("frequency", "contact", np.array(self.contact, dtype=str))
+        yield over("frequency", "periods", self.periods)
+        yield from remarks(oscillator=self.oscillator.name, direction="up" if self.up else "down")
+        yield from ending(self.outcome)
+
+    def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
+        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        return drawing(self, "plot")(self, axes, length=length, unit=unit)
+
+    @property
+    def unit(self) -> str:
+        """What its frequencies read in: Hz, or rad/s for equations of one's own."""
+        return frequency_unit(self.oscillator.speed_unit)
+
+    def __str__(self) -> str:
+        best, factor = int(np.nanargmax(self.peak_to_peak)), speed_factor(self.unit)
+        low, high, largest = (self.frequency[i] * factor for i in (0, -1, best))
+        rough = int((~self.settled).sum())
+        kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
+        return (
+            f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
+            f"{low:.6g} to {high:.6g} {self.unit}, {rough} without a motion of one period\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {largest:.6g}; "
+            f"jumps: {_in_words(self.jumps, self.unit)}\n"
+            f"  contact: {kinds}; {self.outcome}"
+        )
+
+
+@dataclass(frozen=True, repr=False)
+class LineSweep(Described):
+    """Steady motions of a line, in the order it was swept.
+
+    value (points,) [rad/s]: speed, or common frequency of excitation in time; torque_low, torque_high (points, spring)
+    [N m]; contacts (points of spring contacts), per period of the excitation where settled, else over the periods
+    measured; settled (points,): whether the motion repeats every period; periods (points,): run until then; state
+    (points, 2m).
+    """
+
+    line: StagedLine
+    value: Array
+    torque_low: Array
+    torque_high: Array
+    contacts: tuple[tuple[SpringContact, ...], ...] = field(repr=False)
+    settled: Flags
+    periods: Integers
+    state: Array
+    outcome: Outcome
+
+    @property
+    def springs(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        return self.line.springs
+
+    @property
+    def torque_peak_to_peak(self) -> Array:
+        """Highest minus lowest torque (points, spring) [N m]."""
+        return self.torque_high - self.torque_low
+
+    @property
+    def up(self) -> bool:
+        """Whether the value was raised."""
+        return bool(self.value[-1] >= self.value[0])
+
+    @property
+    def jumps(self) -> tuple[tuple[float, float], ...]:
+        """Pairs of neighbouring values between which the torque of any spring changes abruptly, in the order swept."""
+        return jumps(self.value, *self.torque_peak_to_peak.T)
+
+    def swing_of(self, spring: str) -> Array:
+        """Peak-to-peak torque of one spring (points,) [N m].
+
+        Raises
+        ------
+        InputError : no such spring.
+        """
+        return self.torque_peak_to_peak[:, self._place(spring)]
+
+    def contact_of(self, spring: str) -> tuple[str, ...]:
+        """none, one-sided or two-sided (points,); of a spring without stages two-sided."""
+        staged = [self.springs[e] for e in self.line.staged]
+        if self.springs[self._place(spring)] not in staged:
+            return ("two-sided",) * len(self.value)
+        return tuple(row[staged.index(spring)].contact for row in self.contacts)
+
+    def _place(self, spring: str) -> int:
+        if spring not in self.springs:
+            raise InputError(
+                "is no spring of the line", element=self.line.name, key="spring", value=spring,
+                remedy=f"name one of {', '.join(self.springs)}",
+            )  # fmt: skip
+        return self.springs.index(spring)
+
+    def declared(self) -> Iterator[Held]:
+        """Extremes of every spring's torque, impacts and contact of those with stages, over speed or frequency."""
+        clock = "speed" if self.line.clock == "speed" else "frequency"
+        staged = [self.springs[e] for e in self.line.staged]
+        yield axis(clock, self.value, "rad/s")
+        yield axis("spring", self.springs)
+        yield axis("staged_spring", staged)
+        yield from fields_over(f"{clock} spring", self, torque_low="N*m", torque_high="N*m")
+        for name, unit, kind in (("impacts", "", None), ("impact_energy", "J", None), ("contact", "", str)):
+            values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
+            yield over(f"{clock} staged_spring", name, values.reshape(len(self.value), len(staged)), unit)
+        yield from fields_over(clock, self, settled="", periods="")
+        yield from remarks(driveline=self.line.name, direction="up" if self.up else "down")
+        yield from ending(self.outcome)
+
+    def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
+        """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
+        return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
+
+    @property
+    def unit(self) -> str:
+        """What its speeds, or frequencies, read in: the unit of the description."""
+        of_line = speed_unit(self.line.assembly.line)
+        return of_line if self.line.clock == "speed" else frequency_unit(of_line)
+
+    def describe(self, unit: str | None = None) -> str:
+        """What was found, speeds in ``unit``, by default that of the description."""
+        unit = unit or self.unit
+        rough, value = int((~self.settled).sum()), self.value * speed_factor(unit)
+        rows = []
+        for e, name in enumerate(self.springs):
+            swing = self.torque_peak_to_peak[:, e]
+            best = int(np.nanargmax(swing)) if np.isfinite(swing).any() else 0
+            rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
+        for row in zip(*self.contacts, strict=True):
+            kinds = [contact.contact for contact in row]
+            told = ", ".join(f"{kinds.count(k)} {k}" for k in ("none", "one-sided", "two-sided") if k in kinds)
+            worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
+            impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
+            rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
+        return "\n".join(
+            [
+                f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(value)} steps from "
+                f"{value[0]:.6g} to {value[-1]:.6g} {unit}, {rough} without a motion of one period",
+                *rows,
+                f"  jumps: {_in_words(self.jumps, unit)}; {self.outcome}",
+            ]
+        )
+
+
+def _in_words(jumps: Sequence[tuple[float, float]], unit: str) -> str:
+    factor = speed_factor(unit)
+    return ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in jumps) or "none"
+
+
+@overload
+def sweep(
+    oscillator: PiecewiseOscillator,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> Sweep: ...
+@overload
+def sweep(
+    oscillator: Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | str | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> LineSweep: ...
+
+
+def sweep(
+    oscillator: PiecewiseOscillator | Driveline | Assembly,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    speed: float | str | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> Sweep | LineSweep:
+    """Steady motions over ``frequencies`` in the order given: rising for an up-sweep, falling for a down-sweep.
+
+    Parameters
+    ----------
+    oscillator : or a driveline that ``exact_motion`` takes, which is swept over its speed, or over the common
+        frequency of its excitations where those are in time.
+    frequencies : (points,) [rad/s]; of a driveline speeds, where its excitation turns with it.
+    start : state at the first: x and x′, by default rest at the static equilibrium; of a driveline as in
+        ``exact_motion``.
+    speed : of a driveline excited in time, where a viscous load depends on it.
+    least, most : periods of every step.
+    same : relative change of the state per period below which, three times running, a motion counts as settled.
+
+    Returns
+    -------
+    Sweep; of a driveline LineSweep with the torques of its springs.
+
+    Raises
+    ------
+    InputError : frequencies that are not positive, an undamped linear resonance among them; a driveline without exact
+        motion, excited both by its rotation and in time, or with a clutch that carries more than it holds.
+    """
+    omegas = np.ascontiguousarray(np.atleast_1d(np.asarray(frequencies, dtype=float)))
+    if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
+        raise InputError("must be positive numbers", key="frequencies", value=np.asarray(frequencies).tolist())
+    if not 1 <= least <= most:
+        raise InputError("must be from 1, and no less than least", key="least, most", value=[least, most])
+    line = oscillator.line if isinstance(oscillator, Assembly) else oscillator
+    states = 2 * len(line.elements) if isinstance(line, Driveline) else 2
+    needed = BYTES_A_STEP * states * len(omegas)
+    require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
+    if isinstance(oscillator, Driveline | Assembly):
+        return _of_line(oscillator, omegas, start, speed, least, most, same)
+    refuse_speed(oscillator.name, speed)
+    for omega in omegas:
+        refuse_unbounded(oscillator.but(frequency=float(omega)))
+    first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
+    maps = [OscillatorMap(float(omega), 1, oscillator) for omega in omegas]
+    lost = "the motion at ω = {:g} crosses too often in a period; raise damping"
+    steps = _stepped(maps, first, least, most, same, _measured, lost)
+    rows = np.full((len(omegas), len(COLUMNS)), np.nan)
+    for row, seen in zip(rows, steps.seen, strict=False):
+        row[:] = list(seen.values())
+    column = dict(zip(COLUMNS, rows.T, strict=True))
+    sides = [CONTACT[int(c)] if np.isfinite(c) else "none" for c in column["contact"]]
+    return Sweep(
+        oscillator=oscillator,
+        frequency=omegas,
+        lowest=column["low"],
+        highest=column["high"],
+        mean=column["mean"],
+        contact=tuple(contact_state(s) for s in sides),
+        impacts=column["impacts"],
+        impact_energy=oscillator.inertia * column["energy"],
+        impact_impulse=oscillator.inertia * column["impulse"],
+        settled=steps.settled,
+        periods=steps.periods,
+        state=np.stack([column["x"], column["v"]], axis=1),
+        outcome=steps.outcome,
+    )
+
+
+def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float], Array] | None:
+    row = place.measure(state)
+    return (row, np.array([row["x"], row["v"]])) if row else None
+
+
+def _of_line(
+    line: Driveline | Assembly,
+    values: Array,
+    start: ArrayLike | None,
+    speed: float | str | None,
+    least: int,
+    most: int,
+    same: float,
+) -> LineSweep:
+    prepared = line_over(line, float(values[0]), speed)
+    for value in values if prepared.sliders and not prepared.turns else ():
+        refuse_overload(prepared.assembly, prepared.speed_at(float(value)))
+    maps = [LineMap(float(value), 1, prepared) for value in values]
+    first = start_state(prepared, start)[maps[0].kept]
+    lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"
+    steps = _stepped(maps, first, least, most, same, _watched, lost)
+    count, springs = len(values), len(prepared.springs)
+    low, high = np.full((2, count, springs), np.nan)
+    states = np.full((count, 2 * prepared.size), np.nan)
+    names = [prepared.springs[e] for e in prepared.staged]
+    nothing = tuple(SpringContact(name, np.zeros(0), np.nan, "none", np.zeros(0), np.nan) for name in names)
+    contacts = [nothing] * count
+    for i, seen in enumerate(steps.seen):
+        low[i], high[i], states[i], contacts[i] = seen
+    return LineSweep(prepared, values, low, high, tuple(contacts), steps.settled, steps.periods, states, steps.outcome)
+
+
+def _watched(
+    place: LineMap, state: Array
+) -> tuple[tuple[Array, Array, Array, tuple[SpringContact, ...]], Array] | None:
+    run, start, k = place.watched(state), place.whole(state), kernel()
+    if not run.done:
+        return None
+    seen = run.seen[: len(place.line.springs)]
+    contacts = contacts_of(place, start, run)
+    return (seen[:, k.TORQUE_LOW], seen[:, k.TORQUE_HIGH], start, contacts), run.state[place.kept]
+
+
+class _Steps(NamedTuple, Generic[Seen]):
+    """Whether each step settled and after how many periods, both (points,), and what was seen of those run."""
+
+    settled: Flags
+    periods: Integers
+    seen: list[Seen]
+    outcome: Outcome
+
+
+def _stepped(
+    maps: Sequence[Place],
+    start: Array,
+    least: int,
+    most: int,
+    same: float,
+    measure: Callable[[Place, Array], tuple[Seen, Array] | None],
+    lost: str,
+) -> _Steps[Seen]:
+    """Every map from where the one before it ended, measured over one period where the motion repeats, else over many.
+
+    measure : (map, state at phase zero) → what is seen over its periods, and the state after them; None where it cannot
+    be followed, of which ``lost`` is said with the value.
+    """
+    steps = _Steps[Seen](
+        np.zeros(len(maps), dtype=bool), np.zeros(len(maps), dtype=np.int64), [],
+        Outcome(True, "swept", "every step was run"),
+    )  # fmt: skip
+    state = start
+    for i, place in enumerate(maps):
+        found = place.steady(state, least, most, same)
+        steps.settled[i], steps.periods[i] = found.repeats, found.periods
+        over = replace(place, periods=1 if found.repeats else MEASURED)
+        measured = measure(over, found.state) if found.done else None
+        if measured is None:
+            return steps._replace(outcome=Outcome(False, "chatter", lost.format(place.value)))
+        steps.seen.append(measured[0])
+        state = measured[1]
+    return steps
+
+
+def rattle_index(
+    oscillator: PiecewiseOscillator,
+    frequencies: ArrayLike,
+    *,
+    start: ArrayLike | None = None,
+    least: int = LEAST,
+    most: int = MOST,
+    same: float = SAME,
+) -> xr.Dataset:
+    """Impulse and energy of the impacts per period over ``frequencies`` [rad/s], swept up and down as ``sweep`` does.
+
+    Dataset with impact_energy [m v²] and impact_impulse [m v], dimensions (direction, frequency); 0 without impacts.
+    """
+    import xarray as xr
+
+    omegas = np.sort(np.asarray(frequencies, dtype=float))
+    up, down = (
+        sweep(oscillator, order, start=start, least=least, most=most, same=same) for order in (omegas, omegas[::-1])
+    )
+    both = {
+        name: (("direction", "frequency"), np.stack([getattr(up, name), getattr(down, name)[::-1]]))
+        for name in ("impact_energy", "impact_impulse", "impacts")
+    }
+    return xr.Dataset(both, coords={"direction": ["up", "down"], "frequency": omegas})

@@ -1,0 +1,1 @@
+"""Passage through resonance, or capture by it."""

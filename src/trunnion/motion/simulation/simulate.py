@@ -1,0 +1,268 @@
+"""``simulate``: a motion of a line or of any system in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.equations.steady_base import imbalance, require_share
+from trunnion.errors import InputError
+from trunnion.motion.simulation.input_rotation import TURN, InputRotation
+from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import Simulation, positive_time, rising_times, simulate_system
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.results.outcome import Outcome
+from trunnion.systems.events import Event
+from trunnion.systems.system import System
+
+PER_TURN = 128
+MOST_SAMPLES = 200_000
+REACHED = "reached"
+"""Kind of the outcome of a piece that came to its end."""
+MOST_TIMES = 64
+"""As long as turns take at the speed that a free line begins with, after which it is not waited for any longer."""
+
+
+@overload
+def simulate(
+    system: System,
+    duration: float | None = None,
+    *,
+    periods: float | None = None,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    longest_step: float = np.inf,
+    dense: bool = True,
+) -> Simulation: ...
+@overload
+def simulate(
+    system: Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    turns: float | None = None,
+    speed: float | str | SpeedProfile | None = None,
+    start: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    dense: bool = True,
+) -> LineSimulation: ...
+
+
+def simulate(
+    system: System | Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    turns: float | None = None,
+    speed: float | str | SpeedProfile | None = None,
+    periods: float | None = None,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    longest_step: float = np.inf,
+    dense: bool = True,
+) -> Simulation | LineSimulation:
+    """Integrate a line, or any system, in time.
+
+    Parameters
+    ----------
+    duration : [s]; or ``turns`` of a driveline's input, its own where the line starts free; or ``periods`` of a
+    system's forcing; or up to the last of
+        ``times``.
+    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``. A line that
+        starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and what
+        accelerates its inertia along a profile; ``input_speed`` and ``turns`` tell how it really turns.
+    start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
+        default the line without twist; of a system (n,), by default its own.
+    start_time : of a system [s]; the phase of its forcing.
+    times : at which states are wanted (rising) [s]; by default every step of a system, and of a driveline evenly.
+    events : zeros to locate; some may stop the run.
+    tolerance : error allowed per step, relative to the scale of a state + |x|.
+    most_steps, longest_step : of the integration; ``longest_step`` [s] of a system.
+    dense : keep what ``at`` and ``times`` need, 8n numbers a step.
+
+    Returns
+    -------
+    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+
+    Raises
+    ------
+    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
+        excitation by the speed on a line that starts free and leaves the speed it begins with.
+    """
+    if isinstance(system, System):
+        _refuse("belongs to a driveline", "leave it out", turns=turns, speed=speed)
+        return simulate_system(
+            system, duration, periods=periods, start=start, start_time=start_time, times=times, events=events,
+            tolerance=tolerance, most_steps=most_steps, longest_step=longest_step, dense=dense,
+        )  # fmt: skip
+    if not isinstance(system, Driveline | Assembly):
+        raise InputError(
+            f"is a {type(system).__name__}, which cannot be simulated",
+            key="system",
+            remedy="give a Driveline or a System, tn.reference_system('duffing'), say",
+        )
+    other = {"start_time": start_time or None, "longest_step": longest_step if np.isfinite(longest_step) else None}
+    _refuse("belongs to a System", "give a duration, or turns of the input", periods=periods, **other)
+    return simulate_line(
+        system, duration, speed=speed, turns=turns, start=start, times=times, events=events, tolerance=tolerance,
+        most_steps=most_steps, dense=dense,
+    )  # fmt: skip
+
+
+def _refuse(problem: str, remedy: str, **given: object) -> None:
+    for key, value in given.items():
+        if value is not None:
+            raise InputError(problem, key=key, value=value, remedy=remedy)
+
+
+def simulate_line(
+    line: Driveline | Assembly,
+    duration: float | None = None,
+    *,
+    speed: float | str | SpeedProfile | None = None,
+    turns: float | None = None,
+    start: ArrayLike | None = None,
+    times: ArrayLike | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    dense: bool = True,
+    drive: float = 0.0,
+) -> LineSimulation:
+    """As ``simulate``; ``drive`` [N m at the input] is what a free line's drives give beyond what keeps its course."""
+    description = line.line if isinstance(line, Assembly) else line
+    profile = speed
+    if not isinstance(profile, SpeedProfile):
+        profile = SpeedProfile([0.0], [operating_speed(description, profile)])
+    prepared = line_system(line, profile.speed[0], leaves=True)
+    wanted = None if times is None else rising_times(times, 0.0)
+    if turns is not None:
+        if duration is not None:
+            raise InputError("is given beside a duration", key="turns", value=turns, remedy="leave one of them out")
+        if len(profile.time) > 1:
+            raise InputError("goes with a constant speed", key="turns", value=turns, remedy="give a duration")
+        duration = 2 * np.pi * turns / profile.speed[0]
+    if duration is None and wanted is not None:
+        duration = float(wanted[-1])
+    duration = positive_time(duration, "give seconds, or turns of the input")
+    state = prepared.rest() if start is None else prepared.system.checked_start(start)
+    if len(profile.time) > 1:
+        require_share(prepared.assembly)
+    elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:
+        for one in prepared.harmonics:
+            one.refuse_change()
+    go = _Going(tuple(events), tolerance, most_steps, dense)
+    if turns is not None and prepared.assembly.topology.free:
+        pieces = _made_turns(prepared, profile, state, turns, duration, go)
+    else:
+        pieces = _along(prepared, profile, state, duration, drive, go)
+    run = LineSimulation(prepared, profile, tuple(pieces), np.array([pieces[-1].end]))
+    if wanted is None:
+        return _sampled(run) if dense else run
+    return replace(run, time=wanted[wanted <= run.end])
+
+
+def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: float = TOLERANCE) -> LineSimulation:
+    """A run along a profile, followed for another ``duration`` [s] behind the end of the profile.
+
+    ``drive`` [N m at the input] is what a free line's drives give there beyond what balances the loads at the last
+    speed.
+    """
+    end, course = run.profile.courses(run.end + duration)[-1]
+    row = run.line.assembly.table(1, run.profile.speed[0])[0]
+    system = run.line.system.reading(run.line.numbers(row, course, drive))
+    piece = _Going((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
+    return _sampled(replace(run, pieces=(*run.pieces, piece)))
+
+
+def _sampled(run: LineSimulation) -> LineSimulation:
+    """The run at even times, so many in a turn."""
+    count = int(np.clip(PER_TURN * run.turns, 256, MOST_SAMPLES))
+    return replace(run, time=np.linspace(0.0, run.end, count + 1))
+
+
+@dataclass(frozen=True)
+class _Going:
+    """How a line is integrated."""
+
+    events: tuple[Event, ...]
+    tolerance: float
+    most_steps: int
+    dense: bool
+
+    def on(self, system: System, state: Array, since: float, until: float) -> Simulation:
+        """From one time to another [s]."""
+        return simulate_system(
+            system, until - since, start=state, start_time=since, events=self.events, tolerance=self.tolerance,
+            most_steps=self.most_steps, dense=self.dense,
+        )  # fmt: skip
+
+
+def _along(
+    prepared: LineSystem, profile: SpeedProfile, state: Array, duration: float, drive: float, go: _Going
+) -> list[Simulation]:
+    """The pieces of a run along a profile."""
+    row = prepared.assembly.table(1, profile.speed[0])[0]
+    known = prepared.untwisted(row[None])
+    pieces: list[Simulation] = []
+    for end, course in profile.courses(duration):
+        system = prepared.system
+        if len(profile.time) > 1:
+            system = system.reading(prepared.numbers(row, course, drive, known))
+        pieces.append(go.on(system, state, course.since, end))
+        state = pieces[-1].final
+        if pieces[-1].outcome.kind != REACHED:
+            break
+    return pieces
+
+
+def _made_turns(
+    prepared: LineSystem, profile: SpeedProfile, state: Array, turns: float, guess: float, go: _Going
+) -> list[Simulation]:
+    """The pieces of a run of a free line until its input has made ``turns``, which takes ``guess`` [s] at the speed
+    that it begins with."""
+    system, pieces, span, until, furthest = prepared.system, list[Simulation](), guess, 0.0, 0.0
+    dense = replace(go, dense=True)
+    while True:
+        pieces.append(dense.on(system, state, until, until + span))
+        turning = LineSimulation(prepared, profile, tuple(pieces), np.zeros(0)).input
+        reached = float(turning.times_at(np.array([TURN * turns]))[0])
+        if np.isfinite(reached):
+            pieces[-1] = dense.on(system, state, until, reached)
+            break
+        if pieces[-1].outcome.kind != REACHED:
+            break
+        stuck = until > 0 and turning.furthest <= furthest
+        until, state, furthest = pieces[-1].end, pieces[-1].final, turning.furthest
+        if stuck or until >= MOST_TIMES * guess:
+            pieces[-1] = replace(pieces[-1], outcome=_too_slow(turning, turns))
+            break
+        speed = turning.last_turn()[1]
+        left = TURN * turns - turning.furthest
+        span = float(np.clip(1.1 * left / speed, guess / 8, until)) if speed > 0 else until
+    return pieces if go.dense else [piece.without_dense_output() for piece in pieces]
+
+
+def _too_slow(turning: InputRotation, turns: float) -> Outcome:
+    """A free line that does not get as far as it was asked to."""
+    made = f"the input made {turning.furthest / TURN:.3g} of the {turns:g} turns asked for in {turning.end:.4g} s"
+    return Outcome(False, "too slow", f"{made}; give a duration, or let the drive give more torque than the loads take")

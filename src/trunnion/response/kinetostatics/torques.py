@@ -1,0 +1,124 @@
+"""Torques over a turn, from the loads back to the drive.
+
+The cross is massless and its bearings pass no moment along their pins (but friction), so the moment it passes
+on is m = λn along its normal. With n·e₁ = cos β/√D on the input axis and n·e₂ = √D on the output axis
+(D = 1 − sin²β cos²χ), M₁/M₂ = cos β/D = η: the balance of power. Friction in the pins adds Aa + Bb (see
+``friction``), with which, for power going from input to output (σ = 1) or back (σ = −1),
+
+    M₁/M₂ = (cos β + σκ′ sin β |sin χ|) / (D − σκ′ sin β |cos χ| √D).
+
+A transmitted torque is positive where it drives the line behind it in the sense of positive rotation; it is
+minus the shaft's torque as the dynamics count it (positive with the twist).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.equations.kinematics import Rotations
+from trunnion.errors import InputError
+from trunnion.laws.joint import through
+from trunnion.numerics import jets
+from trunnion.response.kinetostatics.chain import Chain, Link, Step
+from trunnion.response.kinetostatics.motion import Drive
+
+
+@dataclass(frozen=True)
+class Torques:
+    """Jets of transmitted torque [N m]: ``into[i]`` at the front of step i, ``out[i]`` behind it.
+
+    ``spring[i]`` is what the Shaft of step i twists under (its ends differ where the tube has inertia).
+    """
+
+    into: list[Array]
+    out: list[Array]
+    spring: dict[int, Array]
+
+
+def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Rotations) -> Torques:
+    """Torques of the loads, and of the inertias where they count.
+
+    Parameters
+    ----------
+    order : of the jets of torque; those of ``motion`` must be at least as high.
+    rigid : rotations of the rigid line, for inertias and loads that grow with the speed; by ``rates_needed`` higher.
+    """
+    size = order + 1
+    zero = np.zeros((size, len(drive.input_angle)))
+    out: list[Array] = [zero.copy() for _ in chain.steps]
+    for end, asked in drive.output_torque.items():
+        out[end][0] += np.sign(chain.mean_ratio(end)) * asked
+    into, spring = [zero] * len(chain.steps), {}
+    for i in range(len(chain.steps) - 1, -1, -1):
+        step, parent = chain.steps[i], chain.steps[i].parent
+        torque = out[i]
+        sense = float(np.sign(chain.mean_ratio(i)))
+        if step.load:
+            torque = torque + jets.constant(sense * step.load, torque)
+        if _grows(step):
+            torque = torque + _speed_load(step, jets.rate(rigid.jet(i))[:size], sense)
+        if drive.inertia and step.far_inertia:
+            torque = torque + step.far_inertia * _acceleration(rigid, i)[:size]
+        if step.link is Link.SHAFT:
+            spring[i] = torque
+            if drive.inertia and step.near_inertia:
+                torque = torque + step.near_inertia * _acceleration(rigid, parent)[:size]
+        elif step.link is Link.HOOKE and drive.pin_moment:
+            power = np.sign(torque[0]) * sense
+            torque = jets.multiply(
+                torque, _with_friction(step, np.stack(motion.chi[i][:size]), power * drive.pin_moment)
+            )
+        elif step.orders:
+            torque = jets.multiply(torque, np.stack(through(motion.passed[i][1:], motion.chi[i][:size])))
+        elif step.link is Link.RATIO:
+            torque = torque / step.ratio
+        into[i] = torque
+        if parent >= 0:
+            out[parent] = out[parent] + torque
+    return Torques(into, out, spring)
+
+
+def rates_needed(chain: Chain, drive: Drive) -> int:
+    """Order of the derivatives of the rotations that the torques depend on."""
+    return 2 if drive.inertia else int(any(_grows(step) for step in chain.steps))
+
+
+def _grows(step: Step) -> bool:
+    """Whether a load grows with the speed."""
+    return step.viscous_load != 0 or step.quadratic_load != 0
+
+
+def _acceleration(rotations: Rotations, station: int) -> Array:
+    return jets.rate(jets.rate(rotations.jet(station)))
+
+
+def _speed_load(step: Step, speed: Array, sense: float) -> Array:
+    """Jet of cω + qω|ω|; joints below 90° never turn the sense of rotation."""
+    return step.viscous_load * speed + sense * step.quadratic_load * jets.multiply(speed, speed)
+
+
+def refuse_locking(chain: Chain, pin_moment: float) -> None:
+    """A cross whose pin friction exceeds what its angle lets through would not turn."""
+    for step in chain.steps:
+        if step.link is Link.HOOKE and pin_moment * abs(np.tan(step.angle)) >= 1:
+            raise InputError(
+                f"locks under this friction (pin friction {pin_moment:.3g} of the moment it passes)",
+                element=step.name,
+                key="angle",
+                value=step.angle,
+                remedy="check coefficient, pin_radius and arm",
+            )
+
+
+def _with_friction(step: Step, chi: Array, pin_moment: Array) -> Array:
+    """M₁/M₂ as a jet; ``pin_moment`` is σκ′ at each angle."""
+    sine, cosine = jets.sine_cosine(chi)
+    d = -(np.sin(step.angle) ** 2) * jets.multiply(cosine, cosine)
+    d[0] += 1.0
+    bent = pin_moment * np.sin(abs(step.angle))
+    above = jets.constant(np.cos(step.angle), d) + bent * np.sign(sine[0]) * sine
+    below = d - bent * np.sign(cosine[0]) * jets.multiply(cosine, jets.square_root(d))
+    return jets.divide(above, below)

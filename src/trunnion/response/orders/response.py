@@ -1,0 +1,290 @@
+"""Linear steady response of a line at every speed to every excitation order.
+
+Excited by the harmonic torques of its disks (by order of their rotation, or fixed in time), by the transmission errors
+of its meshes, and by its bent joints. A straight line is one complex system per order and speed; in a line with bent
+joints an order k couples to k ± 2mR, R the speed ratio of the joint, and is solved with its side orders.
+
+Orders are taken at the angle that their disk has in the base motion (joints' lead and static twist included). How far
+it swings about that is said: a torque T e^{ikφ} has the slope ikT e^{ikφ}, whose product with the motion is of second
+order, as all that linear theory leaves out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Codes, Complex, Places
+from trunnion.driveline.arguments import numbers, speeds_of
+from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.geometry import tube_stress
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.exciters import Exciter, exciters
+from trunnion.equations.steady_base import bent, moves_by_itself
+from trunnion.errors import InputError
+from trunnion.features import left_out
+from trunnion.floquet.stability.stable_speeds import verdicts_at
+from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
+from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import four_figures
+from trunnion.results.verdict import Verdict
+from trunnion.steady.orders.amplitudes import OrderSpectrum
+from trunnion.steady.orders.forced_response import shaft_names
+from trunnion.steady.orders.spectrum import order_spectrum
+
+if TYPE_CHECKING:
+    from trunnion.steady.own.own_motions import MotionsBySpeed
+
+TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
+NEAR_ENOUGH = 1e-9
+"""Orders asked for are found within this."""
+
+
+def order_response(
+    line: Driveline | Assembly,
+    speeds: ArrayLike,
+    orders: Iterable[float] | None = None,
+    load_case: str | None = None,
+    *,
+    statically_twisted: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> OrderResponse:
+    """Torque, twist and rotation by order at each of ``speeds`` [rad/s]; see ``sweep_speeds`` for a grid.
+
+    Parameters
+    ----------
+    line : the driveline.
+    speeds : input speed or speeds [rad/s].
+    orders : cycles per turn of the input to list; default all that reach a millionth of the largest torque. The sums
+        over the cycle hold every order whatever is listed.
+    load_case : name of one of the line's load cases.
+    statically_twisted : joint phases include the twist under the mean torque.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : speeds or orders that are not positive; a line without steady base motion or with too long a period.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> line = tn.Driveline([engine, tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
+    >>> r = tn.order_response(line, [100.0])
+    >>> print(r.order, round(float(r.vibratory_torque[0, 0]), 3))
+    [2.] 106.781
+    """
+    assembly = assemble(line, load_case)
+    remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
+    speed = _positive(speeds_of(speeds, remedy), "speeds", remedy)
+    wanted = _listed(orders)
+    twisted, motions = statically_twisted, own_motions_of(assembly)
+    spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
+    judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
+    return _result(assembly, spectrum, judged, wanted)
+
+
+def own_motions_of(assembly: Assembly) -> MotionsBySpeed | None:
+    """For the motions that a bent line which starts free is taken about, each solved once; None for other lines."""
+    if not moves_by_itself(assembly):
+        return None
+    # Loaded for lines that need it: it brings the compiler and the orbits with it.
+    from trunnion.steady.own.own_motions import MotionsBySpeed
+
+    return MotionsBySpeed(assembly.line)
+
+
+def response_about(
+    assembly: Assembly, speeds: Array, motions: MotionsBySpeed | None = None, *, rough: bool = False
+) -> OrderResponse:
+    """As ``order_response``, its verdicts not judged, about ``motions`` that may be known already.
+
+    ``rough`` : to look around, right to first order in what joints and varying meshes force, a fraction of the time.
+
+    Raises
+    ------
+    InputError : as of ``order_response``.
+    """
+    return response_of_spectrum(assembly, order_spectrum(assembly, speeds, rough=rough, motions=motions))
+
+
+def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
+    """The response of one case a row of packed numbers ``table`` (case, column), each at its own speed.
+
+    Stresses are NaN, as diameters may differ from row to row, and verdicts are not judged.
+
+    Raises
+    ------
+    InputError : see ``order_spectrum``.
+    """
+    found = response_of_spectrum(assembly, order_spectrum(assembly, table[:, 0], table=table))
+    return replace(found, stress_factor=np.full_like(found.stress_factor, np.nan))
+
+
+def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderResponse:
+    """The response that holds a ``spectrum``; its verdicts are not judged."""
+    failed = np.full(len(spectrum.speed), Verdict.FAILED, dtype=np.int8)
+    return _result(assembly, spectrum, lambda: failed, None)
+
+
+def _positive(values: Any, key: str, remedy: str) -> Array:
+    found = numbers(values, key, remedy)
+    if not (np.all(np.isfinite(found)) and np.all(found > 0)):
+        raise InputError("must be positive and finite", key=key, remedy=remedy)
+    return found
+
+
+def _listed(orders: Iterable[float] | None) -> Array | None:
+    if orders is None:
+        return None
+    given = list(orders) if isinstance(orders, Iterable) and not isinstance(orders, str) else orders
+    return np.unique(_positive(given, "orders", "orders=[0.5, 1, 2], say"))
+
+
+def _result(
+    assembly: Assembly, spectrum: OrderSpectrum, judged: Callable[[], Codes], wanted: Array | None
+) -> OrderResponse:
+    places, topo = spectrum.channels, assembly.topology
+    size = np.abs(spectrum.amplitude[..., places.torque])
+    if wanted is None:
+        with np.errstate(invalid="ignore"):
+            listed = np.any(~(size < WORTH_SHOWING * np.nanmax(size, initial=0.0)) & (size != 0), axis=(0, 2))
+        picked = np.flatnonzero(listed)
+        order, frequency = spectrum.order_numbers[picked], spectrum.frequency[picked]
+    else:
+        order, frequency = wanted, np.zeros(len(wanted))
+        apart = np.abs(spectrum.order_numbers - wanted[:, None]) + np.where(spectrum.frequency != 0, np.inf, 0.0)
+        nearest = apart.argmin(axis=1) if apart.shape[1] else np.zeros(len(wanted), dtype=int)
+        missing = apart.min(axis=1, initial=np.inf) > NEAR_ENOUGH
+        picked = np.where(missing, -1, nearest)
+    amplitude, base = _picked(spectrum.amplitude, picked), _picked(spectrum.base, picked)
+    return OrderResponse(
+        speed=spectrum.speed,
+        order=order,
+        frequency=frequency,
+        torque=amplitude[..., places.torque],
+        twist=amplitude[..., places.twist],
+        rotation=amplitude[..., places.point] + base,
+        mean_torque=spectrum.mean[:, places.torque],
+        mean_twist=spectrum.mean[:, places.twist],
+        springs=shaft_names(assembly),
+        inertias=tuple(name for _, name in topo.points),
+        joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
+        stress_factor=_stress_factor(assembly),
+        spectrum=spectrum,
+        judged=judged,
+        remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
+        unit=speed_unit(assembly.line),
+        limits=_limits(assembly),
+        rated=tuple(has_rating(assembly, c) for c in range(len(topo.compliances))),
+    )
+
+
+def _limits(assembly: Assembly) -> dict[str, dict[str, float]]:
+    """Limits of torque by spring and name; of shafts in series the smallest."""
+    names, found = assembly.line.names, {}
+    for spring, compliance in zip(shaft_names(assembly), assembly.topology.compliances, strict=True):
+        own: dict[str, float] = {}
+        members = [names[i] for i in compliance.shafts]
+        for one in assembly.line.limits_by_element:
+            if one.element in members and one.key in TORQUE_LIMITS:
+                key = one.key.replace("_", " ")
+                own[key] = min(own.get(key, float("inf")), float(one.value))
+        found[spring] = own
+    return found
+
+
+def has_rating(assembly: Assembly, spring: int) -> bool:
+    """Whether a spring holds a coupling that states T_KW."""
+    members = [assembly.line.elements[i] for i in assembly.topology.compliances[spring].shafts]
+    return any(isinstance(one, Coupling) and one.vibratory_torque is not None for one in members)
+
+
+def _picked(values: Complex, places: Places) -> Complex:
+    """The columns at ``places``, zeros where one is −1."""
+    found = np.zeros((len(values), len(places), values.shape[2]), dtype=complex)
+    there = places >= 0
+    found[:, there] = values[:, places[there]]
+    return found
+
+
+def _stress_factor(assembly: Assembly) -> Array:
+    """r_o/J_p (spring,) [1/m³] of the most stressed tube of each spring; NaN where none has a diameter."""
+    factors = []
+    for compliance in assembly.topology.compliances:
+        found = []
+        for i in compliance.shafts:
+            shaft = assembly.line.elements[i]
+            if isinstance(shaft, Shaft) and shaft.outer_diameter:
+                found.append(tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0))
+        factors.append(max(found, default=np.nan))
+    return np.array(factors)
+
+
+def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> Iterator[Finding]:
+    shaken = exciters(assembly)
+    row = assembly.table(1)[0]
+    at_work = [e for e in shaken if not e.held and row[e.amplitude] != 0]
+    if not at_work:
+        joints = " but its joints" if bent(assembly) else ""
+        yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
+    for order in unexcited:
+        yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
+    if moves_by_itself(assembly) and spectrum.loss.any():
+        yield Finding(
+            Gravity.NOTE,
+            "A loss factor without a frequency has no motion in time: this bent line that starts free is taken about "
+            "the motion of its rigid shafts, right to first order in what joints and excitations force.",
+        )
+    yield from _nominal_angle(assembly, spectrum, at_work)
+    yield from _swing_of_clutches(assembly, spectrum)
+    yield from left_out("order_response", assembly.line)
+
+
+def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
+    """Clutches that swing otherwise in the response than where their mean was taken."""
+    swing = np.abs(spectrum.amplitude[..., spectrum.channels.twist]).sum(axis=1)
+    for place, element in enumerate(assembly.line.elements):
+        if not isinstance(element, Clutch) or element.linear_amplitude is None:
+            continue
+        own = next(e for e, c in enumerate(assembly.topology.compliances) if place in c.shafts)
+        reached, stated = float(np.nanmax(swing[:, own], initial=0.0)), element.linear_amplitude
+        if not stated / ALIKE_SWING <= reached <= stated * ALIKE_SWING:
+            yield Finding(
+                Gravity.CAUTION,
+                f"{assembly.line.names[place]} swings by up to ± {np.rad2deg(reached):.3g} deg in this response, but "
+                f"counts by its mean over ± {np.rad2deg(stated):.3g} deg: give linear_amplitude = "
+                f'"{np.rad2deg(reached):.2g} deg" and ask again.',
+            )
+
+
+def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
+    """How far the disks swing whose orders are taken at their mean angle."""
+    topo, worst = assembly.topology, (0.0, "")
+    swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
+    for exciter in at_work:
+        if exciter.station >= 0 and not exciter.in_time:
+            i = topo.unknown_of[exciter.station]
+            worst = max(worst, (exciter.own_order * float(np.nanmax(swing[:, i], initial=0.0)), exciter.element))
+    if worst[0] > 0:
+        grave = worst[0] > LARGEST_SWING
+        check = " Run linearity-check." if grave else ""
+        yield Finding(
+            Gravity.CAUTION if grave else Gravity.NOTE,
+            f"Torque is applied at the mean angle of {worst[1]}; its swing can shift up to "
+            f"{four_figures(float(f'{100 * worst[0]:.2g}'))} % of it to other orders.{check}",
+        )
+
+
+ALIKE_SWING = 1.5
+"""Factor by which a clutch may swing more or less than where its mean was taken, before that is said."""
+LARGEST_SWING = 0.1
+"""Order times swing of its disk [rad] from which the mean angle is no longer good enough."""

@@ -1,0 +1,1 @@
+"""The largest values of a response over a range of speeds."""

@@ -1,0 +1,389 @@
+"""The largest values of a response over a range of speeds, each with what it may be low by.
+
+Within a piece (``span``) a response is smooth but near its poles. The search looks at an even grid, at every resonance
+and beside it, and then wherever a larger value may hide:
+
+- Between three neighbouring speeds every complex amplitude is read as (a + bΩ)/(Ω − p), which a resonance is close to
+  its pole. Where the pole p so found lies by, and the amplitude there would bring the sum above the largest known, one
+  looks.
+- About the highest speeds a parabola tells where the top is and how high, until it tells nothing more.
+
+It ends when nothing is expected to rise by more than ``tolerance`` of the largest. A maximum of curves meets no maximum
+where one takes over from another: it bends upwards there, so tops are smooth.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.equations.coefficients import Assembly
+from trunnion.floquet.ranges.resonances import Resonances
+from trunnion.floquet.ranges.span import Piece
+from trunnion.numerics.curves import parabola
+from trunnion.response.orders.response import response_of_spectrum
+from trunnion.response.orders.result import OrderResponse
+from trunnion.steady.orders.amplitudes import joined
+from trunnion.waiting import OutOfTime
+
+POINTS = 65
+"""Speeds of the even grid."""
+PER_OCTAVE = 6
+"""Speeds that each halving of the range gets at least."""
+OCTAVES = 8
+TOLERANCE = 1e-6
+"""Share of the largest value that may still be missing."""
+MOST_ROUNDS = 24
+AT_ONCE = 6
+"""Speeds that one quantity may ask for in a round."""
+FLAT = 0.01
+"""Share by which neighbours of a top may lie below it for a parabola through them to hold."""
+BEND = 0.02
+"""Error of a parabola's top, as a share of how far its ends lie below it: that of a resonance is a fifth."""
+END = 0.1
+"""How far a top beside the end of a piece may rise above the end, as a share of what the next speed lies below it."""
+HIGH_ENOUGH = 0.7
+"""Share of the largest value, roughly looked at, from which a top may turn out to be the largest."""
+CAUTION = 1.5
+"""Factor on what a pole is expected to add."""
+CLOSE = 0.05
+"""Share of the distance between neighbours within which a top has been looked at."""
+SEEN = 0.15
+"""Share of its half-width nearer than which a resonance has been looked at."""
+SHARPENING, SHARP = 12, 1e-8
+"""Rounds in which the speed of a top is located, and how closely, as a share."""
+PASSED = 1e-6
+"""How closely the speeds are located at which a level is passed, as a share."""
+NEXT, ROUNDING = 0.1, 1e-12
+"""Shares of the width of a top, and of a speed, nearer than which two speeds count as one."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """What is largest somewhere: ``values`` (speed,), and amplitudes by order (speed, order) that make them up.
+
+    ``squared``: values are the sum of squares of the amplitudes, as of heat; else of no more than their sum. ``level``:
+    where values rise above it counts as well, everywhere.
+    """
+
+    values: Callable[[OrderResponse], Array]
+    parts: Callable[[OrderResponse], Complex]
+    squared: bool = False
+    level: float = inf
+
+
+@dataclass(frozen=True)
+class Largest:
+    """Largest values (quantity,) over the speeds of ``response``, at which of them, and what each may be low by
+    (quantity,). Infinite where there is no steady state. ``ended``: what ended the search before it was done, as a
+    clause, "" where it was done; then nothing is known of what a value may be low by, and errors are infinite."""
+
+    response: OrderResponse
+    at: Array
+    value: Array
+    error: Array
+    ended: str = ""
+
+
+@dataclass(frozen=True)
+class Hidden:
+    """Speeds (place,) [rad/s] at which more may hide, how high (place,), and how wide (place,) [rad/s] the top is."""
+
+    speed: Array
+    height: Array
+    scale: Array
+
+    def of(self, which: Flags) -> Hidden:
+        """Some of them."""
+        return Hidden(self.speed[which], self.height[which], self.scale[which])
+
+    def over(self, top: float) -> Hidden:
+        """Heights as shares of ``top``."""
+        return replace(self, height=self.height / top)
+
+
+def _together(parts: Sequence[Hidden]) -> Hidden:
+    none = np.zeros(0)
+    return Hidden(
+        *(np.concatenate([none, *(getattr(part, key) for part in parts)]) for key in ("speed", "height", "scale"))
+    )
+
+
+def first_speeds(pieces: Sequence[Piece], met: Resonances, points: int = POINTS) -> list[Array]:
+    """Speeds to begin with, by piece: evenly, closer towards slow ones, and about every resonance."""
+    low, high = pieces[0].low, pieces[-1].high
+    even = np.linspace(low, high, points)
+    octaves = np.geomspace(max(low, high / 2**OCTAVES), high, PER_OCTAVE * OCTAVES + 1) if low < high else even
+    width = np.maximum(met.width, 1e-9 * met.speed)
+    about = (met.speed[:, None] + width[:, None] * np.array([-1.0, 0.0, 1.0])).ravel()
+    every = np.concatenate([even, octaves, about])
+    return [_within(every, piece) for piece in pieces]
+
+
+def thinned(around: Largest, pieces: Sequence[Piece], quantities: Sequence[Quantity], points: int) -> list[Array]:
+    """Speeds to begin with after a rough look: few evenly, and about every top that may be the largest."""
+    x = around.response.speed
+    kept = [np.linspace(pieces[0].low, pieces[-1].high, points)]
+    for quantity, value in zip(quantities, around.value, strict=True):
+        v = quantity.values(around.response)
+        least = min(HIGH_ENOUGH * value, quantity.level)
+        inner = np.flatnonzero((v[1:-1] >= v[:-2]) & (v[1:-1] >= v[2:]) & (v[1:-1] >= least)) + 1
+        kept += [x[inner], x[inner - 1], x[inner + 1], x[[int(np.argmax(v))]]]
+    every = np.concatenate(kept)
+    return [_within(every, piece) for piece in pieces]
+
+
+def _within(speeds: Array, piece: Piece) -> Array:
+    inside = speeds[(speeds > piece.low) & (speeds < piece.high)]
+    return np.unique(np.concatenate([[piece.low], inside, [piece.high]]))
+
+
+def search(
+    assembly: Assembly,
+    respond: Callable[[Array], OrderResponse],
+    first: Sequence[Array],
+    quantities: Sequence[Quantity],
+    *,
+    tolerance: float = TOLERANCE,
+    rounds: int = MOST_ROUNDS,
+) -> Largest:
+    """The largest values of ``quantities`` over pieces that begin with the speeds ``first``.
+
+    ``respond`` : the response at speeds (speed,), not judged.
+
+    Raises
+    ------
+    InputError, ComputationError : as of ``respond``. OutOfTime : the time was up before the first speeds were known.
+    """
+    seen = _Seen(assembly, respond, quantities)
+    seen.look([np.asarray(part) for part in first])
+    try:
+        for _ in range(rounds):
+            wanted = seen.wanted(tolerance)
+            if not sum(map(len, wanted)):
+                break
+            seen.look(wanted)
+        seen.close_in()
+    except OutOfTime as error:
+        found = seen.largest(tolerance)
+        return replace(found, error=np.full(len(found.value), inf), ended=error.why)
+    return seen.largest(tolerance)
+
+
+class _Seen:
+    """What is known of some quantities, piece by piece."""
+
+    def __init__(
+        self, assembly: Assembly, respond: Callable[[Array], OrderResponse], quantities: Sequence[Quantity]
+    ) -> None:
+        self.assembly, self.respond, self.quantities = assembly, respond, quantities
+        self.response: OrderResponse | None = None
+        self.values = np.zeros((0, len(quantities)))
+        self.piece = np.zeros(0, dtype=np.intp)
+
+    def look(self, wanted: Sequence[Array]) -> None:
+        """Take in the speeds ``wanted`` of each piece."""
+        speeds = np.concatenate(list(wanted))
+        piece = np.repeat(np.arange(len(wanted)), [len(part) for part in wanted])
+        new = self.respond(speeds)
+        values = np.stack([q.values(new) for q in self.quantities], axis=1) if self.quantities else self.values[:0]
+        parts = [new.spectrum] if self.response is None else [self.response.spectrum, new.spectrum]
+        together, order = joined(parts)
+        self.response = response_of_spectrum(self.assembly, together)
+        self.values = np.concatenate([self.values, values.reshape(len(speeds), -1)])[order]
+        self.piece = np.concatenate([self.piece, piece])[order]
+
+    @property
+    def _runs(self) -> list[slice]:
+        """Where each piece stands among the speeds."""
+        ends = np.searchsorted(self.piece, np.arange(self.piece[-1] + 2))
+        return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+    def wanted(self, tolerance: float) -> list[Array]:
+        """Speeds at which a larger value may hide, by piece."""
+        found: list[list[Hidden]] = [[] for _ in self._runs]
+        for q in range(len(self.quantities)):
+            top = self._top(q)
+            if np.isfinite(top) and top > 0:
+                every = [self._hidden(q, run, top, tolerance) for run in self._runs]
+                ranked = np.sort(np.concatenate([one.height for one in every]))[::-1]
+                least = ranked[AT_ONCE - 1] if len(ranked) >= AT_ONCE else -np.inf
+                for k, one in enumerate(every):
+                    found[k].append(one.of(one.height >= least).over(top))
+        return [self._apart(_together(part), run) for part, run in zip(found, self._runs, strict=True)]
+
+    def close_in(self) -> None:
+        """Look where quantities pass their levels, until that is located."""
+        while True:
+            wanted = [self._apart(_together([self._passes(q, run) for q in self._levels]), run) for run in self._runs]
+            if not sum(map(len, wanted)):
+                break
+            self.look(wanted)
+
+    @property
+    def _levels(self) -> list[int]:
+        return [q for q, quantity in enumerate(self.quantities) if np.isfinite(quantity.level)]
+
+    def _passes(self, q: int, run: slice) -> Hidden:
+        """Middles between neighbours of which one lies above the level and the other does not."""
+        assert self.response is not None
+        x, v = self.response.speed[run], self.values[run, q]
+        above = ~(v <= self.quantities[q].level)
+        here = np.flatnonzero((above[1:] != above[:-1]) & (x[1:] - x[:-1] > PASSED * x[1:]))
+        return Hidden((x[here] + x[here + 1]) / 2, np.ones(len(here)), x[here + 1] - x[here])
+
+    def _top(self, q: int) -> float:
+        column = self.values[:, q]
+        return float(np.max(np.where(np.isfinite(column), column, np.inf), initial=0.0))
+
+    def _hidden(self, q: int, run: slice, top: float, tolerance: float) -> Hidden:
+        """Where quantity ``q`` may rise above its ``top``."""
+        assert self.response is not None
+        x, v = self.response.speed[run], self.values[run, q]
+        if len(x) < 3:
+            return _together([])
+        quantity = self.quantities[q]
+        wanted = Wanted(top * (1 + tolerance / 4), quantity.level)
+        poles = _poles(x, v, quantity.parts(self.response)[run], quantity.squared, wanted)
+        return _together([_tops(x, v, wanted), *_ends(x, v, wanted), poles])
+
+    def _apart(self, wanted: Hidden, run: slice) -> Array:
+        """Speeds that are not next to each other, nor to known ones: of several at one top the highest."""
+        assert self.response is not None
+        known = self.response.speed[run].tolist()
+        found: list[float] = []
+        for i in np.argsort(-wanted.height):
+            speed, near = float(wanted.speed[i]), NEXT * float(wanted.scale[i]) + ROUNDING * float(wanted.speed[i])
+            place = bisect(known, speed)
+            closest = min((abs(speed - one) for one in known[max(place - 1, 0) : place + 1]), default=np.inf)
+            if closest > ROUNDING * speed and all(abs(speed - one) > near for one in found):
+                found.append(speed)
+        return np.sort(np.array(found))
+
+    def largest(self, tolerance: float) -> Largest:
+        """What was found, with what is still expected to hide."""
+        assert self.response is not None
+        at, value, error = (np.zeros(len(self.quantities)) for _ in range(3))
+        for q in range(len(self.quantities)):
+            column = np.where(np.isfinite(self.values[:, q]), self.values[:, q], np.inf)
+            place = int(np.argmax(column))
+            at[q], value[q] = place, column[place]
+            if np.isfinite(value[q]) and value[q] > 0:
+                hidden = [self._hidden(q, run, value[q], tolerance).height for run in self._runs]
+                more = np.max(np.concatenate(hidden), initial=value[q]) - value[q]
+                bend = max(self._bend(q, run, place) for run in self._runs)
+                error[q] = max(more, bend, tolerance / 4 * value[q])  # less than that is not looked for
+        return Largest(self.response, at.astype(np.intp), value, error)
+
+    def _bend(self, q: int, run: slice, place: int) -> float:
+        """By how much the top at ``place`` may be low, if it lies in this piece."""
+        assert self.response is not None
+        i = place - run.start
+        if not 0 < i < run.stop - run.start - 1:
+            return 0.0
+        x, v = self.response.speed[run], self.values[run, q]
+        _, height, fall = parabola(x, v, np.array([i]))
+        return float(np.nanmax([height[0] - v[i], 0.0]) + BEND * fall[0])
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is worth a look: more than is known, or anything above a level where nothing is known to be."""
+
+    more: float
+    level: float
+
+    def by(self, height: Array, known: Array) -> Flags:
+        """Whether a ``height`` (place,) beside values that are ``known`` (place,) is."""
+        with np.errstate(invalid="ignore"):
+            return np.asarray((height > self.more) | ((height > self.level) & (known <= self.level)))
+
+
+def _tops(x: Array, v: Array, wanted: Wanted) -> Hidden:
+    """Places to look at for tops that may be the largest: those of parabolas, and between them and their neighbours
+    where these lie too far below."""
+    inner = np.flatnonzero(np.isfinite(v[:-2]) & np.isfinite(v[1:-1]) & np.isfinite(v[2:])) + 1
+    where, height, fall = parabola(x, v, inner)
+    above = height + np.where(fall > FLAT * height, BEND * fall, 0.0)
+    good = wanted.by(above, np.maximum(np.maximum(v[inner - 1], v[inner]), v[inner + 1]))
+    inner, where, above = inner[good], where[good], above[good]
+    place = np.clip(np.searchsorted(x, where), 1, len(x) - 1)
+    low, high = x[place - 1], x[place]
+    # A top that has been looked at is closed in on from both sides.
+    known = np.minimum(where - low, high - where) < CLOSE * (high - low)
+    nearer = np.where(where - low < high - where, low, high)
+    left, right = (nearer + x[inner - 1]) / 2, (nearer + x[inner + 1]) / 2
+    both = [np.concatenate([one, one[known]]) for one in (above, high - low)]
+    return Hidden(np.concatenate([np.where(known, left, where), right[known]]), *both)
+
+
+def _ends(x: Array, v: Array, wanted: Wanted) -> list[Hidden]:
+    """Middles of the first and the last stretch where the end is the highest and rises too steeply for a parabola: of a
+    resonance that stands beyond it the top may lie before it."""
+    found = []
+    for end, beside in ((0, 1), (-1, -2)):
+        fall = v[end] - v[beside]
+        height = v[end] + END * fall
+        if fall > FLAT * v[end] and wanted.by(np.array([height]), v[[end]])[0]:
+            middle, apart = (x[end] + x[beside]) / 2, abs(x[end] - x[beside])
+            found.append(Hidden(np.array([middle]), np.array([height]), np.array([apart])))
+    return found
+
+
+def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: Wanted) -> Hidden:
+    """Places to look at for resonances that stand between three neighbours, and how high the sum may be there."""
+    f = np.nan_to_num(parts)
+    x0, x1, x2 = x[:-2, None], x[1:-1, None], x[2:, None]
+
+    def second(g: Complex) -> Complex:
+        return ((g[2:] - g[1:-1]) / (x2 - x1) - (g[1:-1] - g[:-2]) / (x1 - x0)) / (x2 - x0)
+
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        pole = second(x[:, None] * f) / second(f)
+        residue = -(f[1:-1] - f[:-2]) / (x1 - x0) * (x0 - pole) * (x1 - pole)
+        at = pole.real
+        there = np.abs(f[1:-1] + residue * (1 / (at - pole) - 1 / (x1 - pole)))
+    low = np.concatenate([x[:1], x[:-3]])[:, None]
+    high = np.concatenate([x[3:], x[-1:]])[:, None]
+    with np.errstate(invalid="ignore"):
+        place = np.clip(np.searchsorted(x, np.nan_to_num(at)), 1, len(x) - 1)
+        apart = np.minimum(np.abs(at - x[place - 1]), np.abs(x[place] - at))
+        good: Flags = np.isfinite(there) & (at > low) & (at < high) & (apart > SEEN * np.abs(pole.imag))
+    i, k = np.nonzero(good)
+    at, there, place, width = at[i, k], there[i, k], place[i, k], np.abs(pole.imag[i, k])
+    share = (at - x[place - 1]) / (x[place] - x[place - 1])
+    size = np.abs(f)
+    here = (1 - share) * size[place - 1, k] + share * size[place, k]
+    gain = np.maximum(there**2 - here**2 if squared else there - here, 0.0)
+    rises = (1 - share) * v[place - 1] + share * v[place] + CAUTION * gain
+    above = wanted.by(rises, np.maximum(v[place - 1], v[place]))
+    scale = np.minimum(width, x[place] - x[place - 1])
+    return Hidden(at[above], rises[above], scale[above])
+
+
+def sharpened(
+    respond: Callable[[Array], OrderResponse], quantity: Quantity, speeds: tuple[float, float, float]
+) -> float:
+    """The speed [rad/s] of the top of ``quantity`` that lies between the outer two of ``speeds``, near the middle one:
+    far closer than its value needs it, for what is differentiated there."""
+    x = np.array(speeds)
+    v = quantity.values(respond(x))
+    for _ in range(SHARPENING):
+        top = int(np.clip(np.argmax(v), 1, len(x) - 2))
+        where = float(parabola(x, v, np.array([top]))[0][0])
+        if not np.isfinite(where):
+            where = float(x[top])
+        near = np.abs(x - where).min()
+        reach = np.clip(2 * near, SHARP * where, (x[top + 1] - x[top - 1]) / 4)
+        new = np.setdiff1d(np.clip(where + reach * np.array([-1.0, 0.0, 1.0]), x[0], x[-1]), x)
+        if len(new) == 0 or (near <= SHARP * where and x[top + 1] - x[top - 1] < 1e3 * SHARP * where):
+            break
+        x, v = np.concatenate([x, new]), np.concatenate([v, quantity.values(respond(new))])
+        order = np.argsort(x)
+        x, v = x[order], v[order]
+    return float(x[int(np.argmax(v))])

@@ -1,0 +1,1 @@
+"""Periodic steady states: the base that stability, responses and motions stand on."""

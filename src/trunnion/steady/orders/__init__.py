@@ -1,0 +1,1 @@
+"""The linear steady state by order, without a verdict on it."""

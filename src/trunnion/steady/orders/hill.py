@@ -1,0 +1,193 @@
+"""Steady response of a line with periodic equations by Hill's blocks.
+
+Re[e^{iω₀t} Σ_h X_h e^{ihbΩt}] under Re[e^{iω₀t} Σ_h G_h e^{ihbΩt}], with b = 2π/period of the equations in the input
+angle, ν_h = ω₀ + hbΩ, and M_k … the Fourier coefficients of the matrices:
+
+    Σ_l [−ν_l² M_{h−l} + iν_l C_{h−l} + K_{h−l}] X_l + Σ_e R_e* (i loss_e sgn ν) R_e X = G_h.
+
+Damping whatever the frequency acts on each spring's own harmonics (R_e turns X into the twist of spring e): negative
+sidebands turn its sign, which equations in time cannot do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Array, Complex, Flags, Integers
+from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.linear import LineMatrices
+from trunnion.equations.topology import Topology
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.sparse_matrices import Part, SparseMatrices
+from trunnion.steady.orders.straight import SINGULAR
+
+NARROW = 1e-2
+"""Share of the speed below which a range is too narrow to be interpolated from its ends."""
+RESIDUAL = 1e-15
+"""Share of what a solution takes to hold below which a change of it is rounding."""
+ROUNDING = 2e-16
+"""Fourier coefficients below this share of the largest are left out."""
+
+
+def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
+    """Three speeds (3,) that suffice where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
+    None where each case has to stand for itself. Excitations are taken to be of second degree in the speed as well."""
+    laws = [np.broadcast_to(n, (len(speed), 1)) for law in co.joints for n in law.numbers]
+    parts = (co.stiffness, co.damping, co.torque, co.twist, co.inertia, co.load, *laws, co.shift, co.loss)
+    constant = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in parts)
+    low, high = speed.min(), speed.max()
+    if not constant or len(speed) <= 3 or high - low < NARROW * high or np.any(co.viscous) or np.any(co.quadratic):
+        return None
+    return np.array([low, (low + high) / 2, high])
+
+
+def weights_at(few: Array | None, speed: Array) -> Array | None:
+    """What carries the equations at ``few`` speeds to those of ``speed`` (case,): weights (case, node); None where each
+    case stands for itself."""
+    if few is None:
+        return None
+    a, b, c = (speed[:, None] - few).T / (few[-1] - few[0])
+    return np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1)
+
+
+def carried(weights: Array | None, values: NDArray[Any]) -> NDArray[Any]:
+    """Values (node, …) of second degree in the speed, at every case (case, …)."""
+    if weights is None:
+        return values
+    flat = np.ascontiguousarray(values).reshape(len(values), -1)
+    if np.iscomplexobj(flat):  # weights are real: half the multiplications
+        found = (weights @ flat.view(float)).view(complex)
+    else:
+        found = weights @ flat
+    return np.asarray(found.reshape(-1, *values.shape[1:]))
+
+
+class HillBlocks:
+    """Fourier coefficients of a batch of lines over one period; solves any carrier and any span of harmonics.
+
+    Where nothing but the speed varies from case to case, every matrix is a polynomial of second degree in it: three
+    lines, at ``nodes`` of the speed, then stand for all cases.
+    """
+
+    def __init__(
+        self,
+        topo: Topology,
+        matrices: LineMatrices,
+        loss: Array,
+        step: Array,
+        *,
+        linearised: bool = False,
+    ) -> None:
+        """``step`` (node,) is bΩ [rad/s]; loss (node, compliance) [N m/rad]; ``matrices`` at the nodes; with
+        ``linearised`` every case is a node, and solved to first order about the first."""
+        self.topo, self.loss, self.step, self.linearised = topo, loss, step, linearised
+        self.times = matrices.mass.shape[1]
+        self.mass, self.damping, self.stiffness, self.ratio = (
+            np.fft.fft(part, axis=1) / self.times
+            for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
+        )
+        parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
+        self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
+
+    def solve(self, weights: Array | None, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
+        """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n), of the cases that ``weights`` carry to; ``carrier``
+        (node,) is ω₀ [rad/s].
+
+        Harmonics on the ``rim`` (h,) are found from the others, by their own diagonal blocks: their size tells what
+        leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
+        """
+        s = np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None]))
+        held = harmonics == 0 if self.topo.free and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
+        matrix = self.matrices(s, harmonics, np.flatnonzero(held))
+        if not self.linearised:
+            return _with_rim(matrix, rim, carried(weights, right), weights)
+        alone = replace(matrix, values=matrix.values[:1])
+        first = _with_rim(alone, rim, right[:1])
+        rest = right - _times(matrix, rim, first)
+        size = np.abs(right).max() + np.abs(alone.values).max() * np.abs(first).max()
+        rest[np.abs(rest).max(axis=(1, 2)) <= RESIDUAL * size] = 0.0
+        return np.asarray(first + _with_rim(alone, rim, rest, bounded=False))
+
+    def matrices(self, s: Complex, harmonics: Integers, held: Iterable[int] = ()) -> SparseMatrices:
+        """The matrices (node, h·n, h·n) at s (node, h) [1/s] of the ``harmonics`` (h,); what a free line turns as a
+        whole in those ``held``, which nothing resists at rest, is taken to be zero."""
+        parts = (self.stiffness, self.damping, self.mass)
+        found = fourier.hill_matrices(s, harmonics, parts, np.flatnonzero(self.kept))
+        if self.loss.any():
+            apart = (harmonics[:, None] - harmonics[None, :]) % self.times
+            found += self._of_loss(apart, np.sign(s.imag))
+        found += [self._held(h) for h in held]
+        return SparseMatrices.added(len(harmonics) * self.topo.size, found)
+
+    def _held(self, h: int) -> Part:
+        turn, n = rigid_rotation(self.topo), self.topo.size
+        whole = np.outer(turn, turn) / (turn @ turn)
+        weight = np.abs(self.stiffness[:, 0]).max(axis=(1, 2))[:, None, None]
+        row, column = np.indices((n, n))
+        return h * n + row, h * n + column, weight * whole
+
+    def _of_loss(self, place: Integers, sign: Array) -> list[Part]:
+        n, every, found = self.topo.size, np.arange(sign.shape[1]), []
+
+        def put(far: int, near: int, row: Integers, column: Integers, values: Any) -> None:
+            found.append((row * n + far, column * n + near, values))
+
+        for e, (far, near) in enumerate(self.topo.ends):
+            if not self.loss[:, e].any():
+                continue
+            loss = 1j * self.loss[:, e, None] * sign
+            if far >= 0:
+                put(far, far, every, every, loss)
+            if near < 0:
+                continue
+            ratio = self.ratio[:, place, e]
+            parts = [(near, near, ratio @ (loss[:, :, None] * ratio))]
+            if far >= 0:
+                parts += [(far, near, -loss[:, :, None] * ratio), (near, far, -ratio * loss[:, None, :])]
+            for one, other, values in parts:
+                row, column = np.nonzero(np.abs(values).max(axis=0) > ROUNDING * np.abs(values).max())
+                put(one, other, row, column, values[:, row, column])
+        return found
+
+
+def _with_rim(
+    matrix: SparseMatrices, rim: Flags, right: Complex, weights: Array | None = None, *, bounded: bool = True
+) -> Complex:
+    """X (case, h, n) of matrices at the nodes, which are those of the cases without ``weights``; harmonics on the rim
+    by their own diagonal blocks; ``bounded`` as of ``_solve``."""
+    cases, count, n = right.shape
+    x = np.zeros((cases, count, n), dtype=complex)
+    inside = matrix.among(np.repeat(~rim, n)) if rim.any() else matrix
+    inside = replace(inside, values=carried(weights, inside.values))
+    x[:, ~rim] = _solve(inside, right[:, ~rim].reshape(cases, -1), bounded=bounded).reshape(cases, -1, n)
+    for end in np.flatnonzero(rim):
+        row = carried(weights, matrix.rows(np.repeat(np.arange(count) == end, n)))
+        known = (row @ x.reshape(cases, count * n, 1))[..., 0]
+        x[:, end] = fourier.solved(row[:, :, end * n : (end + 1) * n], right[:, end] - known)
+    return x
+
+
+def _times(matrix: SparseMatrices, rim: Flags, x: Complex) -> Complex:
+    """What ``_with_rim`` solves, times x (1, h, n): (case, h, n)."""
+    count, n = x.shape[1:]
+    row, column = matrix.row // n, matrix.column // n
+    # One harmonic on the rim is found before the next: each sees the inner ones and those found before it.
+    seen = ~rim[column] | (rim[row] & (column <= row))
+    return matrix.only(seen).times(x.reshape(1, -1)).reshape(-1, count, n)
+
+
+def _solve(matrix: SparseMatrices, right: Complex, *, bounded: bool = True) -> Complex:
+    """Solutions (case, m); NaN where a matrix is singular, with ``bounded`` to rounding."""
+    x = matrix.solved(right)
+    if bounded:
+        with np.errstate(invalid="ignore"):
+            weight = np.abs(matrix.values).max(axis=1) * np.abs(x).max(axis=1)
+            x[np.abs(right).max(axis=1) < SINGULAR * weight] = np.nan
+    x[~right.any(axis=1)] = 0.0
+    return np.asarray(x)

@@ -1,0 +1,437 @@
+"""The steady response of a line to everything that excites it, as amplitudes by order.
+
+Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}], K ``order`` and ω ``frequency``; orders
+−K of the sidebands are folded onto K by their conjugates, c_K + conj(c_−K).
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Array, Complex, Integers
+from trunnion.equations.aligned import aligned_matrices
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.exciters import (
+    BaseOfExcitation,
+    Exciter,
+    base_of_excitation,
+    exciters,
+    size,
+    tabled_by_speed,
+    torque_on_unknowns,
+    twist_on_unknowns,
+)
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.linear import LineMatrices, line_matrices
+from trunnion.equations.steady_base import bent, moves_by_itself, require_steady_base
+from trunnion.equations.topology import require_period
+from trunnion.errors import InputError
+from trunnion.laws.joint import JointLaw
+from trunnion.numerics.memory import require_memory
+from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum
+from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
+from trunnion.steady.orders.groups import OWN, Group, groups_of, offsets
+from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
+from trunnion.steady.orders.straight import straight_about_first, straight_response
+from trunnion.waiting import keep_time
+
+if TYPE_CHECKING:
+    from trunnion.steady.orders.own_orders import OwnBase, OwnOrders
+    from trunnion.steady.own.own_motions import MotionsBySpeed
+
+
+FEWEST, MOST, ROUGH_REACH = 3, 48, 1
+"""Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""
+SMALL_ENOUGH = 1e-11
+"""Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
+MOST_NUMBERS = 300_000
+"""Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
+
+
+def order_spectrum(
+    assembly: Assembly,
+    speed: Array,
+    *,
+    table: Array | None = None,
+    statically_twisted: bool = True,
+    linearised: bool = False,
+    rough: bool = False,
+    motions: MotionsBySpeed | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> OrderSpectrum:
+    """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
+
+    ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case. With
+    ``linearised`` each is solved as X₀ + A₀⁻¹(G − AX₀) about the first, X₀: right to first order, and as smooth a
+    function of the numbers as A and G are, however near a resonance. With ``rough`` each cause
+    makes the nearest side orders alone, and a bent line that starts free is taken about the motion of rigid shafts:
+    right to first order in what joints force, a tenth of the time. ``motions``: own motions that are known already.
+
+    Raises
+    ------
+    InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
+    """
+    shaken = exciters(assembly)
+    case = _Case(
+        assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough, motions
+    )
+    parts: list[tuple[OrderSum, Array]] = []
+    for done in range(0, len(speed), case.batch):
+        keep_time()
+        parts.append(case.solved(case.numbers[done : done + case.batch]))
+        if not done:
+            _require_room(assembly, parts[0][0], len(speed))
+        if progress:
+            progress(min(done + case.batch, len(speed)) / len(speed))
+    channels = channels_of(assembly.topology)
+    keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
+    amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
+    base = np.zeros((len(speed), len(keys), channels.points), dtype=complex)
+    start = 0
+    for total, cut_off in parts:
+        rows = slice(start, start + len(cut_off))
+        for j, key in enumerate(keys):
+            amplitude[rows, j] = total.amplitude.get(key, total.zero)
+            base[rows, j] = total.base.get(key, total.flat)
+        start += len(cut_off)
+    return OrderSpectrum(
+        speed=speed,
+        order=tuple(order for order, _ in keys),
+        frequency=np.array([frequency for _, frequency in keys]),
+        amplitude=amplitude,
+        base=base,
+        mean=np.concatenate([total.mean for total, _ in parts]),
+        cut_off=np.concatenate([cut_off for _, cut_off in parts]),
+        channels=channels,
+        damping=case.springs.damping,
+        loss=case.springs.loss,
+    )
+
+
+def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, table: Array | None) -> Array:
+    """The packed numbers (speed, column) to solve, which have a steady base; checked where they are given."""
+    numbers = assembly.table(len(speed)) if table is None else table.copy()
+    numbers[:, 0] = speed
+    require_steady_base(assembly, numbers)
+    if table is None:
+        return numbers
+    remedy = "ask order_response of each line by itself"
+    if moves_by_itself(assembly, numbers):
+        raise InputError(
+            "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
+        )
+    for exciter in shaken:
+        if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
+            label = assembly.packed.labels[exciter.frequency]
+            raise InputError(
+                "is a frequency of excitation, which is no parameter of the orders", key=label, remedy=remedy
+            )
+    return numbers
+
+
+def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
+    """Refuse so many speeds that what the first of them show of the orders would not fit."""
+    places = channels_of(assembly.topology)
+    numbers = len(set(first.amplitude) | set(first.base)) * (places.count + places.points)
+    # Complex, and held twice while the parts are put together.
+    require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
+
+
+@dataclass(frozen=True)
+class _Written:
+    """Equations of one reach of harmonics, written out for the rows of ``table``."""
+
+    table: Array
+    co: LineCoefficients
+    groups: list[Group]
+    layers: dict[int, int]
+    matrices: LineMatrices
+    base: BaseOfExcitation
+    blocks: HillBlocks
+
+
+class _Case:
+    """What solving takes, apart from the speeds."""
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        shaken: tuple[Exciter, ...],
+        statically_twisted: bool,
+        numbers: Array,
+        linearised: bool,
+        rough: bool,
+        motions: MotionsBySpeed | None,
+    ) -> None:
+        self.linearised, self.rough = linearised, rough
+        self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
+        self.places = channels_of(self.topo)
+        self.twisted = statically_twisted
+        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
+        one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
+        # Largest of each number: an excitation counts where any case has it.
+        few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
+        self.row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
+        self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
+        self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
+        self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
+        # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
+        about_rigid = rough or bool(one.loss.any())
+        self.own: OwnOrders | None = None
+        if moves_by_itself(assembly) and not about_rigid:
+            # Loaded for lines that need it: it brings the compiler and the orbits with it.
+            from trunnion.steady.orders.own_orders import OwnOrders
+
+            self.own = OwnOrders(assembly, motions)
+        self.reach = ROUGH_REACH if rough else _reach(one.joints)
+        self.rates = {int(rate * self.turns) for rate in self.topo.rates}
+        self.few: Array | None = None
+        self.written: dict[int, _Written] = {}
+        smooth = self.alike and not self.loss_in_time and not any(tabled_by_speed(assembly.line, e) for e in shaken)
+        if self.varies and smooth and self.own is None:
+            self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
+        if self.own is not None:
+            self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
+        elif self.varies:
+            self.batch = self._batch()
+        else:
+            self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
+        if linearised:
+            self.batch = len(numbers)
+
+    def coefficients(self, table: Array) -> LineCoefficients:
+        return self.assembly.coefficients(table, statically_twisted=self.twisted, any_frequency=True)
+
+    def _plan(self, reach: int) -> tuple[list[Group], dict[int, int], int]:
+        """Groups, the offsets of their harmonics, and samples over the period that resolve them."""
+        layers = offsets(self.rates, reach)
+        width = max(layers)
+        groups = [OWN, *groups_of(self.shaken, self.row, 1 / self.turns, width)]
+        widest = max(int(np.ptp(g.harmonics(layers, reach)[0])) for g in groups) + 1
+        return groups, layers, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+
+    def _batch(self) -> int:
+        """Speeds together, by the largest arrays of one."""
+        groups, layers, times = self._plan(self.reach)
+        n = self.topo.size
+        most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
+        # To look around, equations that stand for all speeds are written out once.
+        written = 0 if self.rough and self.few is not None else 4 * times * n**2
+        return max(1, MOST_NUMBERS // max(most**2, written))
+
+    def solved(self, table: Array) -> tuple[OrderSum, Array]:
+        """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
+        if self.own is not None:
+            return self._about_own_motions(self.own.at(table[:, 0]), table)
+        if not self.varies:
+            return self._straight(table), np.zeros(len(table))
+        while True:
+            found, last = self._bent(table, self.reach)
+            if self.rough or self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
+                return found, last
+            self.reach = min(MOST, self.reach + max(1, self.reach // 2))
+
+    def _straight(self, table: Array) -> OrderSum:
+        topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
+        matrices, base = line_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
+        total = OrderSum(len(table), self.places)
+        groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
+        if groups:
+            nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
+            sources = [
+                self._sources(group, once, table, co, base, at[:, None], matrices.wave)
+                for group, at in zip(groups, nu, strict=True)
+            ]
+            solve = straight_about_first if self.linearised else straight_response
+            right = np.stack([force[:, 0] for force, _ in sources])
+            y = solve(topo, matrices, aligned_matrices(topo, co).loss, nu, right)
+            for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
+                seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
+                self._gather(total, group, once, seen, error, at[:, None], co, matrices.wave)
+        self._add_static(total, co)
+        return total
+
+    def _written(self, reach: int, cases: Array) -> _Written:
+        """The equations at the speeds that stand for all, or at those of ``cases``."""
+        if self.few is not None and reach in self.written:
+            return self.written[reach]
+        table = cases
+        if self.few is not None:
+            table = np.repeat(self.numbers[:1], len(self.few), axis=0)
+            table[:, 0] = self.few
+        co = self.coefficients(table)
+        groups, layers, times = self._plan(reach)
+        self._require_room_for(max(len(g.harmonics(layers, reach)[0]) for g in groups), times, len(table))
+        tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
+        matrices, base = line_matrices(self.topo, co, tau), self._base(table, co, tau)
+        step = table[:, 0] / float(self.turns)
+        blocks = HillBlocks(self.topo, matrices, co.loss, step, linearised=self.linearised)
+        found = _Written(table, co, groups, layers, matrices, base, blocks)
+        if self.few is not None:
+            self.written[reach] = found
+        return found
+
+    def _require_room_for(self, harmonics: int, times: int, nodes: int) -> None:
+        """Refuse orders whose equations would not fit: ``harmonics`` of a group on ``times`` samples, at ``nodes``."""
+        n = self.topo.size
+        # Complex: the matrices of the nodes, those of a batch of cases and their factors; and what is sampled.
+        matrices = nodes + 2 * min(self.batch, len(self.numbers))
+        needed = 16.0 * (matrices * (harmonics * n) ** 2 + 4 * nodes * times * n**2)
+        element, orders = Counter(e.element for e in self.shaken).most_common(1)[0] if self.shaken else ("driveline", 0)
+        require_memory(
+            needed,
+            element=element,
+            key="excitation",
+            value=f"{orders} orders",
+            remedy="leave out the orders that matter least; with straight joints each is solved by itself",
+        )
+
+    def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
+        topo, speed = self.topo, cases[:, 0]
+        weights, out = weights_at(self.few, speed), self._written(reach, cases)
+        every = self.springs if self.few is not None else out.co
+        alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
+        ratio, relative, wave = (part[alike] for part in (out.matrices.ratio, out.base.relative, out.matrices.wave))
+        total = OrderSum(len(speed), self.places)
+        last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
+        for group in out.groups:
+            carrier = group.carrier_at(out.table[:, 0])
+            h, rim = group.harmonics(out.layers, reach)
+            nu = carrier[:, None] + h * out.blocks.step[:, None]
+            right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
+            if group.own:
+                right += self._harmonics(out.matrices.forcing, h)
+            least = np.maximum(least, 1e-6 * np.abs(carried(weights, right)).max(axis=(1, 2)))
+            x = out.blocks.solve(weights, carrier, h, rim, right)
+            seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
+            self._gather(total, group, h, seen, carried(weights, error), carried(weights, nu), every, wave)
+            last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
+        self._add_base(total, out.base.rotation[alike], max(out.layers))
+        self._add_static(total, every)
+        return total, self._share(last, total, least)
+
+    def _about_own_motions(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
+        """Some speeds of a bent line that starts free."""
+        from trunnion.steady.orders.own_orders import about, seen_about
+
+        co, speed = own.coefficients, table[:, 0]
+        total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
+        kept = np.arange(-own.count, own.count + 1)
+        for harmonic, part in zip(kept.tolist(), self._harmonics(own.seen, kept).swapaxes(0, 1), strict=True):
+            total.add(harmonic / self.turns, 0.0, part)
+        for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
+            carrier = group.carrier_at(speed)
+            centres = [m for _, m in group.members]
+            h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
+            nu = carrier[:, None] + own.rate[:, None] * h
+            right, error = self._sources(group, h, table, co, own.base, nu, own.wave, own.mass)
+            seen = seen_about(own, self.topo, h, about(own, carrier, h, right))
+            self._gather(total, group, h, seen, error, nu, co, own.wave)
+            last = np.maximum(last, np.abs(seen[:, [0, -1]][..., self.places.torque]).max(axis=(1, 2)))
+        return total, self._share(last, total)
+
+    def _share(self, last: Array, total: OrderSum, least: Array | float = 0.0) -> Array:
+        """Torques ``last`` (case,) over the largest of any order, which is no less than ``least``."""
+        sizes = [np.abs(a[:, self.places.torque]).max(axis=1) for a in total.amplitude.values()]
+        largest = np.maximum(np.max([np.zeros(len(last)), *sizes], axis=0), least)
+        return np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
+
+    def _base(self, table: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
+        plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
+        return base_of_excitation(self.topo, co, plain, tau)
+
+    def _sources(
+        self,
+        group: Group,
+        h: Integers,
+        table: Array,
+        co: LineCoefficients,
+        base: BaseOfExcitation,
+        nu: Array,
+        wave: Array,
+        mass: Array | float = 1.0,
+    ) -> tuple[Complex, Complex]:
+        """Torques on the unknowns (case, h, n), over their ``mass`` (case, time, n), and twists by transmission errors
+        (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
+        right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
+        error = np.zeros((len(base.relative), len(h), len(self.topo.compliances)), dtype=complex)
+        for exciter, m in group.members:
+            at, e = int(np.searchsorted(h, m)), exciter.compliance
+            sizes = size(self.assembly, exciter, table)
+            if e < 0:
+                force = torque_on_unknowns(self.topo, exciter, sizes, base)
+            else:
+                stiffness = co.stiffness[:, e, None] * wave[..., e]
+                torque = (stiffness + 1j * nu[:, at, None] * co.damping[:, e, None]) * sizes[:, None]
+                force = twist_on_unknowns(self.topo, exciter, torque, base.relative)
+                error[:, at, e] += sizes
+            near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
+            right[:, near] += self._harmonics(force / mass, h[near] - m)
+        return right, error
+
+    def _harmonics(self, values: NDArray[Any], h: Integers) -> Complex:
+        """Fourier coefficients (case, h, …) at ``h`` of values (case, time, …) over the period."""
+        times = values.shape[1]
+        return np.asarray(np.fft.fft(values, axis=1)[:, h % times] / times)
+
+    def _gather(
+        self,
+        total: OrderSum,
+        group: Group,
+        h: Integers,
+        seen: Complex,
+        error: Complex,
+        nu: Array,
+        co: LineCoefficients,
+        wave: Array,
+    ) -> None:
+        """Give motions ``seen`` (case, h, channel) of a group their torques, in place, and add them up by order."""
+        seen[..., self.places.twist] += error
+        self._add_torque(seen, co, nu)
+        self._add_waves(seen, co, h, wave, own=group.own)
+        for j, harmonic in enumerate(h.tolist()):
+            total.add(group.carrier + harmonic / self.turns, group.frequency, seen[:, j])
+
+    def _add_torque(self, seen: Complex, co: LineCoefficients, nu: Array) -> None:
+        """Torque of every spring from its elastic twist, in place."""
+        places, v = self.places, nu[..., None]
+        k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
+        seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
+
+    def _add_waves(self, seen: Complex, co: LineCoefficients, h: Integers, wave: Array, *, own: bool) -> None:
+        """What the varying part of mesh stiffnesses adds to their torques, in place."""
+        places, times = self.places, wave.shape[1]
+        for e in sorted({mesh.compliance for mesh in co.waves}):
+            change = np.fft.fft(wave[..., e] - 1.0, axis=1) / times
+            apart = change[:, (h[:, None] - h[None, :]) % times]
+            twist, k = seen[..., places.twist.start + e], co.stiffness[:, e, None]
+            torque = k * (apart @ twist[..., None])[..., 0]
+            if own:
+                torque = torque + co.torque[:, e, None] * change[:, h % times]
+            seen[..., places.torque.start + e] += torque
+
+    def _add_static(self, total: OrderSum, co: LineCoefficients) -> None:
+        total.mean[:, self.places.twist] += co.twist
+        total.mean[:, self.places.torque] += co.torque
+
+    def _add_base(self, total: OrderSum, rotation: Array, highest: int) -> None:
+        """How the base motion itself turns: what joints force without any twist."""
+        points = [station for station, _ in self.topo.points]
+        spectrum = np.fft.rfft(rotation[..., points], axis=1) / rotation.shape[1]
+        least = 1e-16 * np.abs(spectrum[:, 1:]).max(initial=0.0)
+        for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
+            if np.any(np.abs(spectrum[:, h]) > least):
+                total.base[h / self.turns, 0.0] = 2 * spectrum[:, h]
+
+
+def _reach(joints: tuple[JointLaw, ...]) -> int:
+    """As many harmonics as the most uneven joint asks for: behind a Hooke's joint they fall off as tan^2h(β/2)."""
+    share = max((law.spread for law in joints), default=0.0)
+    return int(np.clip(np.ceil(np.log(SMALL_ENOUGH) / np.log(max(share, 1e-12))) + 1, FEWEST, MOST))

@@ -1,0 +1,1 @@
+"""The periodic steady state of a line that starts free, over its mean speed."""

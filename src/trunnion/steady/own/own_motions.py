@@ -1,0 +1,331 @@
+"""The periodic motions of a bent line that starts free, at many mean speeds, and its equations linearised about them.
+
+Each is solved once by ``free_balance``, whoever asks: the orders and the stability along a range. Excitations of disks
+and transmission errors are left out, as in ``own_motion``, which finds one motion by shooting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags, Places
+from trunnion.driveline.driveline import Driveline
+from trunnion.equations.aligned import aligned_matrices
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.exciters import quiet
+from trunnion.equations.line_system import line_system
+from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
+from trunnion.equations.topology import require_period
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.harmonics import doubled
+from trunnion.numerics.spectrum import along, real_positive
+from trunnion.steady.own.free_balance import MOST, MOST_NUMBERS, FreeBalance, FreeMotions
+from trunnion.steady.shooting.free_orbit import loaded_by_speed
+
+ALIKE = 1e-6
+"""Difference [rad] of two motions that are the same."""
+LEAP = 0.1
+"""Share of its swing by which a motion may change in one step: by more it fell into another one."""
+AWAY = np.array([0.9, 1.1, 0.75, 1.3])
+"""Shares of a speed at which one begins to follow a motion to it that is not found otherwise."""
+BESIDE = 1e-6
+"""Step of differences by the speed, over it."""
+CLOSE = 1e-6
+"""How closely one locates where a motion ends, as a share of the speed."""
+
+
+@dataclass(frozen=True)
+class Break:
+    """Speeds [rad/s] between which there is no motion that goes on from either side, and why."""
+
+    low: float
+    high: float
+    why: str
+
+
+@dataclass(frozen=True)
+class OwnMotions:
+    """Slopes along the motions, and what is no disturbance of them.
+
+    solved, speed: what knows the motions, and where; found (speed,); period [rad of input angle]; slopes: Fourier
+    coefficients (speed, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (speed,
+    2n): the disturbances that shift the phase, and that change the speed where no torque depends on it (else None).
+    """
+
+    solved: MotionsBySpeed
+    speed: Array
+    found: Flags
+    period: float
+    slopes: Complex
+    shift: Array
+    drift: Array | None
+    undamped: Flags
+
+    def rates(self, which: Places, tau: Array) -> Array:
+        """A (case, time, 2n, 2n) at input angles ``tau``."""
+        slopes = self.slopes[which]
+        # Of a real A the coefficients at −h are conjugates: the sum is that of cosines and sines.
+        h = np.arange(slopes.shape[1])
+        angle = np.outer(tau, h) * (2 * np.pi / self.period)
+        twice = np.where(h > 0, 2.0, 1.0)
+        wave = np.concatenate([np.cos(angle) * twice, -np.sin(angle) * twice], axis=1)
+        flat = slopes.reshape(len(which), len(h), -1)
+        flat = np.concatenate([flat.real, flat.imag], axis=1)
+        return np.asarray((wave @ flat).reshape(len(which), len(tau), *slopes.shape[2:]))
+
+    def beside_neutral(self, which: Places, matrix: Array) -> Array:
+        """Matrices (case, 2n − 1, 2n − 1) without the shift of the phase; 0 for the multiplier of the speed."""
+        finite = np.isfinite(matrix).all(axis=(1, 2))
+        left = np.full((len(matrix), matrix.shape[1] - 1, matrix.shape[2] - 1), np.nan)
+        rest = np.linalg.qr(self.shift[which][finite][:, :, None], mode="complete")[0][:, :, 1:]
+        left[finite] = rest.transpose(0, 2, 1) @ matrix[finite] @ rest
+        if self.drift is not None:
+            direction = (self.drift[which][finite][:, None] @ rest)[:, 0]
+            several = real_positive(np.linalg.eigvals(left[finite]).astype(complex)).sum(axis=1) > 1
+            grows = [self.speed_grows(i) if one else None for i, one in zip(which[finite], several, strict=True)]
+            parts = zip(left[finite], direction, grows, strict=True)
+            left[finite] = np.array([_deflated(*part) for part in parts]).reshape(left[finite].shape)
+        return left
+
+    def speed_grows(self, i: int) -> bool | None:
+        """Whether a change of the speed does, where the torque of the drives stays the same: the motion takes the less
+        of it the faster it is. None where that cannot be told."""
+        rise = self.solved.torque_rise(float(self.speed[i]))
+        return rise < 0 if rise else None
+
+
+def _deflated(matrix: Array, direction: Array, grows: bool | None) -> Array:
+    """``matrix`` (m, m), 0 in place of the eigenvalue of what changes ``along`` a direction (m,)."""
+    values, vectors = np.linalg.eig(matrix)
+    place = along(matrix, direction, grows)
+    left = np.linalg.solve(vectors.T, np.eye(len(matrix))[place])
+    return np.asarray((matrix - values[place] * np.outer(vectors[:, place], left)).real)
+
+
+def own_motions(line: Driveline, speeds: Array, solved: MotionsBySpeed | None = None) -> OwnMotions | None:
+    """Motions at all ``speeds`` [rad/s]; None for a line whose springs have stages or play.
+
+    ``solved`` : what is known of them already. ``found`` is False where the harmonics did not settle.
+    """
+    solved = solved or MotionsBySpeed(line)
+    if solved.hindered:
+        return None
+    motions = solved.at_all(speeds)
+    n, balance = len(motions.balance.turn), motions.balance
+    at_once = max(1, MOST_NUMBERS // (motions.times * (2 * n) ** 2))
+    parts = [_about(motions.part(slice(i, i + at_once))) for i in range(0, len(speeds), at_once)]
+    slopes, shift, drift = (np.concatenate(each) for each in zip(*parts, strict=True))
+    damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
+    return OwnMotions(
+        solved,
+        speeds,
+        motions.found & motions.resolved,
+        balance.period,
+        slopes,
+        shift,
+        None if loaded_by_speed(balance.assembly) else drift,
+        np.abs(damping) * balance.period < 1e-12 * n,
+    )
+
+
+def _about(motions: FreeMotions) -> tuple[Complex, Array, Array]:
+    """A's Fourier coefficients (case, harmonic ≥ 0, 2n, 2n), the shift of the phase and the change of the speed
+    (case, 2n), in energy-like units."""
+    balance, speed = motions.balance, motions.speed
+    n = len(balance.turn)
+    rates, slopes = motions.sampled()
+    spectrum = np.fft.rfft(slopes[:, :, n:], axis=1)[:, :-1] / motions.times
+    root = np.sqrt(aligned_matrices(balance.assembly.topology, motions.coefficients).mass)
+    ratio = root[:, :, None] / root[:, None, :]
+    stiffness = -spectrum[:, 0, :, :n].real * ratio / (speed**2)[:, None, None]
+    unit = np.sqrt(np.maximum(np.abs(np.einsum("cii->ci", stiffness)).mean(axis=1), 1e-300))
+    a = np.zeros((*spectrum.shape[:2], 2 * n, 2 * n), dtype=complex)
+    a[:, 0, :n, n:] = np.eye(n) * unit[:, None, None]
+    a[..., n:, :n] = spectrum[..., :n] * (ratio / (speed**2 * unit)[:, None, None])[:, None]
+    a[..., n:, n:] = spectrum[..., n:] * (ratio / speed[:, None, None])[:, None]
+    scale = np.concatenate([root, root / unit[:, None]], axis=1)
+    over = speed[:, None]
+    shift = np.concatenate([rates[:, 0, :n] / over + balance.turn, rates[:, 0, n:] / over**2], axis=1) * scale
+    drift = np.concatenate([np.zeros(n), balance.turn]) * scale
+    return a, shift, drift
+
+
+@dataclass(frozen=True)
+class KnownMotion:
+    """One motion that is known: see ``FreeMotions``."""
+
+    found: bool
+    resolved: bool
+    rows: Array
+    torque: float
+    numbers: Array
+
+    @classmethod
+    def of(cls, motions: FreeMotions, i: int | np.signedinteger) -> KnownMotion:
+        """One of several."""
+        found, resolved = bool(motions.found[i]), bool(motions.resolved[i])
+        return cls(found, resolved, motions.rows[i], float(motions.torque[i]), motions.numbers[i])
+
+    @property
+    def h(self) -> int:
+        """Harmonics kept."""
+        return fourier.order(self.rows)
+
+    @property
+    def settled(self) -> bool:
+        """Whether it was found, with harmonics enough."""
+        return self.found and self.resolved
+
+    @property
+    def swing(self) -> float:
+        """Largest amplitude of any harmonic [rad]."""
+        return float(np.abs(self.rows[:, 1:]).max())
+
+
+def apart(one: Array, other: Array) -> float:
+    """Largest difference [rad] of any harmonic but the mean of two motions, (n, 2h + 1) each."""
+    h = max(fourier.order(one), fourier.order(other))
+    return float(np.abs(fourier.resized(one, h) - fourier.resized(other, h))[:, 1:].max())
+
+
+class MotionsBySpeed:
+    """The motions of one line, each speed solved once: the orders and the stability along a range ask for the same.
+
+    Phases count from zero rotation of the input.
+    """
+
+    def __init__(self, line: Driveline) -> None:
+        self.line = line
+        self.known: dict[float, KnownMotion] = {}
+        self.broken: tuple[Break, ...] = ()
+
+    @cached_property
+    def hindered(self) -> str:
+        """Why there is no balance of smooth equations for all speeds; empty where there is."""
+        if mean_by_load(self.line) and loaded_by_speed(assemble(quiet(self.line))):
+            return "the mean of its clutch changes with the speed besides"
+        if line_system(self.quiet, 1.0).system.regimes is not None:
+            return "it has stages or play besides"
+        return ""
+
+    @cached_property
+    def quiet(self) -> Assembly:
+        """The line without excitation, clutches that state a motion as their mean."""
+        return assemble(with_mean_clutches(assemble(quiet(self.line)), 1.0))
+
+    @cached_property
+    def balance(self) -> FreeBalance:
+        """What solves them."""
+        return FreeBalance(self.quiet, 2 * np.pi * float(require_period(self.quiet.line, self.quiet.topology)))
+
+    def at_all(self, speeds: Array) -> FreeMotions:
+        """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
+        self._solve(np.array([speed for speed in dict.fromkeys(speeds.tolist()) if speed not in self.known]))
+        known = [self._at(speed) for speed in speeds.tolist()]
+        h = max(fourier.order(one.rows) for one in known)
+        return FreeMotions(
+            self.balance,
+            speeds,
+            np.array([one.found for one in known]),
+            np.stack([fourier.resized(one.rows, h) for one in known]),
+            np.array([one.torque for one in known]),
+            np.stack([one.numbers for one in known]),
+        )
+
+    def _at(self, speed: float) -> KnownMotion:
+        """What is known at a speed: nothing where the motion breaks off, whatever was found there."""
+        one = self.known[speed]
+        return replace(one, found=False) if any(b.low < speed < b.high for b in self.broken) else one
+
+    def torque_rise(self, speed: float) -> float:
+        """How much more torque [N m] the drives give at a speed greater by ``BESIDE``; 0 where that cannot be told."""
+        one = self.known[speed]
+        further = self.balance.solve(np.array([speed * (1 + BESIDE)]), one.h, one.rows[None])
+        return float(further.torque[0] - one.torque) if further.found[0] else 0.0
+
+    def carried(self, motion: KnownMotion, begin: float, end: float) -> tuple[float, KnownMotion]:
+        """How far a ``motion`` at ``begin`` goes on towards ``end`` [rad/s], and what it is there: each step starts
+        where the last two lead to, and ends near that."""
+        at, step = begin, end - begin
+        slope = np.zeros_like(motion.rows)
+        while at != end:
+            to = end if abs(end - at) <= abs(step) else at + step
+            further = self._led_to(to, motion, slope * (to - at))
+            if further is None:
+                step = (to - at) / 2
+                if abs(step) < CLOSE * abs(at):
+                    break
+            else:
+                slope = (further.rows - fourier.resized(motion.rows, further.h)) / (to - at)
+                at, motion, step = to, further, 2 * (to - at)
+        return at, motion
+
+    def _led_to(self, speed: float, motion: KnownMotion, change: Array) -> KnownMotion | None:
+        """The motion at ``speed`` that Newton's steps from ``motion`` and its ``change`` (n, 2h + 1) lead to, with as
+        many harmonics as it needs; None where they lead nowhere, or so far that it is another."""
+        guess = expected = motion.rows + change
+        for h in [one for one in doubled(self.balance.fewest, MOST) if one >= motion.h]:
+            found = self.balance.solve(np.array([speed]), h, fourier.resized(guess, h)[None])
+            if not found.found[0]:
+                return None
+            if found.resolved[0]:
+                further = KnownMotion.of(found, 0)
+                return further if apart(further.rows, expected) <= LEAP * max(motion.swing, ALIKE) else None
+            guess = found.rows[0]
+        return None
+
+    def _solve(self, speeds: Array) -> None:
+        """From rigid shafts, where that leads nowhere from the nearest motion found; harmonics doubled until they are
+        enough."""
+        asked, guess, orders = speeds, None, doubled(self.balance.fewest, MOST)
+        for h in orders:
+            if not len(speeds):
+                break
+            guess = None if guess is None else fourier.resized(guess, h)
+            motions = self._from_neighbours(self.balance.solve(speeds, h, guess))
+            enough = motions.resolved | ~motions.found | (h == orders[-1])
+            for i in np.flatnonzero(enough):
+                self.known[float(speeds[i])] = KnownMotion.of(motions, i)
+            speeds, guess = speeds[~enough], motions.rows[~enough]
+        for speed in asked.tolist():
+            if not self.known[speed].settled:
+                self._follow_to(speed)
+
+    def _follow_to(self, speed: float) -> None:
+        """Look for a motion by steps from the nearest ones known on both sides, then from farther away, where none
+        breaks off between."""
+        if any(one.low < speed < one.high for one in self.broken):
+            return
+        for begin, start in self._about(speed):
+            reached, motion = self.carried(start, begin, speed)
+            if reached == speed:
+                self.known[speed] = motion
+                return
+
+    def _about(self, speed: float) -> Iterator[tuple[float, KnownMotion]]:
+        """Motions beside a speed, and where."""
+        there = np.array([one for one, motion in self.known.items() if motion.settled])
+        for side in (there[there < speed].max(initial=-np.inf), there[there > speed].min(initial=np.inf)):
+            if np.isfinite(side):
+                yield float(side), self.known[float(side)]
+        away = self.balance.solve(speed * AWAY, self.balance.fewest)
+        for i in np.flatnonzero(away.found & away.resolved):
+            yield float(away.speed[i]), KnownMotion.of(away, i)
+
+    def _from_neighbours(self, motions: FreeMotions) -> FreeMotions:
+        """With those that were not found looked for again from the nearest that were, outwards."""
+        found, rows, torque = motions.found.copy(), motions.rows.copy(), motions.torque.copy()
+        lost = np.flatnonzero(~found)
+        while len(lost) and found.any():
+            there = np.flatnonzero(found)
+            apart = np.abs(motions.speed[lost][:, None] - motions.speed[there])
+            next_to = np.argsort(apart.min(axis=1))[0]
+            i, near = lost[next_to], there[apart[next_to].argmin()]
+            one = self.balance.solve(motions.speed[[i]], motions.h, rows[[near]])
+            found[i], rows[i], torque[i] = one.found[0], one.rows[0], one.torque[0]
+            lost = np.delete(lost, next_to)
+        return FreeMotions(self.balance, motions.speed, found, rows, torque, motions.numbers)

@@ -1,0 +1,173 @@
+"""The periodic motion of a line that starts free, at the mean speed asked for.
+
+Nothing prescribes its rotation, so that any phase of the motion is one as well: unknown are the state but for the
+first rotation, which is held where it starts, and the torque that drives beyond the balance of the loads, to cover
+what dampers and speed fluctuation take: P(x; torque) = x in a frame that turns at the mean speed. Where no drive keeps
+the speed, the speed is unknown in place of the torque.
+
+The disturbance that shifts the phase, x′ + R Ω, comes back exactly: its multiplier 1 is set aside by that vector.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.parameters import SPEED
+from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.line_system import LineSystem
+from trunnion.equations.steady_base import require_balance, require_share
+from trunnion.errors import InputError
+from trunnion.steady.shooting.closing import Phase, close
+from trunnion.steady.shooting.judging import IntegratedClosing, Neutral
+from trunnion.steady.shooting.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, PeriodicOrbit, closing_of, judged
+from trunnion.systems.maps import IntegratedMap
+from trunnion.systems.system import System
+
+BESIDE = 1e-5
+"""Step of differences by the mean speed, over it."""
+
+
+@dataclass(frozen=True)
+class FreeOrbit:
+    """The motion, and the torque at the input [N m] that its drives give beyond the balance of the loads."""
+
+    orbit: PeriodicOrbit
+    extra_torque: float
+
+
+def kept_speed_orbit(
+    line: LineSystem,
+    start: ArrayLike | None = None,
+    *,
+    tolerance: float = TOLERANCE,
+    settle: bool = True,
+    driven: Callable[[float], System] | None = None,
+) -> FreeOrbit:
+    """The periodic motion of a free line at its mean speed ``line.speed``.
+
+    ``driven`` : torque beyond the balance → system, by default those of ``line`` as described.
+
+    Raises
+    ------
+    InputError : excited in time or without a common period.
+    """
+    require_closing(line)
+    first = line.twisted() if start is None else line.system.checked_start(start)
+    torque = torque_scale(line)
+    driving = IntegratedMap(driven or line.with_drive, (0.0,), (torque,), 0.0, 1, tolerance, MOST_STEPS)
+    neutral = neutral_motions(line)
+
+    def held(guess: Array) -> IntegratedClosing:
+        scale = np.asarray(driving.system.scale)
+        return replace(closing_of(driving, Phase.held(0, float(guess[0]), scale), (torque,)), neutral=neutral)
+
+    closing, root = close(first, held, (0.0,), settle=settle)
+    return FreeOrbit(judged(closing, root), float(root.x[-1]))
+
+
+def torque_driven_orbit(
+    line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE
+) -> tuple[PeriodicOrbit, float]:
+    """The periodic motion of a line whose speed follows from its torques, and that speed [rad/s], guessed as ``speed``.
+
+    The line is observed from a frame that turns at a mean speed Ω, in which the motion closes after 2π/Ω per turn for
+    the right Ω only: unknown are the state and Ω, and the first rotation is zero at the start, which chooses one point
+    of the orbit. As for any autonomous system one multiplier is 1 and is set aside.
+    """
+    turning = IntegratedMap(line.varied("speed"), (speed,), (BESIDE * speed,), 0.0, 1, tolerance, MOST_STEPS)
+    phase = Phase.held(0, 0.0, np.asarray(turning.system.scale))
+    closing = closing_of(turning, phase, (speed,), (speed / LONGEST, speed * LONGEST))
+    closing.neutral = neutral_motions(line)
+    root = closing.solve(np.append(start, speed))
+    return judged(closing, root), float(root.x[-1])
+
+
+def closes(line: LineSystem) -> bool:
+    """Whether the motion of a free line can close: a frequency in time has no fixed ratio to a speed that is free."""
+    return line.period_turns is not None and not line.time_harmonics
+
+
+def require_kept_speed(line: LineSystem) -> None:
+    """Refuse a free line whose drives keep no speed that is asked for, or whose motion cannot close."""
+    require_closing(line)
+    assembly = line.assembly
+    row = assembly.table(1, line.speed)
+    require_balance(assembly, row)
+    if loaded_by_speed(assembly):
+        require_share(assembly)  # a constant torque balances at one speed only
+
+
+def require_closing(line: LineSystem) -> None:
+    """Refuse a free line whose motion cannot close."""
+    if not closes(line):
+        raise InputError(
+            "starts free and is excited in time or without a common period: its motion does not close",
+            element="driveline",
+            remedy="put a ConstantSpeed in front, give orders instead of frequencies, or simulate it",
+        )
+
+
+def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
+    """(system, state at t = 0) → the line's neutral disturbances in the frame that turns at the system's mean speed.
+
+    A shift of the phase comes back exactly; without bent joints, loads by speed and excitation a change of the speed
+    does as well.
+    """
+    topo, n = line.assembly.topology, line.assembly.topology.size
+    turn = rigid_rotation(topo)
+    others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
+    faster = np.concatenate([np.zeros(n), turn, others])
+    column, elements = line.assembly.packed.column, line.assembly.line.elements
+    loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    unsteady = [
+        place
+        for _, i in topo.disks
+        for h, _ in enumerate(getattr(elements[i], "excitation", None) or (), start=1)
+        for key in ("amplitude", "quadratic_amplitude")
+        if (place := column(i, f"excitation {h} {key}")) >= 0
+    ]
+
+    def at(system: System, x: Array) -> Neutral:
+        by_speed = _any(line, system, loads)
+        steady = not (by_speed or _uneven(line, system) or _any(line, system, unsteady))
+        speed = system.parameters[SPEED]
+        moved = np.concatenate([turn * speed, np.zeros(n), others])
+        shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + moved
+        if steady:
+            return Neutral(np.stack([shift, faster], axis=1))
+        return Neutral(shift[:, None], None if by_speed else faster)
+
+    return at
+
+
+def _any(line: LineSystem, system: System, places: Iterable[int]) -> bool:
+    """Whether any of some numbers of the line is other than 0 in ``system``."""
+    return any(system.parameters[line.assembly.packed.labels[i]] for i in places)
+
+
+def _uneven(line: LineSystem, system: System) -> bool:
+    """Whether any joint of the line is bent in ``system``."""
+    table = np.array([[system.parameters[label] for label in line.assembly.packed.labels]])
+    return any(law.uneven for law in joint_laws(line.assembly, table))
+
+
+def loaded_by_speed(assembly: Assembly) -> bool:
+    """Whether any load of the line depends on the speed."""
+    disks = [element for element in assembly.line.elements if isinstance(element, Disk)]
+    return any(disk.viscous_load or disk.quadratic_load for disk in disks)
+
+
+def torque_scale(line: LineSystem) -> float:
+    """The torque [N m] at the input that changes the speed over a period by what counts as one in error control."""
+    topo, system = line.assembly.topology, line.system
+    assert system.forcing_period is not None
+    co = line.untwisted(line.assembly.table(1, line.speed))
+    inertia = float(co.inertia[0] @ topo.mean_speeds**2)
+    return float(np.asarray(system.scale)[topo.size]) * inertia / float(system.forcing_period)

@@ -1,0 +1,392 @@
+"""A periodic motion of a system by shooting, and its stability from its own variational equations.
+
+    forced:      P(x) = x over one forcing period (or several: a subharmonic),
+    autonomous:  φ_T(x) = x for x and T, with f(x₀)·(x − x₀) = 0 to choose one point of the orbit,
+
+by Newton's method with the exact derivative Φ of the flow (with saltation at switching surfaces). The
+multipliers are the eigenvalues of Φ, those of the true motion whatever its amplitude. Their error is bounded
+from the difference of Φ at two tolerances, and checked by Liouville's identity ln det Φ = ∫ tr ∂f/∂x dt.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Complex, Integers
+from trunnion.errors import InputError
+from trunnion.numerics.continuation.newton import Root
+from trunnion.numerics.curves import extremes, fourier
+from trunnion.numerics.integration.integration import End, Trajectory
+from trunnion.numerics.spectrum import spectral_radius
+from trunnion.results.counts import counted
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remarks
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import state_axes
+from trunnion.results.units import with_error
+from trunnion.results.verdict import MEANING, Verdict, verdicts
+from trunnion.steady.shooting.closing import Phase, close
+from trunnion.steady.shooting.integration_outcomes import outcome_of
+from trunnion.steady.shooting.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, never_slip, rests
+from trunnion.steady.shooting.repetition import repetition
+from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
+from trunnion.systems.regimes import SLACK
+from trunnion.systems.sticking import holding
+from trunnion.systems.system import System
+
+TOLERANCE = 1e-11
+SAMPLES = 512
+LEFT = 200.0
+"""Residual at which an orbit counts as closed, over the tolerance of its integration."""
+MOMENT = 0.02
+"""Share of the period within which a slider that sticks may slip by rounding."""
+RUNAWAY = 1e-4
+"""Residual, in units of the states' scale, that no motion leaves which really closes."""
+MOST_SHARES = 12
+"""Repetitions within the period found that are looked for where there is no forcing."""
+WHOLE = 4
+"""Times that a closed orbit is gone round to ask after how much of it it repeats."""
+MOST_STEPS = 200_000
+"""Steps of one trial motion; one that needs more will not close."""
+LONGEST = 10.0
+"""How many times longer or shorter than its guess the period of an autonomous motion may be."""
+
+
+@dataclass(frozen=True, repr=False)
+class PeriodicOrbit(Result):
+    """A periodic motion and its stability.
+
+    start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
+    (n,) by falling modulus with multiplier_error (n,), without the 1 of each of the sliders ``stuck`` that
+    never slip; spectral_radius and error_estimate leave out the
+    trivial multiplier of an autonomous system that moves (one at rest has none: outcome "at rest"), and the
+    ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); monodromy (n, n);
+    liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the
+    states' scale; regime_changes: how often the motion changes its regime in a period.
+    """
+
+    system: System
+    start: Array
+    period: float
+    time: Array
+    state: Array
+    multipliers: Complex
+    multiplier_error: Array
+    monodromy: Array
+    spectral_radius: float
+    error_estimate: float
+    verdict: Verdict
+    liouville_defect: float
+    residual: float
+    iterations: int
+    outcome: Outcome
+    trajectory: Trajectory
+    speed_multiplier: float = float("nan")
+    stuck: tuple[str, ...] = ()
+
+    @property
+    def growth_rate(self) -> float:
+        """Growth of the fastest disturbance [1/s]; negative when it decays."""
+        return float(np.log(self.spectral_radius) / self.period) if self.spectral_radius > 0 else -np.inf
+
+    @property
+    def _growth(self) -> str:
+        if self.spectral_radius > self.error_estimate:
+            return f"{self.growth_rate:+.6g} 1/s"
+        most = np.log(self.spectral_radius + self.error_estimate) / self.period
+        return f"below {most:+.3g} 1/s"
+
+    @property
+    def regime_changes(self) -> int:
+        """How often the motion changes its regime in a period."""
+        return len(self.trajectory.event_time)
+
+    @property
+    def mean(self) -> Array:
+        """Mean of every state (n,) over a period, integrated on the dense output."""
+        return self.harmonics(0)[0].real
+
+    def harmonics(self, highest: int) -> Complex:
+        """Fourier coefficients (highest + 1, n): x = Re Σ c_k e^{2πikt/T}; |c_k| is the amplitude.
+
+        Integrals over the dense output: nothing above the highest order folds back on them.
+        """
+        return fourier(self.trajectory.at, self.trajectory.time_of_state, highest)
+
+    @cached_property
+    def peak_to_peak(self) -> Array:
+        """Largest minus smallest value of every state (n,), found on the dense output."""
+        return extremes(self.trajectory.at, self.trajectory.time_of_state).span
+
+    def declared(self) -> Iterator[Held]:
+        """Every state over one period, and the multipliers."""
+        yield axis("time", self.time, "s")
+        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
+            yield over("time", name, self.state[:, i], unit)
+        yield over("multiplier_number", "multiplier", self.multipliers, "1")
+        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
+        yield from remarks(system=self.system.name, verdict=str(self.verdict))
+        yield from ending(self.outcome)
+        yield from remarks(
+            residual=self.residual,
+            liouville_defect=self.liouville_defect,
+            tangents="exact" if self.system.exact_tangents else "differenced",
+        )
+        yield from parameters_of(self.system)
+
+    def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
+        """Portrait of the orbit; see ``trunnion.plots.motion``."""
+        return drawing(self, "plot")(self, axes, x=x, y=y)
+
+    def __str__(self) -> str:
+        if not self.outcome.ok:
+            return f"no periodic motion of {self.system.name}: {self.outcome}"
+        changes = f", {self.regime_changes} changes of regime" if self.system.regimes else ""
+        tangents = "" if self.system.exact_tangents else "; tangents differenced"
+        what = "equilibrium" if self.outcome.kind == "at rest" else "periodic motion"
+        axes = state_axes(self.system)
+        rows = [
+            f"  {name}: {mean * axis.factor:.6g} ± {axis.number(float(peak) / 2)}"
+            for name, mean, peak, axis in zip(self.system.states, self.mean, self.peak_to_peak, axes, strict=True)
+        ]
+        return "\n".join(
+            [
+                f"{self.verdict} {what} of {self.system.name}, period {self.period:.8g} s{changes}: "
+                f"{MEANING[self.verdict]}",
+                f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}, growth rate "
+                f"{self._growth}{tangents}",
+                *rows,
+                f"  {self.outcome}",
+            ]
+        )
+
+
+def speed_in_words(orbit: PeriodicOrbit) -> str:
+    """What becomes of a change of the mean speed of a free line none of whose torques depends on the speed."""
+    rate = float(np.log(orbit.speed_multiplier) / orbit.period) if orbit.speed_multiplier > 0 else np.nan
+    return (
+        f"no torque depends on the speed: a change of the mean speed goes at {rate:+.3g} 1/s (multiplier "
+        f"{orbit.speed_multiplier:.10g}), which the verdict leaves out"
+    )
+
+
+def periodic_orbit(
+    system: System,
+    *,
+    start: ArrayLike | None = None,
+    period: float | None = None,
+    periods: int = 1,
+    phase: float = 0.0,
+    tolerance: float = TOLERANCE,
+    settle: bool = True,
+) -> PeriodicOrbit:
+    """The periodic motion near ``start``, stable or not.
+
+    Parameters
+    ----------
+    system : forced, or autonomous with a guess of the ``period``.
+    start : a state near it at time ``phase``; by default the system's own start.
+    period : of an autonomous system, a guess [s].
+    periods : forcing periods in one period of the motion (a subharmonic of that order).
+    tolerance : of the integration, which is the error of the orbit and, times its condition, of Φ.
+    settle : when shooting fails, integrate 50 and then 500 periods and shoot again from there.
+
+    Returns
+    -------
+    An orbit whose ``outcome`` tells whether it was found; otherwise its numbers are NaN.
+
+    Raises
+    ------
+    InputError : no start, no period.
+    """
+    periods = checked_periods(periods)
+    if start is None and system.start is None:
+        raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
+    first = system.start if start is None else system.checked_start(start)
+    assert first is not None
+    if system.forcing_period is not None:
+        if period is not None:
+            raise InputError(
+                "belongs to autonomous systems; this one is forced", element=system.name, key="period", value=period,
+                remedy="give periods = 2 for a motion of twice the forcing period",
+            )  # fmt: skip
+        forced = IntegratedMap(lambda: system, (), (), phase, periods, tolerance, MOST_STEPS)
+        return judged(*close(first, lambda guess: closing_of(forced), settle=settle))
+    if period is None or not (np.isfinite(period) and period > 0):
+        raise InputError(
+            "must be guessed for an autonomous system", element=system.name, key="period", value=period,
+            remedy="give a positive time in seconds, from a simulation",
+        )  # fmt: skip
+    length = periods * float(period)
+    timed = TimedMap(lambda time: system, (length,), (0.0,), phase, 1, tolerance, MOST_STEPS)
+
+    def across(guess: Array) -> IntegratedClosing:
+        """One point of the orbit is chosen by the plane across the flow at the guess."""
+        scale = np.asarray(system.scale)
+        flow = system.rate_at(phase, guess)
+        row = flow / max(float(np.linalg.norm(flow / scale)), 1e-300) / scale**2
+        return closing_of(timed, Phase(row, guess), (length,), (length / LONGEST, length * LONGEST))
+
+    return judged(*close(first, across, (length,), settle=settle))
+
+
+def closing_of(
+    place: IntegratedMap,
+    phase: Phase | None = None,
+    sizes: tuple[float, ...] = (),
+    within: tuple[float, float] = (-np.inf, np.inf),
+) -> IntegratedClosing:
+    """The closing of motions of an integrated map; ``sizes`` of the unknown values that count as one."""
+    scale = np.append(np.asarray(place.system.scale), sizes)
+    return IntegratedClosing(place, scale, phase, LEFT * place.tolerance, within)
+
+
+def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
+    """The orbit where shooting ended: its multipliers, their error and the verdict; or why there is none."""
+    if not root.converged:
+        return _failed(closing, root)
+    n, system = closing.size, closing.place(root.x).system
+    closing, root, stuck = _sticking(closing, root)
+    place, x = closing.place(root.x), root.x[:n]
+    length, scale = place.length, np.asarray(system.scale)
+    run, coarse = place(x, dense=True).run, place(x, looser=COARSER).run
+    found, matrix = closing.judged(place, x, run, coarse, root.size, stuck), run.final[1:].T
+    radius, radius_error = np.array(0.0), np.array(0.0)
+    if len(found.counted):
+        radius, radius_error = spectral_radius(found.counted, found.counted_bound)
+    divergence = divergence_of(system, run)
+    sign, log_det = np.linalg.slogdet(matrix * scale[None, :] / scale[:, None])
+    jumps = system.regimes is not None and system.regimes.jump is not None and len(run.event_time) > 0
+    nearest = int(np.argmin(np.abs(found.values - 1)))
+    left = float(np.abs(root.residual[:n] / scale).max())
+    if closing.phase is None and left > RUNAWAY and abs(found.values[nearest] - 1) <= found.bound[nearest]:
+        # Relative to a motion that ran away, what is left is small.
+        return _failed(closing, root, _unbounded(system, x))
+    still, words = rests(place, run), f"closes to {root.size:.1e} after {root.iterations} iterations"
+    if still:
+        words = f"the motion is at rest: an equilibrium, of which every multiplier counts; {words}"
+    elif (shares := _shares(place, run, x)) > 1:
+        words += f"; it closes {shares} times in this period: the least period is {length / shares:.8g} s"
+    time = place.phase + length * np.arange(SAMPLES + 1) / SAMPLES
+    return PeriodicOrbit(
+        system=system,
+        start=system.within_limits(x),
+        period=length,
+        time=time,
+        state=run.at(time),
+        multipliers=found.values,
+        multiplier_error=found.bound,
+        monodromy=matrix,
+        spectral_radius=float(radius),
+        error_estimate=float(radius_error),
+        verdict=Verdict(int(verdicts(radius, radius_error, keeps_volume(divergence, n)))),
+        liouville_defect=np.nan if jumps else float(abs(log_det - divergence)) if sign > 0 else np.inf,
+        residual=root.size,
+        iterations=root.iterations,
+        outcome=Outcome(True, "at rest" if still else "found", words),
+        trajectory=run,
+        speed_multiplier=found.speed,
+        stuck=tuple(system.sliders[one] for one in stuck),
+    )
+
+
+def _sticking(closing: IntegratedClosing, root: Root) -> tuple[IntegratedClosing, Root, Integers]:
+    """The sliders that never slip, and the closing and root with rounding kept from letting them.
+
+    A motion that settles by slipping less and less just reaches in the end where its sliders slip. One that slips for a
+    moment is held and the motion closed again; where it stays within what the slider holds, the slider sticks.
+    """
+    place, n = closing.place(root.x), closing.size
+    stuck = never_slip(place.system, place(root.x[:n], tangents=False).run, MOMENT)
+    limits = place.system.within_limits(np.full(n, np.inf))
+    while len(stuck):
+        family = partial(_held, closing.map.family, stuck)
+        held = replace(closing, map=replace(closing.map, family=family))
+        again = held.solve(root.x)
+        run = held.place(again.x)(again.x[:n], tangents=False, dense=True).run
+        if not again.converged or run.end is not End.REACHED:
+            return closing, root, stuck[:0]
+        beyond = extremes(run.at, run.time_of_state).largest > (1 + SLACK) * limits
+        slips = beyond[n - len(place.system.sliders) :][stuck]
+        if not slips.any():
+            return held, replace(again, iterations=root.iterations + again.iterations), stuck
+        stuck = stuck[~slips]
+    return closing, root, stuck
+
+
+def _held(family: Callable[..., System], stuck: Integers, *values: float) -> System:
+    return holding(family(*values), stuck)
+
+
+def _unbounded(system: System, x: Array) -> Outcome:
+    worst = int(np.argmax(np.abs(x / np.asarray(system.scale))))
+    return Outcome(
+        False,
+        "unbounded",
+        f"a multiplier is 1 and no motion closes ({system.states[worst]} runs away to {x[worst]:.1e}): undamped at "
+        "resonance the motion grows without bound; give damping or another frequency",
+    )
+
+
+def _shares(place: IntegratedMap, run: Trajectory, x: Array) -> int:
+    """How many times the motion repeats within one application of the map."""
+    moved = np.ptp(run.state, axis=0) + 1e-300
+    if np.all(moved <= 1e-9 * np.asarray(place.system.scale)):
+        return 1
+
+    def after(parts: int) -> int:
+        """After how many of so many equal parts of the orbit it repeats; 0 where it takes more than can be told."""
+        points = run.at(place.phase + place.length * np.arange(parts) / parts) - x
+        # The orbit is closed: what follows is the same again.
+        return repetition(np.tile(points, (2 * WHOLE, 1)), moved, np.zeros(len(x)), np.zeros((0, len(x)))).after
+
+    if isinstance(place, TimedMap):
+        return next((share for share in range(MOST_SHARES, 1, -1) if after(share) == 1), 1)
+    return place.periods // (after(place.periods) or place.periods)
+
+
+def _ended(root: Root) -> str:
+    if not root.iterations:
+        return "shooting found no step from its start that comes nearer to a periodic motion"
+    return f"shooting did not converge in {counted(root.iterations, 'iteration')}"
+
+
+def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
+    place, n, nan = closing.map, closing.size, float("nan")
+    assert closing.last is not None
+    system, run = place.system, closing.last.run
+    if outcome is None and run.end is not End.REACHED:
+        guards = system.regimes.guards if system.regimes else ()
+        broken = outcome_of(system, run, place.tolerance, guards)
+        outcome = Outcome(False, broken.kind, f"a trial motion failed: {broken.sentence}")
+    elif outcome is None:
+        outcome = Outcome(
+            False,
+            "not converged",
+            f"{_ended(root)} (residual {root.size:.1e}); start closer, "
+            "for example from the end of a longer simulation, or follow the motion from a parameter where it is known",
+        )
+    return PeriodicOrbit(
+        system=system,
+        start=root.x[:n],
+        period=place.length,
+        time=run.time_of_state,
+        state=run.state,
+        multipliers=np.full(n, nan, dtype=complex),
+        multiplier_error=np.full(n, nan),
+        monodromy=np.full((n, n), nan),
+        spectral_radius=nan,
+        error_estimate=nan,
+        verdict=Verdict.FAILED,
+        liouville_defect=nan,
+        residual=root.size,
+        iterations=root.iterations,
+        outcome=outcome,
+        trajectory=run,
+    )
