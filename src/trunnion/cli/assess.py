@@ -192,6 +192,7 @@ def assessment_json(result: Assessment) -> dict[str, Any]:
                 "guideline": c.guideline,
                 "element": c.element,
                 "order": c.cause.order if c.cause else None,
+                **({"order_frequency": c.cause.frequency} if c.cause and c.cause.frequency else {}),
                 "mode": c.cause.mode if c.cause and c.cause.mode else None,
             }
             for c in result.checks

@@ -23,7 +23,7 @@ from trunnion.cli.options import (
 )
 from trunnion.cli.places import check_places, deliver
 from trunnion.errors import InputError
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import order_name, speed_factor
 
 if TYPE_CHECKING:
     import numpy as np
@@ -214,8 +214,6 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
     """What a table shows: sums over the cycle, then amplitude and phase of every order."""
     import numpy as np
 
-    from trunnion.response.orders.result import order_name
-
     data = _in_unit(result.data, unit)
     kept = data[["mean_torque", "peak_torque", "vibratory_torque", "rated_torque", "vibratory_stress", "heat"]]
     labels = [order_name(o, f) for o, f in zip(result.order, result.frequency, strict=True)]
@@ -243,8 +241,6 @@ def _response_json(result: OrderResponse, findings: Sequence[Finding], unit: str
 
 def _spring_json(result: OrderResponse, spring: int, unit: str) -> dict[str, Any]:
     """Largest torques [N m] of a spring, each with its speed; a rated torque of couplings with a rating alone."""
-    from trunnion.response.orders.result import order_name
-
     columns = {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque}
     if result.rated[spring]:
         columns["rated_torque"] = result.rated_torque
@@ -252,10 +248,9 @@ def _spring_json(result: OrderResponse, spring: int, unit: str) -> dict[str, Any
     for name, values in columns.items():
         value, speed = result.largest(values[:, spring])
         found |= {name: value, "speed" if name == "peak_torque" else f"{name}_speed": speed * speed_factor(unit)}
-    order, speed, size = result.leading_order(result.springs[spring])
-    if not size > 0:
-        return found | {"order": "none", "order_amplitude": None, "order_speed": None}
-    name = order_name(order, float(result.frequency[result.order == order].max(initial=0.0)))
+    name, speed, size = result.leading(result.springs[spring])
+    if name == "none":
+        return found | {"order": name, "order_amplitude": None, "order_speed": None}
     return found | {"order": name, "order_amplitude": size, "order_speed": speed * speed_factor(unit)}
 
 

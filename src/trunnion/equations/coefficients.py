@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.equations.topology import Mesh, Topology, topology
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
 MOST_KNOWN = 8
@@ -313,14 +315,25 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         joints=joint_laws(assembly, table),
         shift=shift,
         loss=loss,
-        waves=tuple(_mesh_wave(assembly, table, mesh) for mesh in topo.meshes if mesh.stiffness),
+        waves=tuple(
+            MeshWave(mesh.compliance, mesh_harmonics(assembly.packed, mesh, "stiffness_variation", table))
+            for mesh in topo.meshes
+            if mesh.stiffness
+        ),
     )
 
 
-def _mesh_wave(assembly: Assembly, table: Array, mesh: Mesh) -> MeshWave:
-    names = [f"stiffness_variation {i}" for i in range(1, len(mesh.stiffness) + 1)]
-    share, phase = (
-        np.stack([table[:, assembly.packed.column(mesh.element, f"{name} {key}")] for name in names], axis=1)
-        for key in ("share", "phase")
+def mesh_harmonics(
+    packed: PackedLine, mesh: Mesh, what: Literal["transmission_error", "stiffness_variation"], table: Array
+) -> tuple[Harmonic, ...]:
+    """Harmonics of a mesh by turns of the input, at rows of packed numbers (column,) or (case, column): of its error
+    along the line of action [m], or of its stiffness over the mean [1]."""
+    orders, size = (mesh.error, "amplitude") if what == "transmission_error" else (mesh.stiffness, "share")
+
+    def number(i: int, key: str) -> Array:
+        return np.asarray(table[..., packed.column(mesh.element, f"{what} {i} {key}")])
+
+    return tuple(
+        Harmonic(order * mesh.teeth, 0.0, number(i, size), number(i, "phase"))
+        for i, order in enumerate(orders, start=1)
     )
-    return MeshWave(mesh.compliance, np.array([float(rate) for rate in mesh.stiffness_rates]), share, phase)

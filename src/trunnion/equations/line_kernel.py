@@ -48,7 +48,7 @@ PER_COMPLIANCE = 11
 GUARDS, PER_GUARD, PER_WAVE = 3, 4, 3
 IMPACT = 3 + GUARDS * PER_GUARD
 PER_STAGE = IMPACT + 2
-# Per harmonic torque; order 0 means in time.
+# Per harmonic torque A cos(order · angle + frequency · t + phase): its station and these numbers.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
 # Per slider of a clutch: its compliance, the stiffness of its spring, the deflection at which it slips, and the stride
@@ -223,9 +223,8 @@ def line(t, y_, p_, k, regime, out_):
         if i < 0:
             continue
         order = p[q + ORDER]
-        argument = p[q + ANGLE] + p[q + FREQUENCY] * t
-        if order != 0.0:
-            argument = p[q + ANGLE] + order * (p[HEAD + s * PER_STATION + MEAN] * theta + d[s])
+        angle = p[HEAD + s * PER_STATION + MEAN] * theta + d[s]
+        argument = p[q + ANGLE] + p[q + FREQUENCY] * t + order * angle
         push = p[q + AMPLITUDE] * math.cos(argument)
         torque[i] += r[s] * push
         by_angle[i] += r1[s] * push - r[s] * r[s] * order * p[q + AMPLITUDE] * math.sin(argument)

@@ -25,6 +25,7 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
 
 
 class Link(IntEnum):
@@ -232,10 +233,6 @@ class Topology:
         return 1 / common_rate(self.rates) if self.rates else Fraction(1, 2)
 
 
-LONGEST_PERIOD = 60
-"""Turns of the input beyond which a line counts as having no common period."""
-
-
 def topology(line: Driveline) -> Topology:
     """Sort the elements of ``line`` into stations, groups and compliances.
 
@@ -286,15 +283,6 @@ def _fixed(numbers: list[float]) -> Array:
     found = np.array(numbers)
     found.flags.writeable = False
     return found
-
-
-def common_rate(rates: Iterable[Fraction]) -> Fraction:
-    """The greatest common divisor of some rates."""
-    base = Fraction(0)
-    for rate in rates:
-        while rate:
-            base, rate = rate, base % rate
-    return base
 
 
 @dataclass

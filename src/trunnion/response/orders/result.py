@@ -11,13 +11,14 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.floquet.stability.where_unstable import where_unstable
+from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted
 from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.speeds import order_name, show_speed, speed_factor
 from trunnion.results.stretches import ranges_in_words, stretches_above
-from trunnion.results.units import angle_words, order_words
+from trunnion.results.units import angle_words
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.amplitudes import OrderSpectrum, Range
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
@@ -54,9 +55,9 @@ class OrderWave:
 class OrderResponse(Judged):
     """Linear steady response by order and speed.
 
-    speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input. An excitation fixed in time
-    has order 0 (its sidebands multiples of the joints' order) and its ``frequency`` (order,) [rad/s] beside it:
-    a column turns with order · speed + frequency. torque (speed, order, spring) [N m], twist (speed, order, spring)
+    speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input and ``frequency`` (order,)
+    [rad/s] beside it: a column turns with order · speed + frequency. An excitation fixed in time has order 0, its
+    sidebands multiples of the joints' order. torque (speed, order, spring) [N m], twist (speed, order, spring)
     [rad], rotation (speed, order, inertia) [rad] are one-sided complex amplitudes: Re[Y e^{i(order · Ωt +
     frequency · t)}], the phase that of a cosine at zero rotation of the input. Torque is positive with the twist;
     rotation is the deviation of every disk, where it is, from its uniform rotation, what a joint in front of it adds
@@ -143,14 +144,19 @@ class OrderResponse(Judged):
     def heat_parts(self, spring: int) -> Array:
         """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
         spectrum = self.spectrum
-        v = np.abs(self.order * self.speed[:, None] + self.frequency)
+        v = np.abs(self.angular_frequency)
         damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
         return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
 
     @property
     def frequency_factor(self) -> Array:
         """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
-        return frequency_factor(self.order * self.speed[:, None] + self.frequency)
+        return frequency_factor(self.angular_frequency)
+
+    @property
+    def angular_frequency(self) -> Array:
+        """Of every order listed (speed, order) [rad/s], of either sign."""
+        return turning(self.order, self.frequency, self.speed[:, None])
 
     @cached_property
     def rated_torque(self) -> Array:
@@ -226,22 +232,30 @@ class OrderResponse(Judged):
     def leading_order(self, spring: str) -> tuple[float, float, float]:
         """Order, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order (NaN without orders).
 
-        An excitation fixed in time has order 0.
+        An excitation fixed in time has order 0; ``leading`` names it.
         """
+        k, speed, amplitude = self._leading(spring)
+        return float("nan") if k is None else float(self.order[k]), speed, amplitude
+
+    def leading(self, spring: str) -> tuple[str, float, float]:
+        """The same with the name of the order, by turns and in time; "none" where none vibrates."""
+        k, speed, amplitude = self._leading(spring)
+        if k is None or not amplitude > 0:
+            return "none", speed, amplitude
+        return order_name(float(self.order[k]), float(self.frequency[k])), speed, amplitude
+
+    def _leading(self, spring: str) -> tuple[int | None, float, float]:
         size = np.abs(self.torque[:, :, self.springs.index(spring)])
         if not np.any(np.isfinite(size)):
-            return float("nan"), float("nan"), float("nan")
+            return None, float("nan"), float("nan")
         at, k = np.unravel_index(int(np.nanargmax(size)), size.shape)
-        return float(self.order[k]), float(self.speed[at]), float(size[at, k])
+        return int(k), float(self.speed[at]), float(size[at, k])
 
     def wave(self, speed: float | None = None) -> OrderWave:
         """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
         spectrum = self.spectrum
         at = 0 if speed is None else int(np.abs(self.speed - speed).argmin())
-        turns = spectrum.common_turns
-        length = 2 * np.pi * float(turns or 10) / self.speed[at]
-        if len(spectrum.order) == 1 and spectrum.frequency[0]:
-            length = 2 * np.pi / spectrum.frequency[0]
+        length = spectrum.period(at) or 2 * np.pi * 10 / self.speed[at]
         cycles = np.abs(spectrum.angular_frequency[at]).max(initial=self.speed[at]) * length / (2 * np.pi)
         time = np.linspace(0.0, length, int(np.ceil(WAVE_POINTS * cycles)) + 1)
         places = spectrum.channels
@@ -304,8 +318,8 @@ class OrderResponse(Judged):
         unit = unit or self.unit
         rows: list[dict[str, object]] = []
         for s, spring in enumerate(self.springs):
-            order, speed, size = self.leading_order(spring)
-            factor, vibrates = speed_factor(unit), bool(size > 0)
+            name, speed, size = self.leading(spring)
+            factor, vibrates = speed_factor(unit), name != "none"
             rated = (
                 self._largest("rated torque", self.rated_torque[:, s], factor, unit, "  ") if any(self.rated) else {}
             )
@@ -315,9 +329,7 @@ class OrderResponse(Judged):
                     **self._largest("peak torque", self.peak_torque[:, s], factor, unit, ""),
                     **self._largest("vibratory torque", self.vibratory_torque[:, s], factor, unit, " "),
                     **rated,
-                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0))
-                    if vibrates
-                    else "none",
+                    "largest order": name,
                     "of it [N m]": size if vibrates else None,
                     f"at [{unit}]   ": speed * factor if vibrates else None,
                 }
@@ -358,12 +370,8 @@ class OrderResponse(Judged):
         return f"{value:.4g} N m at {show_speed(speed, unit)}"
 
     def _led_by(self, spring: str, unit: str) -> str:
-        order, at, size = self.leading_order(spring)
-        if not size > 0:
-            return ""
-        k = int(np.flatnonzero(self.order == order)[0])
-        name = order_name(order, self.frequency[k])
-        return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
+        name, at, size = self.leading(spring)
+        return "" if name == "none" else f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
 
 
 def frequency_factor(frequency: Array) -> Array:
@@ -371,23 +379,25 @@ def frequency_factor(frequency: Array) -> Array:
     return np.sqrt(np.maximum(np.abs(frequency) / (2 * np.pi), FREE_FREQUENCY) / FREE_FREQUENCY)
 
 
-def order_name(order: float, frequency: float) -> str:
-    """``order 2``, ``77.7 Hz``, or the sideband of a fixed frequency: ``77.7 Hz -2 per turn``."""
-    if not frequency:
-        return order_words(order)
-    return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
-
-
 def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
     lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
     for speed in result.speed[lost][:3]:
         k = np.flatnonzero(~np.all(np.isfinite(result.torque[result.speed == speed][0]), axis=1))
-        which = order_words(result.order[k[0]]) if len(k) else "an excitation"
+        which = order_name(result.order[k[0]], result.frequency[k[0]]) if len(k) else "an excitation"
         yield Finding(
             Gravity.DANGER,
             f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
         )
-    lossy = bool(result.spectrum.loss.any())
+    spectrum = result.spectrum
+    for i, k in np.argwhere((spectrum.angular_frequency == 0) & ~lost[:, None])[:3]:
+        name = order_name(spectrum.order_numbers[k], spectrum.frequency[k])
+        away = np.isnan(spectrum.amplitude[i, k, spectrum.channels.deviation]).any()
+        drives = ", which drives the line away from that speed" if away else ""
+        yield Finding(
+            Gravity.CAUTION if away else Gravity.NOTE,
+            f"{name} stands still at {show_speed(result.speed[i], unit)}: it is a constant torque there{drives}.",
+        )
+    lossy = bool(spectrum.loss.any())
     yield from where_unstable(result.speed, result.verdict, unit, lossy=lossy)
     if result.sum_is_bound:
         yield Finding(

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
-from trunnion.equations.topology import LONGEST_PERIOD, common_rate
+from trunnion.laws.harmonic import families, forward, turning
 from trunnion.numerics.cycle_extremes import cycle_extremes
 from trunnion.steady.orders.channels import Channels
 
@@ -45,14 +46,13 @@ class OrderSum:
         self.flat = np.zeros((cases, channels.points), dtype=complex)
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
-        """Take in one part; order 0 is the mean, negative orders are folded onto positive ones."""
-        if frequency == 0 and order == 0:
-            self.mean = self.mean + amplitude.real
-        elif frequency == 0 and order < 0:
-            self.add(-order, 0.0, amplitude.conj())
+        """Take in one part; without order and frequency it is the mean, and opposite harmonics are one."""
+        if forward(order, frequency) < 0:
+            order, frequency, amplitude = -order, -frequency, amplitude.conj()
+        if order or frequency:
+            self.amplitude[order, frequency] = self.amplitude.get((order, frequency), self.zero) + amplitude
         else:
-            key = (order, frequency)
-            self.amplitude[key] = self.amplitude.get(key, self.zero) + amplitude
+            self.mean = self.mean + amplitude.real
 
 
 @dataclass(frozen=True)
@@ -97,22 +97,34 @@ class OrderSpectrum:
 
     @property
     def angular_frequency(self) -> Array:
-        """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
-        return self.speed[:, None] * self.order_numbers + self.frequency
+        """KΩ + ν (speed, order) [rad/s], of either sign."""
+        return turning(self.order_numbers, self.frequency, self.speed[:, None])
+
+    @cached_property
+    def families(self) -> list[tuple[list[int], list[int]]]:
+        """Columns that are whole multiples of one harmonic at every speed, and which."""
+        return families(self.keys)
 
     @property
     def common_turns(self) -> Fraction | None:
         """Turns of the input after which everything repeats; None where it does not."""
-        base = None if np.any(self.frequency != 0) else _common_base(self.order)
-        return 1 / base if base else None
+        if not (self.order and self.adds_exactly) or self.frequency.any():
+            return None
+        columns, multiples = self.families[0]
+        return multiples[0] / self.order[columns[0]]
+
+    def period(self, at: int) -> float | None:
+        """Time [s] after which everything repeats at speed number ``at``; None where it does not, or stands still."""
+        if not (self.order and self.adds_exactly):
+            return None
+        columns, multiples = self.families[0]
+        swings = np.abs(self.angular_frequency[at, columns[0]])
+        return 2 * np.pi * multiples[0] / float(swings) if swings else None
 
     @property
     def adds_exactly(self) -> bool:
         """Whether extremes of the sum are those of the motion, not the sum of amplitudes as a bound."""
-        in_time = np.count_nonzero(self.frequency)
-        if in_time:
-            return in_time == len(self.order) == 1
-        return not self.order or self.common_turns is not None
+        return len(self.families) <= 1
 
     def extremes_at(self, channels: slice) -> Range:
         """Extremes (speed, channel) of some channels, mean included."""
@@ -126,27 +138,31 @@ class OrderSpectrum:
     def extremes(self, amplitude: Complex, mean: Array) -> Range:
         """Extremes (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
 
-        With phases over the common period of the orders; what has no common period is added by its amplitudes, a bound.
+        With phases over the period that orders have in common; those that have none are added up, a bound. What stands
+        still at a speed is a constant there.
         """
-        turning = self.frequency == 0
-        orders = tuple(o for o, t in zip(self.order, turning, strict=True) if t)
-        base = _common_base(orders)
-        loose = ~turning if base else np.ones(len(turning), dtype=bool)
-        beside = np.abs(amplitude[:, loose]).sum(axis=1)
-        low = high = np.zeros(mean.shape)
-        if base and orders:
-            index = np.array([int(order / base) for order in orders], dtype=np.int64)
-            rows = np.moveaxis(amplitude[:, turning], 1, 2).reshape(-1, len(orders))
-            low, high = (part.reshape(mean.shape) for part in cycle_extremes(index, rows))
-        return Range(mean + low - beside, mean + high + beside)
+        low, high, turns = mean, mean, self.angular_frequency
+        for columns, multiples in self.families:
+            part = amplitude[:, columns]
+            if len(columns) == 1 and self.frequency[columns[0]]:
+                swing = np.abs(part[:, 0])
+                down, up = -swing, swing
+            else:
+                rows = np.moveaxis(part, 1, 2).reshape(-1, len(columns))
+                index = np.array(multiples, dtype=np.int64)
+                down, up = (found.reshape(mean.shape) for found in cycle_extremes(index, rows))
+            still = turns[:, columns[0]] == 0
+            down[still] = up[still] = part[still].sum(axis=1).real
+            low, high = low + down, high + up
+        return Range(low, high)
 
     def wave(self, at: int, amplitude: Complex, mean: Array, time: Array) -> Array:
         """Values (time, channel) at ``time`` [s] of amplitudes (order, channel) and a mean (channel,) at speed ``at``.
 
         Time counts from zero rotation of the input.
         """
-        turning = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
-        return np.asarray(mean + (turning @ amplitude).real)
+        turned = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
+        return np.asarray(mean + (turned @ amplitude).real)
 
 
 def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
@@ -185,9 +201,3 @@ def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
         loss=together("loss"),
     )
     return found, order
-
-
-def _common_base(orders: tuple[Fraction, ...]) -> Fraction | None:
-    """Largest order that all ``orders`` are multiples of; None without orders or with too long a common period."""
-    base = common_rate(orders)
-    return base if base and 1 / base <= LONGEST_PERIOD else None

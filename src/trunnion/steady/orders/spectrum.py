@@ -1,7 +1,7 @@
 """The steady response of a line to everything that excites it, as amplitudes by order.
 
-Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}], K ``order`` and ω ``frequency``; orders
-−K of the sidebands are folded onto K by their conjugates, c_K + conj(c_−K).
+Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ν)t}], K ``order`` and ν ``frequency``; what
+turns the other way, (−K, −ν), is folded onto it by its conjugate.
 """
 
 from __future__ import annotations
@@ -18,15 +18,12 @@ from numpy.typing import NDArray
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import (
+from trunnion.equations.harmonics import (
     BaseOfExcitation,
-    Exciter,
+    MeshError,
     base_of_excitation,
-    exciters,
-    size,
-    tabled_by_speed,
-    torque_on_unknowns,
-    twist_on_unknowns,
+    disk_torques,
+    line_harmonics,
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
@@ -78,10 +75,7 @@ def order_spectrum(
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
-    shaken = exciters(assembly)
-    case = _Case(
-        assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough, motions
-    )
+    case = _Case(assembly, statically_twisted, _numbers(assembly, speed, table), linearised, rough, motions)
     parts: list[tuple[OrderSum, Array]] = []
     for done in range(0, len(speed), case.batch):
         keep_time()
@@ -115,7 +109,7 @@ def order_spectrum(
     )
 
 
-def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, table: Array | None) -> Array:
+def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
     """The packed numbers (speed, column) to solve, which have a steady base; checked where they are given."""
     numbers = assembly.table(len(speed)) if table is None else table.copy()
     numbers[:, 0] = speed
@@ -127,9 +121,10 @@ def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, tabl
         raise InputError(
             "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
         )
-    for exciter in shaken:
-        if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
-            label = assembly.packed.labels[exciter.frequency]
+    for one in disk_torques(assembly):
+        column = one.columns[2]
+        if column >= 0 and np.ptp(numbers[:, column]) > 0:
+            label = assembly.packed.labels[column]
             raise InputError(
                 "is a frequency of excitation, which is no parameter of the orders", key=label, remedy=remedy
             )
@@ -163,7 +158,6 @@ class _Case:
     def __init__(
         self,
         assembly: Assembly,
-        shaken: tuple[Exciter, ...],
         statically_twisted: bool,
         numbers: Array,
         linearised: bool,
@@ -171,17 +165,17 @@ class _Case:
         motions: MotionsBySpeed | None,
     ) -> None:
         self.linearised, self.rough = linearised, rough
-        self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
+        self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
         self.twisted = statically_twisted
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
-        self.row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
+        row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
+        self.acting = [one for one in line_harmonics(assembly, row) if one.acts]
         self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
-        self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
         self.own: OwnOrders | None = None
@@ -194,7 +188,10 @@ class _Case:
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.few: Array | None = None
         self.written: dict[int, _Written] = {}
-        smooth = self.alike and not self.loss_in_time and not any(tabled_by_speed(assembly.line, e) for e in shaken)
+        torques = disk_torques(assembly)
+        # A frequency that the speed turns round has a sign, which a loss factor's torque follows.
+        turns_round = bool(one.loss.any()) and any(torque.frequency for torque in torques)
+        smooth = self.alike and not turns_round and not any(torque.law.speeds for torque in torques)
         if self.varies and smooth and self.own is None:
             self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
@@ -202,7 +199,7 @@ class _Case:
         elif self.varies:
             self.batch = self._batch()
         else:
-            self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
+            self.batch = max(1, MOST_NUMBERS // max(1, len(self.acting) * self.topo.size))
         if linearised:
             self.batch = len(numbers)
 
@@ -213,7 +210,7 @@ class _Case:
         """Groups, the offsets of their harmonics, and samples over the period that resolve them."""
         layers = offsets(self.rates, reach)
         width = max(layers)
-        groups = [OWN, *groups_of(self.shaken, self.row, 1 / self.turns, width)]
+        groups = [OWN, *groups_of(self.acting, 1 / self.turns, width)]
         widest = max(int(np.ptp(g.harmonics(layers, reach)[0])) for g in groups) + 1
         return groups, layers, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
 
@@ -242,7 +239,7 @@ class _Case:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
         matrices, base = line_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
         total = OrderSum(len(table), self.places)
-        groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
+        groups = groups_of(self.acting, None, 0)
         if groups:
             nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
             sources = [
@@ -254,6 +251,8 @@ class _Case:
             y = solve(topo, matrices, aligned_matrices(topo, co).loss, nu, right)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
+                if topo.free:  # driven away by a constant torque, without bound
+                    seen[at == 0, :, self.places.deviation] = seen[at == 0, :, self.places.point] = np.nan
                 self._gather(total, group, once, seen, error, at[:, None], co, matrices.wave)
         self._add_static(total, co)
         return total
@@ -284,7 +283,9 @@ class _Case:
         # Complex: the matrices of the nodes, those of a batch of cases and their factors; and what is sampled.
         matrices = nodes + 2 * min(self.batch, len(self.numbers))
         needed = 16.0 * (matrices * (harmonics * n) ** 2 + 4 * nodes * times * n**2)
-        element, orders = Counter(e.element for e in self.shaken).most_common(1)[0] if self.shaken else ("driveline", 0)
+        element, orders = (
+            Counter(one.name for one in self.acting).most_common(1)[0] if self.acting else ("driveline", 0)
+        )
         require_memory(
             needed,
             element=element,
@@ -326,7 +327,7 @@ class _Case:
         kept = np.arange(-own.count, own.count + 1)
         for harmonic, part in zip(kept.tolist(), self._harmonics(own.seen, kept).swapaxes(0, 1), strict=True):
             total.add(harmonic / self.turns, 0.0, part)
-        for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
+        for group in groups_of(self.acting, 1 / self.turns, own.count):
             carrier = group.carrier_at(speed)
             centres = [m for _, m in group.members]
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
@@ -362,16 +363,15 @@ class _Case:
         (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
         right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
         error = np.zeros((len(base.relative), len(h), len(self.topo.compliances)), dtype=complex)
-        for exciter, m in group.members:
-            at, e = int(np.searchsorted(h, m)), exciter.compliance
-            sizes = size(self.assembly, exciter, table)
-            if e < 0:
-                force = torque_on_unknowns(self.topo, exciter, sizes, base)
-            else:
-                stiffness = co.stiffness[:, e, None] * wave[..., e]
-                torque = (stiffness + 1j * nu[:, at, None] * co.damping[:, e, None]) * sizes[:, None]
-                force = twist_on_unknowns(self.topo, exciter, torque, base.relative)
-                error[:, at, e] += sizes
+        for one, m in group.members:
+            at, size = int(np.searchsorted(h, m)), one.size(self.assembly, table)
+
+            def spring(e: int, turns: Array = nu[:, at, None]) -> Complex:
+                return np.asarray(co.stiffness[:, e, None] * wave[..., e] + 1j * turns * co.damping[:, e, None])
+
+            force = one.forcing(self.topo, size, base, spring)
+            if isinstance(one, MeshError):
+                error[:, at, one.mesh.compliance] += size
             near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
             right[:, near] += self._harmonics(force / mass, h[near] - m)
         return right, error
