@@ -1,6 +1,6 @@
 """Linear steady response of a line at every speed to every excitation order.
 
-Excited by the harmonic torques of its disks (by order of their rotation, or fixed in time), by the transmission errors
+Excited by the harmonic torques of its disks (by order of their rotation, in time, or both), by the transmission errors
 of its meshes, and by its bent joints. A straight line is one complex system per order and speed; in a line with bent
 joints an order k couples to k ± 2mR, R the speed ratio of the joint, and is solved with its side orders.
 
