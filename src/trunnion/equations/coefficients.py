@@ -15,8 +15,6 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Ratio
-from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
@@ -244,25 +242,6 @@ def _station_inertia(assembly: Assembly, table: Array) -> Array:
     return inertia
 
 
-def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
-    """Sum of the planes of constant-velocity joints between a joint and the bend before them.
-
-    They pass rotation unchanged but turn the plane that the joint's own is measured from.
-    """
-    line, total = assembly.line, np.zeros(len(table))
-    ratio, i = 1.0, line.parents[joint]
-    while i is not None:
-        element = line.elements[i]
-        if isinstance(element, Joint) and element.orders:
-            break
-        if isinstance(element, Ratio | GearPair):
-            ratio *= element.speed_ratio
-        elif isinstance(element, Joint):
-            total += table[:, assembly.packed.column(i, "plane")] / ratio
-        i = line.parents[i]
-    return total
-
-
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
@@ -299,8 +278,10 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             forks = column(i, "fork_offset")
             shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
     for s in topo.joints:
-        i = topo.stations[s].element
-        shift[:, s] = -table[:, column(i, "plane")] - _planes_in_front(assembly, table, i)
+        station = topo.stations[s]
+        shift[:, s] = -table[:, column(station.element, "plane")]
+        for i, ratio in station.planes:
+            shift[:, s] -= table[:, column(i, "plane")] / ratio
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,
