@@ -7,9 +7,10 @@ evaluates a whole row of points at once.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -92,6 +93,16 @@ class Assembly:
     @cached_property
     def _known(self) -> dict[tuple[bytes, bool, bool, bool], LineCoefficients]:
         """Coefficients of single rows: parts of one analysis ask for the same."""
+        return {}
+
+    def derived(self, make: Callable[[Assembly], Any]) -> Any:
+        """What ``make`` makes of the line as described, made once."""
+        if make not in self._derived:
+            self._derived[make] = make(self)
+        return self._derived[make]
+
+    @cached_property
+    def _derived(self) -> dict[Callable[[Assembly], Any], Any]:
         return {}
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:

@@ -169,13 +169,20 @@ class MeshError(LineHarmonic):
 def line_harmonics(assembly: Assembly, row: Array | None = None) -> tuple[LineHarmonic, ...]:
     """Every harmonic torque and transmission error of a line, those of no amplitude included, at a row of packed
     numbers, by default as described."""
-    row = assembly.packed.values if row is None else row
-    errors = (one for mesh in assembly.topology.meshes for one in mesh_errors(assembly, mesh, row))
+    values = assembly.packed.values if row is None else row
+    errors = (one for mesh in assembly.topology.meshes for one in mesh_errors(assembly, mesh, values))
     return (*disk_torques(assembly, row), *errors)
 
 
 def disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTorque, ...]:
-    """The harmonic torques of all disks alone."""
+    """The harmonic torques of all disks alone; those as described are made once."""
+    if row is None or np.array_equal(row[1:], assembly.packed.values[1:]):
+        found: tuple[DiskTorque, ...] = assembly.derived(_disk_torques)
+        return found
+    return _disk_torques(assembly, row)
+
+
+def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTorque, ...]:
     topo, packed = assembly.topology, assembly.packed
     row = packed.values if row is None else row
     found = []

@@ -280,7 +280,8 @@ def staged_line(line: Driveline | Assembly, speed: float | str | None = None) ->
     assembly = assemble(line)
     refuse_second_speed(assembly)
     _refuse_inexact(assembly)
-    return _Builder(assembly, Turning(assembly.line, speed)).build()
+    own = assembly.line.operation.speed if assembly.line.operation else None
+    return _Builder(assembly, own if speed is None else one_speed(speed, "speed")).build()
 
 
 def refuse_lost_speed(line: StagedLine) -> None:
@@ -336,22 +337,6 @@ def _refuse_inexact(assembly: Assembly) -> None:
             )
 
 
-class Turning:
-    """The mean input speed, asked for only where something depends on it."""
-
-    def __init__(self, line: Driveline, speed: float | str | None) -> None:
-        own = line.operation.speed if line.operation else None
-        self.given = own if speed is None else one_speed(speed, "speed")
-
-    def speed(self, needed_by: object) -> float:
-        if self.given is None or not (np.isfinite(self.given) and self.given > 0):
-            raise InputError(
-                f"is needed by the {type(needed_by).__name__}, which turns with the gears", key="speed",
-                value=self.given, remedy="give speed=tn.rpm(1500), say",
-            )  # fmt: skip
-        return self.given
-
-
 def common_frequency(frequencies: Sequence[float]) -> float:
     """The frequency [rad/s] that all, rising, are multiples of.
 
@@ -371,8 +356,8 @@ def common_frequency(frequencies: Sequence[float]) -> float:
 class _Builder:
     """The parts of a ``StagedLine``, each by its own rule."""
 
-    def __init__(self, assembly: Assembly, turning: Turning) -> None:
-        self.assembly, self.topo, self.turning = assembly, assembly.topology, turning
+    def __init__(self, assembly: Assembly, speed: float | None) -> None:
+        self.assembly, self.topo, self.speed = assembly, assembly.topology, speed
         self.row = assembly.table(1)[0]
         self.coefficients = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
         self.laws = staged_springs(assembly, self.row)
@@ -405,7 +390,12 @@ class _Builder:
         amplitudes = np.reshape([self._amplitudes(one) for one in harmonics], (len(harmonics), 2, len(self.twisting)))
         force, error = amplitudes.astype(complex).swapaxes(0, 1)
         needed = any(one.order for one in harmonics) or bool(by_speed.any() and not topo.free)
-        speed = self.turning.speed(line) if needed else self.turning.given
+        speed = self.speed
+        if needed and not (speed and 0 < speed < np.inf):
+            raise InputError(
+                "is needed by what turns with the line", key="speed", value=speed,
+                remedy="give speed=tn.rpm(1500), say",
+            )  # fmt: skip
         parts = self._parts()
         springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)

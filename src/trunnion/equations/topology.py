@@ -87,11 +87,6 @@ class Mesh:
         """Cycles per turn of the input of the harmonics of the stiffness."""
         return [order * self.teeth for order in self.stiffness]
 
-    @property
-    def rates(self) -> list[Fraction]:
-        """Cycles per turn of the input of all harmonics."""
-        return [order * self.teeth for order in (*self.stiffness, *self.error)]
-
 
 @dataclass(frozen=True)
 class Topology:

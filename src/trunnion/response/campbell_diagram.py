@@ -260,8 +260,9 @@ def campbell_diagram(
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
     met, jumps = [], []
     for one, m in product(lines, range(len(mode))):
-        # Where it turns forward, and where it turns the other way below its standstill.
-        for way in (one, replace(one, order=-one.order, frequency=-one.frequency)):
+        # Where it turns forward, and where it turns the other way beyond its standstill.
+        ways = [one, replace(one, order=-one.order, frequency=-one.frequency)]
+        for way in ways if 0 < one.standstill < speed[-1] else ways[:1]:
             for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], way):
                 if zeta is None:
                     jumps.append((at, int(mode[m]), one))

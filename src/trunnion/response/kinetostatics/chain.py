@@ -21,7 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
-from trunnion.driveline.parameters import pack
+from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
@@ -70,8 +70,8 @@ class Step:
 
 @dataclass(frozen=True)
 class Member:
-    """A rigid shaft between joints: the joint step at its beginning (−1 at the start of a train), its mean speed over the
-    input's, its shafts.
+    """A rigid shaft between joints: the joint step at its beginning (−1 at the start of a train), its mean speed over
+    the input's, its shafts.
 
     ``length`` [m] from the joint at its beginning to the farthest point described, NaN where it is not known.
     """
@@ -188,9 +188,14 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
 
 class _Draft:
     def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
-        self.line, self.lengths, self.packed = line, lengths, pack(line)
+        self.line, self.lengths = line, lengths
         self.steps: list[Step] = []
         self.members: list[Member] = []
+
+    @cached_property
+    def packed(self) -> PackedLine:
+        """The line's numbers, for laws that are read from them."""
+        return pack(self.line)
 
     def add(self, station: Station, speed: Fraction, parent: int) -> int:
         """The step to a station behind the step ``parent``."""

@@ -23,7 +23,7 @@ from trunnion.response.kinetostatics.chain import Chain
 
 @dataclass(frozen=True)
 class Drive:
-    """What is done to the line: input, torque [N m] by the element at an end, pin friction, and whether inertias count."""
+    """What is done to the line: input, torque [N m] by the element at an end, pin friction, whether inertias count."""
 
     input_angle: Array
     speed: float

@@ -189,7 +189,7 @@ def _power_residual(
     taken = [out[0].copy() for out in passed.out]
     for i, step in enumerate(train.steps[1:], start=1):
         taken[step.parent] -= passed.into[i][0]
-    powers = [torque * motion.angle[i][1] for i, torque in enumerate(taken)]
+    powers = [torque * motion.angle[i][1] for i, torque in enumerate(taken) if torque.any()]
     powers += [-passed.out[i][0] * jet[1] for i, jet in twist.items()]
     supplied = passed.out[0][0] * drive.speed - heat
     scale = float(np.max(np.abs([supplied, *powers])))

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -35,22 +36,37 @@ class Range(NamedTuple):
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
 
+def _by_frequency(key: Key) -> tuple[float, Fraction]:
+    return key[1], key[0]
+
+
 class OrderSum:
     """Amplitudes by (order, frequency), summed up as they come."""
 
     def __init__(self, cases: int, channels: Channels) -> None:
+        self.channels = channels
         self.amplitude: dict[Key, Complex] = {}
         self.base: dict[Key, Complex] = {}
         self.mean = np.zeros((cases, channels.count))
-        self.zero = np.zeros((cases, channels.count), dtype=complex)
-        self.flat = np.zeros((cases, channels.points), dtype=complex)
+
+    def spectrum(self, speed: Array, cut_off: Array, damping: Array, loss: Array) -> OrderSpectrum:
+        """All of it, at ``speed`` (case,)."""
+        keys = sorted({*self.amplitude, *self.base}, key=_by_frequency)
+        amplitude = np.zeros((len(speed), len(keys), self.channels.count), dtype=complex)
+        base = np.zeros((len(speed), len(keys), self.channels.points), dtype=complex)
+        for j, key in enumerate(keys):
+            amplitude[:, j], base[:, j] = self.amplitude.get(key, 0.0), self.base.get(key, 0.0)
+        return OrderSpectrum(
+            speed, tuple(order for order, _ in keys), np.array([frequency for _, frequency in keys]), amplitude, base,
+            self.mean, cut_off, self.channels, damping, loss,
+        )  # fmt: skip
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
         """Take in one part; without order and frequency it is the mean, and opposite harmonics are one."""
         if forward(order, frequency) < 0:
             order, frequency, amplitude = -order, -frequency, amplitude.conj()
         if order or frequency:
-            self.amplitude[order, frequency] = self.amplitude.get((order, frequency), self.zero) + amplitude
+            self.amplitude[order, frequency] = self.amplitude.get((order, frequency), 0.0) + amplitude
         else:
             self.mean = self.mean + amplitude.real
 
@@ -76,13 +92,12 @@ class OrderSpectrum:
     damping: Array
     loss: Array
 
-    def at(self, i: int) -> OrderSpectrum:
-        """At speed number ``i`` alone."""
-        one = slice(i, i + 1)
-        damping, loss = (part[one] if len(part) > 1 else part for part in (self.damping, self.loss))
+    def take(self, rows: Places | slice) -> OrderSpectrum:
+        """At some of its speeds."""
+        damping, loss = (part[rows] if len(part) > 1 else part for part in (self.damping, self.loss))
         return replace(
-            self, speed=self.speed[one], amplitude=self.amplitude[one], base=self.base[one], mean=self.mean[one],
-            cut_off=self.cut_off[one], damping=damping, loss=loss,
+            self, speed=self.speed[rows], amplitude=self.amplitude[rows], base=self.base[rows], mean=self.mean[rows],
+            cut_off=self.cut_off[rows], damping=damping, loss=loss,
         )  # fmt: skip
 
     @property
@@ -165,39 +180,41 @@ class OrderSpectrum:
         return np.asarray(mean + (turned @ amplitude).real)
 
 
-def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
-    """Spectra of one line as one, by rising speed, and where its speeds stood, one spectrum after the other."""
-    first = parts[0]
-    keys = sorted({key for part in parts for key in part.keys}, key=lambda key: (key[1], key[0]))
+def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
+    """Spectra of one line as one, the speeds of one after those of the other."""
+    first, speeds = parts[0], [len(part.speed) for part in parts]
+    if len(parts) == 1:
+        return first
+    keys = sorted({key for part in parts for key in part.keys}, key=_by_frequency)
     place = {key: j for j, key in enumerate(keys)}
-    speed = np.concatenate([part.speed for part in parts])
-    amplitude = np.zeros((len(speed), len(keys), first.channels.count), dtype=complex)
-    base = np.zeros((len(speed), len(keys), first.channels.points), dtype=complex)
-    begin = 0
-    for part in parts:
-        rows, columns = slice(begin, begin + len(part.speed)), [place[key] for key in part.keys]
+    amplitude = np.zeros((sum(speeds), len(keys), first.channels.count), dtype=complex)
+    base = np.zeros((sum(speeds), len(keys), first.channels.points), dtype=complex)
+    for end, part in zip(accumulate(speeds), parts, strict=True):
+        rows, columns = slice(end - len(part.speed), end), [place[key] for key in part.keys]
         amplitude[rows, columns], base[rows, columns] = part.amplitude, part.base
-        begin += len(part.speed)
 
-    def together(name: str) -> Array:
-        """Numbers of springs: one row for all speeds, or a row each."""
-        every = [getattr(part, name) for part in parts]
+    def springs(every: list[Array]) -> Array:
+        """One row for all speeds, or a row each."""
         if all(np.array_equal(one, every[0][:1]) for one in every):
-            return np.asarray(every[0][:1])
-        rows = [np.broadcast_to(one, (len(part.speed), one.shape[1])) for one, part in zip(every, parts, strict=True)]
-        return np.concatenate(rows)[order]
+            return every[0][:1]
+        return np.concatenate([np.broadcast_to(one, (n, one.shape[1])) for one, n in zip(every, speeds, strict=True)])
 
-    order = np.argsort(speed, kind="stable")
-    found = OrderSpectrum(
-        speed=speed[order],
-        order=tuple(key[0] for key in keys),
-        frequency=np.array([key[1] for key in keys]),
-        amplitude=amplitude[order],
-        base=base[order],
-        mean=np.concatenate([part.mean for part in parts])[order],
-        cut_off=np.concatenate([part.cut_off for part in parts])[order],
+    return OrderSpectrum(
+        speed=np.concatenate([part.speed for part in parts]),
+        order=tuple(order for order, _ in keys),
+        frequency=np.array([frequency for _, frequency in keys]),
+        amplitude=amplitude,
+        base=base,
+        mean=np.concatenate([part.mean for part in parts]),
+        cut_off=np.concatenate([part.cut_off for part in parts]),
         channels=first.channels,
-        damping=together("damping"),
-        loss=together("loss"),
+        damping=springs([part.damping for part in parts]),
+        loss=springs([part.loss for part in parts]),
     )
-    return found, order
+
+
+def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
+    """The same by rising speed, and where its speeds stood before."""
+    whole = stacked(parts)
+    order = np.argsort(whole.speed, kind="stable")
+    return whole.take(order), order

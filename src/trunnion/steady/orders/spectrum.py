@@ -32,7 +32,7 @@ from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
-from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum
+from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.steady.orders.groups import OWN, Group, groups_of, offsets
 from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
@@ -76,37 +76,15 @@ def order_spectrum(
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     case = _Case(assembly, statically_twisted, _numbers(assembly, speed, table), linearised, rough, motions)
-    parts: list[tuple[OrderSum, Array]] = []
+    parts: list[OrderSpectrum] = []
     for done in range(0, len(speed), case.batch):
         keep_time()
-        parts.append(case.solved(case.numbers[done : done + case.batch]))
+        parts.append(case.solved(slice(done, done + case.batch)))
         if not done:
-            _require_room(assembly, parts[0][0], len(speed))
+            _require_room(parts[0], len(speed))
         if progress:
             progress(min(done + case.batch, len(speed)) / len(speed))
-    channels = channels_of(assembly.topology)
-    keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
-    amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
-    base = np.zeros((len(speed), len(keys), channels.points), dtype=complex)
-    start = 0
-    for total, cut_off in parts:
-        rows = slice(start, start + len(cut_off))
-        for j, key in enumerate(keys):
-            amplitude[rows, j] = total.amplitude.get(key, total.zero)
-            base[rows, j] = total.base.get(key, total.flat)
-        start += len(cut_off)
-    return OrderSpectrum(
-        speed=speed,
-        order=tuple(order for order, _ in keys),
-        frequency=np.array([frequency for _, frequency in keys]),
-        amplitude=amplitude,
-        base=base,
-        mean=np.concatenate([total.mean for total, _ in parts]),
-        cut_off=np.concatenate([cut_off for _, cut_off in parts]),
-        channels=channels,
-        damping=case.springs.damping,
-        loss=case.springs.loss,
-    )
+    return stacked(parts)
 
 
 def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
@@ -131,10 +109,9 @@ def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
     return numbers
 
 
-def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
+def _require_room(first: OrderSpectrum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
-    places = channels_of(assembly.topology)
-    numbers = len(set(first.amplitude) | set(first.base)) * (places.count + places.points)
+    numbers = len(first.order) * (first.channels.count + first.channels.points)
     # Complex, and held twice while the parts are put together.
     require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
 
@@ -223,8 +200,14 @@ class _Case:
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
         return max(1, MOST_NUMBERS // max(most**2, written))
 
-    def solved(self, table: Array) -> tuple[OrderSum, Array]:
-        """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
+    def solved(self, rows: slice) -> OrderSpectrum:
+        """The sum of all responses at some of the cases."""
+        total, cut_off = self._solved(self.numbers[rows])
+        springs = (part[rows] if len(part) > 1 else part for part in (self.springs.damping, self.springs.loss))
+        return total.spectrum(self.numbers[rows, 0], cut_off, *springs)
+
+    def _solved(self, table: Array) -> tuple[OrderSum, Array]:
+        """That sum, and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
             return self._about_own_motions(self.own.at(table[:, 0]), table)
         if not self.varies:
