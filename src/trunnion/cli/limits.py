@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated
 
 import typer
@@ -51,12 +50,9 @@ def tongues(
     up, rows = read_box_range(y, line, unit, "--y")
     check_places(to)
     with output.progress("tongues") as advance:
-        found = tn.tongues(line, across, up, speed=read_speed(speed, unit), rows=rows, progress=advance)
+        found = tn.tongues(line, across, up, speed=read_speed(speed, unit), rows=rows, progress=advance).in_unit(unit)
     boundaries = found.data[["of_tongue", "boundary_x", "boundary_y"]]
-    deliver(
-        "tongues", file, found, to, as_json,
-        draw=lambda: found.plot(unit=unit), table=boundaries, text=lambda: found.said_in(unit),
-    )  # fmt: skip
+    deliver("tongues", file, found, to, as_json, draw=lambda: found.plot(unit=unit), table=boundaries)
 
 
 def minimum_damping(
@@ -84,7 +80,7 @@ def minimum_damping(
     check_places(to)
     with output.progress("minimum damping", within) as advance:
         found = tn.minimum_damping(line, span, damping=damping, maximum=maximum, margin=margin, progress=advance)
-    shown = replace(found, speed_unit=unit)
+    shown = found.in_unit(unit)
     deliver("minimum-damping", file, shown, to, as_json, draw=lambda: shown.plot(unit=unit))
 
 
@@ -111,7 +107,7 @@ def stable_windows(
     check_places(to)
     with output.progress("stable windows", within) as advance:
         found = tn.stable_windows(line, *ends, span, margin=margin, rows=rows, progress=advance)
-    shown = replace(found, speed_unit=unit)
+    shown = found.in_unit(unit)
     deliver("stable-windows", file, shown, to, as_json, draw=lambda: shown.plot(unit=unit))
 
 
@@ -154,7 +150,7 @@ def tolerance_study(
     with output.progress("tolerance study", within) as advance:
         counted = True if checks < 0 else checks
         found = tn.tolerance_study(line, given, at, checks=counted, samples=samples, seed=seed, progress=advance)
-    deliver("tolerance-study", file, replace(found, unit=unit), to, as_json)
+    deliver("tolerance-study", file, found.in_unit(unit), to, as_json)
 
 
 def _tolerances(texts: list[str] | None) -> dict[str, object] | None:
@@ -201,4 +197,4 @@ def certify_stability(
     check_places(to, PICTURES_AND_DATA)
     with output.progress("certificate", within) as advance:
         found = tn.certify_stability(line, given, span, most_boxes=boxes, progress=advance)
-    deliver("certify-stability", file, replace(found, unit=unit), to, as_json, what="certificate")
+    deliver("certify-stability", file, found.in_unit(unit), to, as_json, what="certificate")

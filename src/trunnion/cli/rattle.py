@@ -163,12 +163,8 @@ def _sweep_json(one: Any, measured: dict[str, Any]) -> dict[str, Any]:
 
 def _oscillator_json(one: Any) -> dict[str, Any]:
     return {
-        "frequency": one.frequency,
+        **output.record(one, "frequency mean contact impacts impact_energy"),
         "half_peak_to_peak": one.peak_to_peak / 2,
-        "mean": one.mean,
-        "contact": list(one.contact),
-        "impacts": one.impacts,
-        "impact_energy": one.impact_energy,
     }
 
 
@@ -216,11 +212,12 @@ def _of_line(line: tn.Driveline) -> tuple[tn.PiecewiseOscillator | tn.Driveline,
 
 def _unit(subject: tn.PiecewiseOscillator | tn.System | tn.Driveline) -> str:
     from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit
+    from trunnion.results.words import Words
 
     if isinstance(subject, tn.Driveline):
         return speed_unit(subject)
-    return frequency_unit(subject.speed_unit) if isinstance(subject, tn.PiecewiseOscillator) else "rad/s"
+    known = subject.speed_unit if isinstance(subject, tn.PiecewiseOscillator) else None
+    return Words(known).of_frequencies.of_speeds
 
 
 def _range(
@@ -259,10 +256,8 @@ def _options(
 def _json(found: Any) -> list[dict[str, Any]]:
     return [
         {
-            "method": r.method,
+            **output.record(r, "method frequency half_peak_to_peak"),
             "peak": {"frequency": r.peak[0], "half_peak_to_peak": r.peak[1]},
-            "frequency": r.frequency,
-            "half_peak_to_peak": r.half_peak_to_peak,
             "stable": [bool(s) for s in r.stable],
             "marks": [{"kind": k, "frequency": f, "half_peak_to_peak": a} for k, f, a in r.marks],
             "says": str(r.outcome),

@@ -165,10 +165,10 @@ def stability(
     from trunnion.cli.report import stability_json
 
     with output.progress("stability"):
-        result = tn.stability(line, at)
+        result = tn.stability(line, at).in_unit(unit)
     answer(
-        "stability", None, as_json, lambda: stability_json(result, unit), lambda: result.describe(unit),
-        lambda: output.findings(result.findings_in(unit)), wrap=True,
+        "stability", None, as_json, lambda: stability_json(result), result.__str__,
+        lambda: output.findings(result.findings), wrap=True,
     )  # fmt: skip
 
 
@@ -213,10 +213,10 @@ def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) ->
     line = read_line(file)
     from trunnion.cli.report import modes_json
     from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit, speed_factor
+    from trunnion.results.words import Words
 
-    unit = unit or frequency_unit(speed_unit(line))
-    speed_factor(unit)
+    words = Words(unit) if unit else Words(speed_unit(line)).of_frequencies
+    unit, _ = words.of_speeds, words.factor
     modes = tn.natural_frequencies(line)
     answer(
         "natural-frequencies", None, as_json, lambda: modes_json(modes, unit),
