@@ -16,7 +16,7 @@ from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.features import TABLE
-from trunnion.plots import DRAWINGS
+from trunnion.registry import PICTURES
 
 RAD_PER_SECOND = re.compile(r"rad/s(?! ?(\^2|²))")
 LOW, MIDDLE, HIGH = tn.rpm(1400), tn.rpm(1500), tn.rpm(1600)
@@ -124,7 +124,7 @@ def sentences(result: Any) -> Iterator[str]:
 def drawn(result: Any) -> Iterator[str]:
     """All text of all pictures that there are of ``result``."""
     for kind in type(result).__mro__:
-        for name in (key.partition(".")[2] for key in DRAWINGS if key.startswith(f"{kind.__name__}.")):
+        for name in (key.partition(".")[2] for key in PICTURES if key.startswith(f"{kind.__name__}.")):
             try:
                 picture = getattr(result, name)()
             except tn.InputError:
