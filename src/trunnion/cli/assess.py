@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -123,9 +122,22 @@ def print_remedies(found: Remedies) -> None:
 
 def remedies_json(found: Remedies) -> dict[str, Any]:
     """Remedies by check, and how each value follows every design variable; angles per radian."""
-    stated = "check variable before after unit value margin required_margin sentence"
     return {
-        "remedies": [output.named(r, stated) | {"verdict": str(r.verdict)} for r in found.remedies],
+        "remedies": [
+            {
+                "check": r.check,
+                "variable": r.variable,
+                "before": r.before,
+                "after": r.after,
+                "unit": r.unit,
+                "value": r.value,
+                "margin": r.margin,
+                "required_margin": r.required_margin,
+                "verdict": str(r.verdict),
+                "sentence": r.sentence,
+            }
+            for r in found.remedies
+        ],
         "closest": found.closest,
         "sensitivities": {
             check: {v.path: s for v, s in zip(found.variables, row, strict=True)}
@@ -137,28 +149,37 @@ def remedies_json(found: Remedies) -> dict[str, Any]:
 def assessment_json(result: Assessment) -> dict[str, Any]:
     """Verdict and checks; speeds in ``speed_unit``, values and limits in the SI unit of each check."""
     factor = speed_factor(result.unit)
-
-    def ranges(found: Iterable[tuple[float, float]]) -> list[list[float]]:
-        return [[low * factor, high * factor] for low, high in found]
-
-    stated = "name decides margin required_margin value error limit unit because inputs load_case guideline element"
     return {
         "verdict": str(result.verdict),
         "sentence": result.sentence,
         "speed_unit": result.unit,
         "speed_range": [result.low * factor, result.high * factor],
-        "barred": ranges(result.barred),
+        "barred": [[a * factor, b * factor] for a, b in result.barred],
         "application": result.application,
-        "switched_off": [output.named(one, "rule reason") for one in result.switched_off],
+        "switched_off": [{"rule": one.rule, "reason": one.reason} for one in result.switched_off],
         "checks": [
-            output.named(c, stated)
-            | output.named(c.rule, "formula source certainty")
-            | {
+            {
+                "name": c.name,
                 "status": str(c.status),
                 "rule": c.rule.name,
+                "decides": c.decides,
+                "margin": c.margin,
+                "required_margin": c.required_margin,
+                "value": c.value,
+                "error": c.error,
+                "limit": c.limit,
+                "unit": c.unit,
                 "speed": c.speed * factor,
-                "barred": ranges(c.barred),
-                "covered": ranges(c.covered),
+                "because": c.because,
+                "barred": [[a * factor, b * factor] for a, b in c.barred],
+                "covered": [[a * factor, b * factor] for a, b in c.covered],
+                "formula": c.rule.formula,
+                "source": c.rule.source,
+                "certainty": c.rule.certainty,
+                "inputs": c.inputs,
+                "load_case": c.load_case,
+                "guideline": c.guideline,
+                "element": c.element,
                 "order": c.cause.order if c.cause else None,
                 "mode": c.cause.mode if c.cause and c.cause.mode else None,
             }

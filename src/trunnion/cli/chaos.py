@@ -7,7 +7,6 @@ from typing import Annotated, Any, Final
 import typer
 
 import trunnion as tn
-from trunnion.cli import output
 from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
 from trunnion.cli.motion import Tolerance
 from trunnion.cli.options import SPEED, LoadCase, Progress, Set, Start, Unit
@@ -94,8 +93,18 @@ def lyapunov_spectrum(
         system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
         progress=progress,
     )  # fmt: skip
-    stated = "exponents half_width sum divergence dimension samples interval by_start"
-    content = {"system": system.name, **output.named(result, stated), **_ending(result)}
+    content = {
+        "system": system.name,
+        "exponents": result.exponents,
+        "half_width": result.half_width,
+        "sum": result.sum,
+        "divergence": result.divergence,
+        "dimension": result.dimension,
+        "samples": result.samples,
+        "interval": result.interval,
+        "by_start": result.by_start,
+        **_ending(result),
+    }
     return Shown(result, content=lambda: content, outcome=result.outcome)
 
 
@@ -119,12 +128,16 @@ def poincare_map(
         system, points, section=section, every=every, start=start, transient=500 if transient is None else transient,
         tolerance=tolerance,
     )  # fmt: skip
-    content = output.named(result, "section repeat settling") | {
+    content = {
         "system": system.name,
+        "section": result.section,
         "points": len(result.points),
+        "repeat": result.repeat,
+        "settling": result.settling,
         "states": dict(zip(system.states, result.points.T, strict=True)),
+        **_ending(result),
     }
-    return Shown(result, content=lambda: content | _ending(result), outcome=result.outcome, alone=True)
+    return Shown(result, content=lambda: content, outcome=result.outcome, alone=True)
 
 
 @Command("exponents, map and sweep", writes=PICTURES_AND_DATA, part="certificate", within=True)
@@ -149,12 +162,16 @@ def certify_chaos(
         system, periods, duration=duration, section=section, start=start, starts=starts, transient=transient,
         sweep=sweep, tolerance=tolerance, progress=progress,
     )  # fmt: skip
-    content = output.named(result, "kind repeat period") | {
+    content = {
         "system": system.name,
         "verdict": str(result.verdict),
+        "kind": result.kind,
+        "repeat": result.repeat,
+        "period": result.period,
         "reasons": list(result.reasons),
         "criteria": [vars(c) for c in result.criteria],
-        **output.named(result.spectrum, "exponents half_width"),
+        "exponents": result.spectrum.exponents,
+        "half_width": result.spectrum.half_width,
         "zero_one_test": None if result.zero_one is None else result.zero_one.k,
     }
     return Shown(result, content=lambda: content)

@@ -107,9 +107,7 @@ def kinetostatics(
 
     def content() -> dict[str, Any]:
         return kinetostatics_json(result) | {
-            "phasing": None
-            if phasing is None
-            else output.named(phasing, "irregularity before bound") | {"fork_offsets": phasing.offsets},
+            "phasing": None if phasing is None else _phasing_json(phasing),
             "limits": output.findings_json(limits),
         }
 
@@ -126,15 +124,22 @@ def kinetostatics(
 def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
     """The numbers of a turn in SI units; the curves themselves are in the files written."""
     slow, fast = result.speed_ratio
-    stated = "rigid inertia turns irregularity equivalent_angle homokinetic_deviation peak_acceleration efficiency"
-    return output.named(result, stated) | {
+    return {
         "driveline": result.line.name,
         "speed": result.input_speed,
+        "rigid": result.rigid,
+        "inertia": result.inertia,
+        "turns": result.turns,
         "points": len(result.input_angle),
         "speed_ratio": {"smallest": slow, "largest": fast},
+        "irregularity": result.irregularity,
+        "equivalent_angle": result.equivalent_angle,
+        "homokinetic_deviation": result.homokinetic_deviation,
+        "peak_acceleration": result.peak_acceleration,
         "branches": list(result.branches),
         "output": result.branch,
         "drive_torque": {"smallest": result.drive_torque.min(), "largest": result.drive_torque.max()},
+        "efficiency": result.efficiency,
         "shafts": result.table("rad/s"),
         "secondary_couples": [{"fork": f, **_parts(result.couple_parts(f))} for f in result.forks],
         "supports": [
@@ -142,12 +147,23 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
             for b in (result.supports.names if result.supports else ())
         ],
         "findings": output.findings_json(result.findings),
+    }  # fmt: skip
+
+
+def _phasing_json(phasing: Any) -> dict[str, Any]:
+    return {
+        "fork_offsets": phasing.offsets,
+        "irregularity": phasing.irregularity,
+        "before": phasing.before,
+        "bound": phasing.bound,
     }
 
 
 def _parts(part: Any) -> dict[str, Any]:
-    return output.named(part, "largest two_per_turn") | {
+    return {
+        "largest": part.largest,
         "steady": list(part.steady),
+        "two_per_turn": part.two_per_turn,
         "twice_forward": part.twice,
         "twice_backward": part.twice_back,
         "rotating": part.once,

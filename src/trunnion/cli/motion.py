@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -196,11 +195,6 @@ def _print_orders(result: PeriodicResponse, unit: str) -> None:
     output.findings(result.findings_in(unit))
 
 
-def _by_shaft(shafts: tuple[str, ...], columns: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """A row for each shaft, of values by shaft."""
-    return [{"name": name, **{key: values[i] for key, values in columns.items()}} for i, name in enumerate(shafts)]
-
-
 def _simulation_json(result: Any) -> dict[str, Any]:
     from trunnion.motion.simulation.line_simulation import LineSimulation
 
@@ -215,26 +209,35 @@ def _simulation_json(result: Any) -> dict[str, Any]:
         content |= {"turns": result.turns, "first_speed": result.input_speed[0], "last_speed": result.input_speed[-1]}
         if result.starts_free and len(result.whole.turns[1]):
             content |= {"first_speed": result.whole.turns[1][0], "last_speed": result.whole.last_turn()[1]}
-        columns = {"smallest_torque": extremes.low, "largest_torque": extremes.high}
-        content["shafts"] = _by_shaft(result.shafts, columns)
+        content["shafts"] = [
+            {"name": name, "smallest_torque": low, "largest_torque": high}
+            for name, low, high in zip(result.shafts, extremes.low, extremes.high, strict=True)
+        ]
     return content
 
 
 def _orbit_json(result: PeriodicResponse | PeriodicOrbit) -> dict[str, Any]:
-    return output.named(result, "period spectral_radius error_estimate growth_rate") | {
+    return {
         "verdict": str(result.verdict),
+        "period": result.period,
+        "spectral_radius": result.spectral_radius,
+        "error_estimate": result.error_estimate,
+        "growth_rate": result.growth_rate,
         "multipliers": list(map(complex, result.multipliers)),
         "says": str(result.outcome),
+        "written": (),  # its place; the answer fills it
     }
 
 
 def _response_json(result: PeriodicResponse) -> dict[str, Any]:
     orders, amplitude = result.order_spectrum()
-    columns = {"mean_torque": result.torque_mean, "torque_peak_to_peak": result.torque_peak_to_peak}
     return {
         "speed": result.speed,
         "turns": result.turns,
-        "shafts": _by_shaft(result.shafts, columns),
+        "shafts": [
+            {"name": name, "mean_torque": mean, "torque_peak_to_peak": peak}
+            for name, mean, peak in zip(result.shafts, result.torque_mean, result.torque_peak_to_peak, strict=True)
+        ],
         "orders": orders,
         "order_amplitude": amplitude,
         "linear_theory": str(result.comparison or result.no_comparison),
@@ -244,8 +247,6 @@ def _response_json(result: PeriodicResponse) -> dict[str, Any]:
 
 def _run_up_json(result: RunUp, unit: str) -> dict[str, Any]:
     ending = result.ending
-    columns = output.named(result, "peak_torque peak_speed inertia_torque peak_vibration vibration_speed")
-    columns |= {"largest_steady_torque": result.steady_peak, "largest_steady_vibration": result.steady_vibration}
     return {
         "outcome": result.outcome.kind,
         "says": str(result.outcome_in(unit)),
@@ -253,8 +254,22 @@ def _run_up_json(result: RunUp, unit: str) -> dict[str, Any]:
         "ramp": result.ramp,
         "end": result.simulation.end,
         "end_speed": ending.speed if ending else result.schedule.last,
-        "hung": output.named(ending.hanging, "speed since until") if ending and ending.hanging else None,
-        "shafts": _by_shaft(result.shafts, columns),
+        "hung": {"speed": ending.hanging.speed, "since": ending.hanging.since, "until": ending.hanging.until}
+        if ending and ending.hanging
+        else None,
+        "shafts": [
+            {
+                "name": name,
+                "peak_torque": result.peak_torque[i],
+                "peak_speed": result.peak_speed[i],
+                "inertia_torque": result.inertia_torque[i],
+                "peak_vibration": result.peak_vibration[i],
+                "vibration_speed": result.vibration_speed[i],
+                "largest_steady_torque": result.steady_peak[i],
+                "largest_steady_vibration": result.steady_vibration[i],
+            }
+            for i, name in enumerate(result.shafts)
+        ],
     }
 
 

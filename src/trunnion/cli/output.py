@@ -97,11 +97,6 @@ def findings_json(found: Sequence[Finding]) -> list[dict[str, str]]:
     return [{"gravity": str(f.gravity), "sentence": f.sentence} for f in found]
 
 
-def named(one: object, names: str) -> dict[str, Any]:
-    """Attributes under their own names, blanks between them, for JSON."""
-    return {name: getattr(one, name) for name in names.split()}
-
-
 def written(paths: Sequence[Path]) -> None:
     """The files that were written, one a line, never broken."""
     if paths:

@@ -38,7 +38,7 @@ def _swinging(name: str, texts: Texts) -> AskedSwing:
     from trunnion.driveline.operating_speed import speed_unit
     from trunnion.results.speeds import frequency_unit
 
-    subject, length = _named(name, read_set(texts["parameters"]), texts["parameters"])
+    subject, length = _meant(name, read_set(texts["parameters"]), texts["parameters"])
     unit = "rad/s"
     if isinstance(subject, tn.Driveline):
         unit = speed_unit(subject)
@@ -47,7 +47,7 @@ def _swinging(name: str, texts: Texts) -> AskedSwing:
     return AskedSwing(subject, name, unit, texts, length)
 
 
-def _named(name: str, values: dict[str, float], texts: list[str] | None) -> tuple[Oscillating, str]:
+def _meant(name: str, values: dict[str, float], texts: list[str] | None) -> tuple[Oscillating, str]:
     """What is meant, and the unit of its x if it has one."""
     from trunnion.driveline.refusals import nearest
     from trunnion.studies.entries import entries
@@ -85,33 +85,20 @@ def _usual(asked: Asked) -> tuple[float, float]:
     return (0.3, 1.3) if 0.3 < frequency < 1.3 else (0.5 * frequency, 1.5 * frequency)
 
 
+SET = typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
 Subjects = Annotated[
     "Oscillating",
     typer.Argument(
         metavar="NAME", help="gear-rattle, dead-zone-oscillator, another reference system, or a driveline file."
     ),
-    Subject(
-        _swinging,
-        {
-            "parameters": Annotated[
-                list[str] | None,
-                typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more."),
-            ]
-        },
-    ),
+    Subject(_swinging, {"parameters": Annotated[list[str] | None, SET]}),
 ]
-From = Annotated[
-    float,
-    typer.Option(
-        "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
-    ),
-    Read(read_speed, missing=lambda asked: _usual(asked)[0]),
-]
-To = Annotated[
-    float,
-    typer.Option("--to", help="Highest frequency or speed."),
-    Read(read_speed, missing=lambda asked: _usual(asked)[1]),
-]
+LOW = typer.Option(
+    "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
+)
+HIGH = typer.Option("--to", help="Highest frequency or speed.")
+From = Annotated[float, LOW, Read(read_speed, missing=lambda asked: _usual(asked)[0])]
+To = Annotated[float, HIGH, Read(read_speed, missing=lambda asked: _usual(asked)[1])]
 XUnit = Annotated[str, Given("length")]
 
 
@@ -229,8 +216,14 @@ def _sweep_json(one: Any, measured: dict[str, Any]) -> dict[str, Any]:
 
 
 def _oscillator_json(one: Any) -> dict[str, Any]:
-    measured = output.named(one, "frequency mean impacts impact_energy")
-    return measured | {"half_peak_to_peak": one.peak_to_peak / 2, "contact": list(one.contact)}
+    return {
+        "frequency": one.frequency,
+        "half_peak_to_peak": one.peak_to_peak / 2,
+        "mean": one.mean,
+        "contact": list(one.contact),
+        "impacts": one.impacts,
+        "impact_energy": one.impact_energy,
+    }
 
 
 def _line_json(one: Any) -> dict[str, Any]:

@@ -198,10 +198,11 @@ def stability_chart(
     return Shown(chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True)
 
 
+LineInFrequencies = Annotated["tn.Driveline", FILE, Subject(_frequencies, {"unit": Unit})]
+
+
 @Command(writes=NOTHING)
-def natural_frequencies(
-    line: Annotated[tn.Driveline, FILE, Subject(_frequencies, {"unit": Unit})], *, unit: SpeedUnit
-) -> Shown:
+def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> Shown:
     """Example: trunnion natural-frequencies truck.toml --unit Hz"""
     from trunnion.cli.report import modes_json
 
@@ -217,11 +218,7 @@ def natural_frequencies(
 
 @Command(writes=NOTHING)
 def resonance_speeds(
-    line: OwnLine,
-    *,
-    orders: Annotated[int, Bounds(1, 20)] = 2,
-    all_: bool = False,
-    unit: SpeedUnit,
+    line: OwnLine, *, orders: Annotated[int, Bounds(1, 20)] = 2, all_: bool = False, unit: SpeedUnit
 ) -> Shown:
     """Example: trunnion resonance-speeds truck.toml --orders 3 --all
 
