@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import FEATURES, feature
+from trunnion.driveline.features import FEATURES, UNEVEN, feature
 from trunnion.driveline.remarks import HELD, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
@@ -90,7 +90,6 @@ _EVEN = {
     "angle of an ideal joint": f"at any angle it passes rotation unchanged; {_PLANE}",
     "double Cardan joint": f"centred, it passes rotation unchanged; {_PLANE}",
 }
-_UNEVEN = ("Hooke's joint", "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre")
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -133,7 +132,7 @@ _UNPROVABLE = {
     **_BASE,
     **dict.fromkeys(
         (
-            "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
+            *(key for key in UNEVEN if key != "Hooke's joint"),
             "ratio", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
             "quadratic load", SERIES,
@@ -148,7 +147,7 @@ _UNPROVABLE |= dict.fromkeys(
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
     **_SERIES,
-    **dict.fromkeys(_UNEVEN, (_ALIGNED, "joint angles zero")),
+    **dict.fromkeys(UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
     "quadratic load": "damping ratios are those without it, for it rises with the speed; campbell_diagram has it",
 }
@@ -180,7 +179,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
-        (*_UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
+        (*UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
         "the stages are then not linear with constant coefficients",
     ),
 }
