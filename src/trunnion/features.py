@@ -161,6 +161,9 @@ _MODES_INERT = {
     "drive share": "a constant torque",
     "backlash": "the load presses the mesh together; without a load it is refused",
 }
+_DAMPINGS = (
+    "damping", "loss factor", "damping ratio", "mesh damping", "impact damping", "damping in contact only", SERIES,
+)  # fmt: skip
 _UNDAMPED = "the names stand at the frequencies of the undamped line"
 _ONE_DRIVE = {
     "prescribed far end": "the nonlinear equations have one prescribed speed",
@@ -215,18 +218,7 @@ ROWS: dict[str, Row] = {
                 ("Hooke's joint", "double Cardan joint off centre"),
                 "the speeds are those at which a bent joint of any angle can resonate",
             ),
-            **dict.fromkeys(
-                (
-                    "damping",
-                    "loss factor",
-                    "damping ratio",
-                    "mesh damping",
-                    "impact damping",
-                    "damping in contact only",
-                    "unlike damping in series",
-                ),
-                _UNDAMPED,
-            ),
+            **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),

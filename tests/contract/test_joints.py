@@ -6,35 +6,30 @@ is made as ``CONTRIBUTING.md`` walks through it.
 
 from __future__ import annotations
 
-import textwrap
+import sys
 import warnings
 from math import gcd
-from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import joints
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from walks import shown
 
 import trunnion as tn
 from trunnion.driveline.joints import Joint, Numbers
 from trunnion.driveline.kinds import KINDS
-from trunnion.driveline.quantities import Angle, Dimensionless
-from trunnion.laws.fourier import FourierLaw
-from trunnion.laws.joint import JointLaw, through
+from trunnion.laws.joint import through
 
 
 def made_by_the_walk() -> Any:
     """``Wobble``, a joint that nobody builds, as ``CONTRIBUTING.md`` has it."""
-    text = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    block = text[text.index("       class Wobble(Joint):") :].partition("\n\n   `number(key)`")[0]
-    names: dict[str, Any] = {
-        "Angle": Angle, "Dimensionless": Dimensionless, "FourierLaw": FourierLaw, "Joint": Joint, "JointLaw": JointLaw,
-        "Numbers": Numbers, "np": np, "__name__": __name__,
-    }  # fmt: skip
-    exec(textwrap.dedent(block), names)
-    return names["Wobble"]
+    module = ModuleType("wobble")
+    sys.modules["wobble"] = module  # where pydantic looks its annotations up
+    exec(shown("src/trunnion/driveline/wobble.py"), vars(module))
+    return module.Wobble
 
 
 Wobble = made_by_the_walk()
