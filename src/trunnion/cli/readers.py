@@ -139,9 +139,9 @@ def read_axis(asked: Asked, text: str, key: str, points: int) -> tuple[str, floa
         parts.pop()
     if len(parts) < 3:
         return _whole_axis(":".join(parts), text, asked.line, points, key, scale)
-    if len(parts) == 3 or not parts[-1].isdecimal() and _is_parameter(packed, ":".join(parts[:-2])):
-        parts.append(str(points))
-    *name, low_text, high_text, count = parts
+    uncounted = len(parts) == 3 or not parts[-1].isdecimal() and _is_parameter(packed, ":".join(parts[:-2]))
+    count = points if uncounted else _count(parts.pop(), key)
+    *name, low_text, high_text = parts
     path = ":".join(name)
     if low_text.endswith("x") and high_text.endswith("x"):
         path, low_text, high_text = f"factor of {path}", low_text[:-1], high_text[:-1]
@@ -154,7 +154,7 @@ def read_axis(asked: Asked, text: str, key: str, points: int) -> tuple[str, floa
         raise InputError("is a range of zero size", key=key, value=text, remedy="give low < high")
     if low > high:
         raise InputError("is a reversed range", key=key, value=text, remedy="give the lower end first")
-    return columns.label, low, high, _count(count, key), scale
+    return columns.label, low, high, count, scale
 
 
 def _whole_axis(

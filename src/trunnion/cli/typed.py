@@ -101,17 +101,26 @@ class _Stated:
 
 
 def callback(name: str, sentence: str, function: Callable[..., Shown]) -> Callable[..., None]:
-    """What Typer calls for the command ``name``: reads the options, calls ``function``, writes and says the answer."""
+    """What Typer calls for the command ``name``: reads the options, calls ``function``, writes and says the answer.
+
+    Raises
+    ------
+    TypeError : the function and its docstring do not tell of the same options.
+    """
     made: Command = getattr(function, "command", Command())
     parameters = inspect.signature(function, eval_str=True).parameters
     described, words = _options_in(inspect.getdoc(function) or "")
     stated, given = [], {}
     for key, parameter in parameters.items():
-        info = _mark(parameter, typer.models.ParameterInfo) or described.get(key.rstrip("_"))
+        info = described.pop(key.rstrip("_"), None) or _mark(parameter, typer.models.ParameterInfo)
         if info:
             stated.append(_Stated(parameter, _bounded(info, _mark(parameter, Bounds))))
+        elif mark := _mark(parameter, Given):
+            given[key] = mark.attribute
         elif key != "progress":
-            given[key] = _mark(parameter, Given).attribute
+            raise TypeError(f"{name}: its docstring has no line --{key}")
+    if described:
+        raise TypeError(f"{name}: takes nothing that is called {', '.join(described)}")
     file, subject = next((key, s) for key, p in parameters.items() if (s := _mark(p, Subject)))
 
     def run(**texts: Any) -> None:
