@@ -12,14 +12,15 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from contextvars import copy_context
+from enum import Enum
 from functools import cache
 from importlib.abc import MetaPathFinder
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
 from trunnion.cli.ending import EndedBy
-from trunnion.cli.options import read_time
 from trunnion.errors import ComputationError
 from trunnion.results.plain import plain
 from trunnion.waiting import OutOfTime, TimeLimit, seconds_left, time_limit
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from trunnion.results.finding import Finding
     from trunnion.results.outcome import Outcome
+    from trunnion.results.words import Words
 
 LONG = 10.0
 """Seconds between lines of progress where stderr is not a terminal."""
@@ -93,9 +95,28 @@ def findings(found: Sequence[Finding], title: str = "Findings") -> None:
     _console().print(grid)
 
 
+def record(one: Any, names: str, words: Words | None = None) -> dict[str, Any]:
+    """What ``one`` has under some names (with blanks between, dots to what it has); with ``words`` what its labels give
+    in rad/s is in their unit."""
+    from trunnion.results.fields import labels  # which loads numpy
+
+    found: dict[str, Any] = {}
+    known = labels(type(one))
+    for path in names.split():
+        value = attrgetter(path)(one)
+        if words is not None and value is not None and path in known and known[path].unit == "rad/s":
+            value = _times(value, words.factor)
+        found[path.rpartition(".")[2]] = str(value) if isinstance(value, Enum) else value
+    return found
+
+
+def _times(value: Any, factor: float) -> Any:
+    return [_times(one, factor) for one in value] if isinstance(value, tuple | list) else value * factor
+
+
 def findings_json(found: Sequence[Finding]) -> list[dict[str, str]]:
     """Gravity and sentence of each."""
-    return [{"gravity": str(f.gravity), "sentence": f.sentence} for f in found]
+    return [record(one, "gravity sentence") for one in found]
 
 
 def written(paths: Sequence[Path]) -> None:
@@ -129,13 +150,13 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress(what: str, within: str | None = None) -> Iterator[Callable[[float], None]]:
+def progress(what: str, within: float | None = None) -> Iterator[Callable[[float], None]]:
     """A callback for the share done: a bar with the time left on a terminal, else a line now and then.
 
     Time spent on compiling, which happens once, is not taken for the pace of the work. What is computed inside ends
-    ``within`` its time and on Ctrl-C with what it has, see ``stoppable``.
+    ``within`` its time [s] and on Ctrl-C with what it has, see ``stoppable``.
     """
-    with stoppable(read_time(within, "--within")), compile_notice() as clock:
+    with stoppable(within), compile_notice() as clock:
         if not sys.stderr.isatty():
             with _Lines(what, clock) as lines:
                 yield lines

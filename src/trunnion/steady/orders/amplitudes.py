@@ -57,8 +57,9 @@ class OrderSum:
         for j, key in enumerate(keys):
             amplitude[:, j], base[:, j] = self.amplitude.get(key, 0.0), self.base.get(key, 0.0)
         return OrderSpectrum(
-            speed, tuple(order for order, _ in keys), np.array([frequency for _, frequency in keys]), amplitude, base,
-            self.mean, cut_off, self.channels, damping, loss,
+            speed=speed, order=tuple(order for order, _ in keys),
+            frequency=np.array([frequency for _, frequency in keys]), amplitude=amplitude, base=base, mean=self.mean,
+            cut_off=cut_off, channels=self.channels, damping=damping, loss=loss,
         )  # fmt: skip
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
