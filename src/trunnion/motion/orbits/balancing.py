@@ -57,7 +57,7 @@ class SeriesBranch(Result):
         yield from remarks(harmonics=self.harmonics, periods=self.periods)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
-        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
+        """Response curve with its jumps; see ``pictures.frequency_response.branch``."""
         return self.branch.plot(axes, curve=curve, unit=unit, jumps=jumps)
 
     @property

@@ -131,7 +131,7 @@ class FrequencyResponse(Described):
         jumps: bool = True,
         top: float | None = None,
     ) -> Axes:
-        """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
+        """The curve, full where stable; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def describe(self, unit: str | None = None) -> str:

@@ -212,13 +212,13 @@ class LineSimulation(Described):
         yield from remarks(tolerance=self.pieces[0].tolerance, steps=self.steps)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
-        """Torques over time; see ``trunnion.plots.motion``."""
+        """Torques over time; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, shafts=shafts, unit=unit)
 
     def plot_order_map(
         self, axes: Axes | None = None, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = ""
     ) -> Axes:
-        """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
+        """Torque spectrum over time or speed; see ``pictures.motion.map_of_orders``."""
         return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:

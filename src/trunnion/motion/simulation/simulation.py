@@ -109,11 +109,11 @@ class Simulation(Result):
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
-        """Time histories; see ``trunnion.plots.motion``."""
+        """Time histories; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, states=states)
 
     def plot_portrait(self, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0) -> Axes:
-        """One state over another; see ``trunnion.plots.motion``."""
+        """One state over another; see ``pictures.motion``."""
         return drawing(self, "plot_portrait")(self, axes, x=x, y=y, from_time=from_time)
 
     def __str__(self) -> str:

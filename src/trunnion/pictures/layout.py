@@ -21,7 +21,8 @@ from trunnion.driveline.layout import Layout
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.laws.hooke import QUARTER_TURN
-from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, head, new_figure, through
+from trunnion.pictures.draw_matplotlib import SMALL, TEXT, head, new_figure, through
+from trunnion.pictures.looks import COLOURS, FAINT, INK
 from trunnion.response.kinetostatics.chain import Chain, chain
 from trunnion.response.kinetostatics.frames import member_frames, turned_about_axis
 from trunnion.response.kinetostatics.motion import drive_jet, walk

@@ -22,7 +22,8 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.driveline.stages import PiecewiseShaft
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, new_figure, through
+from trunnion.pictures.draw_matplotlib import SMALL, new_figure, through
+from trunnion.pictures.looks import ACCENT, FAINT, INK
 
 WIDTH = 7.4
 SLANT = 38 * DEGREE

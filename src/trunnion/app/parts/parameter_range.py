@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 from trunnion.driveline.parameters import SPEED
 from trunnion.errors import InputError
 
 
 @dataclass(frozen=True)
-class Axis:
+class ParameterRange:
     """A parameter along an axis: its ends in SI, and the unit it is shown in with its size in SI."""
 
     path: str
@@ -19,7 +18,7 @@ class Axis:
     unit: str
     size: float
 
-    def typed(self, low: float | None, high: float | None) -> Axis:
+    def typed(self, low: float | None, high: float | None) -> ParameterRange:
         """The same with the ends that were typed, as shown; None leaves one where it is."""
         first = self.low if low is None else low * self.size
         last = self.high if high is None else high * self.size
@@ -40,11 +39,6 @@ class Axis:
     def ends(self) -> tuple[float, float]:
         """As shown."""
         return self.low / self.size, self.high / self.size
-
-    def pixels(self, values: Any) -> tuple[float, float]:
-        """Begin and length, as shown, of what points in the middle of their pixels cover."""
-        step = float(values[1] - values[0])
-        return (values[0] - step / 2) / self.size, (values[-1] - values[0] + step) / self.size
 
     @property
     def label(self) -> str:
