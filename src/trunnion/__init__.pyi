@@ -72,6 +72,7 @@ from trunnion.motion.chaos.lyapunov_spectrum import lyapunov_spectrum as lyapuno
 from trunnion.motion.chaos.poincare_map import poincare_map as poincare_map
 from trunnion.motion.linearity.linearity_check import linearity_check as linearity_check
 from trunnion.motion.orbits.basins import basins as basins
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit as piecewise_orbit
 from trunnion.motion.orbits.frequency_response import compare_responses as compare_responses
 from trunnion.motion.orbits.frequency_response import frequency_response as frequency_response
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance as harmonic_balance
@@ -79,9 +80,8 @@ from trunnion.motion.orbits.harmonic_balance_springs import balance_springs as b
 from trunnion.motion.orbits.periodic_branch import periodic_branch as periodic_branch
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
 from trunnion.motion.orbits.piecewise_branch import piecewise_branch as piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit as piecewise_orbit
-from trunnion.motion.orbits.piecewise_sweep import rattle_index as rattle_index
-from trunnion.motion.orbits.piecewise_sweep import sweep as sweep
+from trunnion.motion.orbits.sweep import rattle_index as rattle_index
+from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
 from trunnion.motion.perturbation.averaging import averaging as averaging

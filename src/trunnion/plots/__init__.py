@@ -32,7 +32,7 @@ DRAWINGS = {
     "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
     "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
     "ResponseComparison.plot": "trunnion.plots.frequency_response:draw_response",
-    "Sweep.plot": "trunnion.plots.frequency_response:draw_sweep",
+    "OscillatorSweep.plot": "trunnion.plots.frequency_response:draw_sweep",
     "LineSweep.plot": "trunnion.plots.frequency_response:draw_line_sweep",
     "Basins.plot": "trunnion.plots.frequency_response:draw_basins",
     # chaos

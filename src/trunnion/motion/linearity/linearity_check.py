@@ -128,10 +128,10 @@ def _linear_shaft(true: PeriodicResponse, line: Driveline, name: str) -> LinearS
     clutch = line.elements[line.index(name)]
     assert isinstance(clutch, Clutch)
     place = next(e for e, c in enumerate(true.line.assembly.topology.compliances) if line.index(name) in c.shafts)
-    run = true.orbit.trajectory
+    run = true.trajectory
 
     def twist(times: Array) -> Array:
-        return true.line.observe(true.orbit.system, times, run.at(times)).twist[:, place : place + 1]
+        return true.line.observe(true.system, times, run.at(times)).twist[:, place : place + 1]
 
     swing = float(extremes(twist, run.time_of_state).span[0]) / 2
     cycles = np.abs(fourier(twist, run.time_of_state, max(int(ORDERS * true.turns), 1))[1:, 0])

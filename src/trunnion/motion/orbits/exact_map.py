@@ -8,7 +8,7 @@ the end of a piece (grazing) has none.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple, Self
@@ -21,7 +21,7 @@ from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage, kernel, stages_of
-from trunnion.systems.maps import Observed, Passage
+from trunnion.systems.maps import MOMENT, Observed, Passage
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.regimes import SLACK
 
@@ -29,8 +29,6 @@ SAMPLES = 512
 """Of a period, for the fundamental; a power of two times any usual number of periods."""
 LEAST_TWIST = 1e-6
 """What a twist counts as at least when an orbit is closed [rad]."""
-MOMENT = 0.02
-"""Share of the period within which a slider that sticks may slip by rounding."""
 REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
@@ -59,6 +57,16 @@ class ExactMap(ABC):
     def settle(self, x: Array, periods: int) -> Array | None:
         found = self.steady(x, periods * self.periods, periods * self.periods, 0.0)
         return found.state if found.done else None
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """Number of states."""
+
+    def nowhere(self, values: int = 0) -> Passage:
+        """A motion that changes its pieces too often to come to an end; its derivatives by so many values."""
+        nothing = np.full((self.size, self.size + values), np.nan)
+        return Passage(nothing[:, 0], nothing[:, : self.size], nothing[:, self.size :], -1, False, None)
 
     @abstractmethod
     def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
@@ -94,7 +102,7 @@ class OscillatorMap(ExactMap):
         try:
             run = piecewise.period(o.regimes, o.coefficients, self.value, x, self.periods)
         except piecewise.TooManyEventsError:
-            return _broken(2, len(by))
+            return self.nowhere(len(by))
         changes = int((run.events[:, 3] >= 0).sum())
         return Passage(run.state, run.tangents[:, :2], run.tangents[:, 2 : 2 + len(by)], changes, True, run)
 
@@ -135,17 +143,14 @@ class OscillatorMap(ExactMap):
 
 @dataclass(frozen=True)
 class LineMap(ExactMap):
-    """Twists and rates over ``periods`` of the excitation.
+    """Twists and rates over ``periods`` of the excitation; sliders ``held`` are kept from slipping.
 
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
-    the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
-    throughout: what it has beside the twist comes back whatever it is, and ``stuck`` holds (row, that [rad]) of each.
-    Such a slider is kept from slipping here, which rounding could let it; the motion found is asked whether it stays
-    within what it holds.
+    the map, whose states stand at the places ``kept`` of the line's.
     """
 
     line: StagedLine
-    stuck: tuple[tuple[int, float], ...] = ()
+    held: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
@@ -158,48 +163,51 @@ class LineMap(ExactMap):
     @cached_property
     def kept(self) -> Integers:
         """Places of the map's states among the line's."""
-        still = {row for row, _ in self.stuck}
-        return np.array([i for i in self.line.kept if i not in still])
+        return self.line.kept
 
     @cached_property
     def flow(self) -> StagedFlow:
         """The line's flow at the value."""
-        return self.line.holding([row for row, _ in self.stuck], self.value)
+        return self.line.holding([self.line.slider_rows[i] for i in self.held], self.value)
 
     def whole(self, part: Array) -> Array:
         """The line's state (2m,) from the map's, deflections beyond what sliders hold brought back to it."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
-        state = self.line.within_limits(state)
-        for row, beside in self.stuck:
-            state[row] = state[self.line.source[row]] + beside
-        return state
+        free = self.line.within_limits(state)
+        rows = [self.line.slider_rows[i] for i in self.held]
+        free[rows] = state[rows]
+        return free
 
-    @cached_property
-    def spread(self) -> Array:
-        """Derivative (2m, n) of the line's state by the map's."""
-        matrix = np.eye(2 * self.line.size)
-        for row, _ in self.stuck:
-            matrix[row] = matrix[self.line.source[row]]
-        return matrix[:, self.kept]
+    @property
+    def sliders(self) -> int:
+        return len(self.line.sliders)
 
-    def sticking(self, rows: Iterable[int], start: Array) -> Self:
-        """The map in which the sliders in these rows stick with the deflections that they have in ``start`` (2m,)."""
-        beside = start[: self.line.size] - start[self.line.source]
-        return replace(self, stuck=tuple((row, float(beside[row])) for row in sorted(rows)))
+    @property
+    def deflections(self) -> Integers:
+        return np.searchsorted(self.kept, self.line.slider_rows)
 
-    def idle(self, passage: StagedPassage, start: Array) -> set[int]:
-        """Rows of the sliders that slip for no more than a moment in a watched passage from ``start`` (2m,), and stay
-        within what they hold."""
-        k, first, found = kernel(), stages_of(self.flow, start), set()
-        for row in self.line.slider_rows:
+    def holding(self, which: tuple[int, ...]) -> Self:
+        return replace(self, held=which)
+
+    def idle(self, x: Array) -> tuple[int, ...]:
+        k, passage = kernel(), self.watched(x)
+        first, found = stages_of(self.flow, self.whole(x)), []
+        for i, row in enumerate(self.line.slider_rows if passage.done else ()):
             own = passage.events[:, 1] == row
             times = np.concatenate([[0.0], passage.events[own, 0], [self.length]])
             slips = np.concatenate([[first[row]], passage.events[own, 2]]) != STICKS
             furthest = np.abs(passage.seen[row, [k.LOW, k.HIGH]]).max()
             if np.diff(times) @ slips <= MOMENT * self.length and furthest <= (1 + SLACK) * self.line.knots[row]:
-                found.add(row)
-        return found
+                found.append(i)
+        return tuple(found)
+
+    def conserved(self, x: Array, which: tuple[int, ...]) -> Array:
+        rows, unit = [self.line.slider_rows[i] for i in which], np.eye(2 * self.line.size)
+        return (unit[rows] - unit[self.line.source[rows]])[:, self.kept]
+
+    def within_limits(self, x: Array) -> Array:
+        return self.whole(x)[self.kept]
 
     def scale(self, start: Array) -> Array:
         """Size of every state of the map that counts as one, from a start (2m,) of the line."""
@@ -210,11 +218,12 @@ class LineMap(ExactMap):
 
     def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
         slope = -self.length / self.value if self.line.clock in ("speed", "frequency") else 0.0
-        run = staged_flow.period(self.flow, self.whole(x), self.length, slope, watch=watch)
+        start = self.whole(x)
+        run = staged_flow.period(self.flow, start, self.length, slope, watch=watch)
         if not (run.done and np.isfinite(run.tangents).all()):
-            return _broken(self.size, len(by))
-        by_state = self.spread * (self.whole(x)[self.kept] == x)  # beyond what it holds a deflection is brought back
-        matrix = (run.tangents[:, : 2 * self.line.size] @ by_state)[self.kept]
+            return self.nowhere(len(by))
+        within = start[self.kept] == x  # beyond what it holds a deflection is brought back
+        matrix = run.tangents[self.kept][:, self.kept] * within
         by_value = run.tangents[self.kept, 2 * self.line.size :][:, : len(by)]
         return Passage(run.state[self.kept], matrix, by_value, len(run.events), True, run)
 
@@ -244,9 +253,3 @@ class LineMap(ExactMap):
         # At the frequency of the excitation, of a subharmonic motion too.
         amplitude = 2 * np.abs(np.fft.rfft(states, axis=0)[self.periods]) / count
         return Observed(high - low, np.maximum(np.abs(low), np.abs(high)), amplitude[self.kept])
-
-
-def _broken(size: int, values: int) -> Passage:
-    """A motion that changes its pieces too often to come to an end."""
-    nothing = np.full((size, size + values), np.nan)
-    return Passage(nothing[:, 0], nothing[:, :size], nothing[:, size:], -1, False, None)

@@ -27,13 +27,13 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.stage_laws import has_stages
 from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import PeriodicBranch
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.free_play import require_contact, require_forced
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import SpringBalance, balance_springs
 from trunnion.motion.orbits.periodic_branch import periodic_branch
 from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.motion.orbits.piecewise_sweep import sweep
+from trunnion.motion.orbits.sweep import sweep
 from trunnion.motion.perturbation.averaging import averaging
 from trunnion.motion.perturbation.describing_function import DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales

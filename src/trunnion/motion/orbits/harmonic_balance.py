@@ -31,7 +31,7 @@ from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.curves import extremes
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.results.declared import Held, over
-from trunnion.steady.shooting.judging import CLEAR, IntegratedClosing
+from trunnion.steady.shooting.closing import CLEAR, IntegratedClosing
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.systems.system import System
 

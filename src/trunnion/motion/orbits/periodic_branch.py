@@ -24,9 +24,8 @@ from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.motion.orbits.periodic_response import require_forced
 from trunnion.results.parameter_names import Names
-from trunnion.steady.shooting.closing import Phase
+from trunnion.steady.shooting.closing import IntegratedClosing, Phase
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit, neutral_motions, require_kept_speed, torque_scale
-from trunnion.steady.shooting.judging import IntegratedClosing
 from trunnion.steady.shooting.periodic_orbit import MOST_STEPS, TOLERANCE, PeriodicOrbit, periodic_orbit
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
@@ -210,8 +209,8 @@ def _free(
     problem = IntegratedClosing(
         over.map(periods, tolerance, torque),
         np.concatenate([over.scale[:-1], [torque, over.scale[-1]]]),
-        Phase.held(0, float(found.orbit.start[0]), over.scale[:-1]),
+        Phase.held(0, float(found.start[0]), over.scale[:-1]),
         over=over,
         neutral=neutral_motions(over.line),
     )
-    return problem, np.append(found.orbit.start, found.extra_torque), found.orbit
+    return problem, np.append(found.start, found.values), found

@@ -17,11 +17,10 @@ from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
-from trunnion.motion.orbits.piecewise_orbit import orbit_near, piecewise_orbit, refuse_found_speed
+from trunnion.motion.orbits.exact_orbit import orbit_near, piecewise_orbit, refuse_found_speed
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.results.parameter_names import Names
-from trunnion.steady.shooting.closing import refuse_speed
-from trunnion.steady.shooting.judging import ExactClosing
+from trunnion.steady.shooting.closing import Closing, refuse_speed
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 
@@ -95,7 +94,7 @@ def piecewise_branch(
     size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
     scale = np.array([size, size * oscillator.frequency, (high - low) * longest_step / STEP])
     place = OscillatorMap(first, periods, oscillator)
-    problem = ExactClosing(place, scale, over=Names("frequency", "rad/s", ("x",), speed_unit=oscillator.speed_unit))
+    problem = Closing(place, scale, over=Names("frequency", "rad/s", ("x",), speed_unit=oscillator.speed_unit))
     return followed(
         problem, np.append(orbit.start, first), low, high, most_points, orbit.outcome, tolerance=1e-11,
         progress=progress,
@@ -123,7 +122,7 @@ def _of_line(
         size[: len(prepared.springs)] = np.maximum(np.abs(orbit.twist_low), np.abs(orbit.twist_high))
     scale = np.append(place.scale(size), (high - low) * longest_step / STEP)
     name = "speed" if prepared.clock == "speed" else "frequency"
-    problem = ExactClosing(
+    problem = Closing(
         place, scale, over=Names(name, "rad/s", prepared.springs, "N*m", speed_unit(prepared.assembly.line))
     )
     begins = np.append(orbit.start[place.kept], first)

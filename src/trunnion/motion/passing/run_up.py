@@ -168,7 +168,7 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
         if not closes(prepared):
             return begun, 0.0
         found = kept_speed_orbit(prepared, settle=False)
-        return (found.orbit.start, found.extra_torque) if found.orbit.outcome.ok else (begun, 0.0)
+        return (found.start, found.values[-1]) if found.outcome.ok else (begun, 0.0)
     begun = prepared.rest()
     if prepared.system.forcing_period is not None:
         orbit = periodic_orbit(prepared.system, start=begun, settle=False)
