@@ -11,7 +11,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from trunnion.arrays import Array, Integers
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
+from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.motion.simulation.exact_motion import stage_events
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage, kernel, stages_of
 from trunnion.systems.maps import MOMENT, Observed, Passage
@@ -29,6 +31,8 @@ SAMPLES = 512
 """Of a period, for the fundamental; a power of two times any usual number of periods."""
 LEAST_TWIST = 1e-6
 """What a twist counts as at least when an orbit is closed [rad]."""
+SIDES = ("none", "upper", "lower", "both")
+"""Sides touched, by the code of the measurement."""
 REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
@@ -67,6 +71,15 @@ class ExactMap(ABC):
         """A motion that changes its pieces too often to come to an end; its derivatives by so many values."""
         nothing = np.full((self.size, self.size + values), np.nan)
         return Passage(nothing[:, 0], nothing[:, : self.size], nothing[:, self.size :], -1, False, None)
+
+    @property
+    @abstractmethod
+    def unmeasured(self) -> dict[str, Any]:
+        """What ``measured`` tells of a motion that is not known: NaN."""
+
+    @abstractmethod
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array] | None:
+        """What the motion from x does, by the names of results, and where it ends; None where it cannot be followed."""
 
     @abstractmethod
     def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
@@ -126,13 +139,34 @@ class OscillatorMap(ExactMap):
         )  # fmt: skip
         return np.where(periods[:, None] > 0, ends, np.nan)
 
-    def measure(self, x: Array) -> dict[str, float]:
-        """What the motion from x does; see ``piecewise.measure``."""
+    @property
+    def unmeasured(self) -> dict[str, Any]:
+        return self._told(dict.fromkeys(piecewise.COLUMNS, np.nan))
+
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array]:
+        found = self._told(self._measured(x))
+        return found, found["state"]
+
+    def _told(self, seen: dict[str, float]) -> dict[str, Any]:
+        sides = SIDES[int(seen["contact"])] if np.isfinite(seen["contact"]) else "none"
+        return {
+            "lowest": seen["low"],
+            "highest": seen["high"],
+            "mean": seen["mean"],
+            "impacts": seen["impacts"],
+            "impact_energy": self.oscillator.inertia * seen["energy"],
+            "impact_impulse": self.oscillator.inertia * seen["impulse"],
+            "sides": sides,
+            "contact": contact_state(sides),
+            "state": np.array([seen["x"], seen["v"]]),
+        }
+
+    def _measured(self, x: Array) -> dict[str, float]:
         o = self.oscillator
         return piecewise.measure(o.regimes, o.coefficients, self.value, x, self.periods)
 
     def observe(self, x: Array, passage: Passage) -> Observed:
-        found = self.measure(x)
+        found = self._measured(x)
         low, high = found["low"], found["high"]
         # At the forcing frequency, of a subharmonic motion too.
         fundamental = float(np.hypot(found["real"], found["imaginary"]))
@@ -243,6 +277,47 @@ class LineMap(ExactMap):
     def watched(self, x: Array) -> StagedPassage:
         """The motion from x with what it shows of every spring."""
         return staged_flow.move(self.flow, self.whole(x), 0.0, self.length, watch=True)
+
+    @property
+    def unmeasured(self) -> dict[str, Any]:
+        line, nan = self.line, np.nan
+        nothing = [SpringContact(line.springs[e], np.zeros(0), nan, "none", np.zeros(0), nan) for e in line.staged]
+        return self._told(np.full((line.size, kernel().SHARES), nan), np.full(2 * line.size, nan), tuple(nothing))
+
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array] | None:
+        run = self.watched(x)
+        return (self.told_of(x, run), run.state[self.kept]) if run.done else None
+
+    def told_of(self, x: Array, run: StagedPassage) -> dict[str, Any]:
+        """What a watched passage from x shows.
+
+        An impact is a passage from the softest stage of a spring to another, its energy ½ m q̇² with the inertia m that
+        the rest of the line opposes to a push between the ends of the spring.
+        """
+        line, start, contacts = self.line, self.whole(x), []
+        first, events = stages_of(line.flow(), start), stage_events(line, run.events)
+        for e in line.staged:
+            own = events.spring == e
+            sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
+            speeds = np.abs(events.rate[own][(sides[1:] != 0) & (sides[:-1] == 0)])
+            shares, stages = run.seen[e, kernel().SHARES :][: line.counts[e]] / self.length, line.sides[e]
+            inertia = 1 / line.inverse[e, e]
+            contacts.append(SpringContact.of(line.springs[e], shares, stages[: line.counts[e]], speeds, inertia))
+        return self._told(run.seen, start, tuple(contacts))
+
+    def _told(self, seen: Array, start: Array, contacts: tuple[SpringContact, ...]) -> dict[str, Any]:
+        k, springs = kernel(), seen[: len(self.line.springs)]
+        return {
+            "torque_low": springs[:, k.TORQUE_LOW],
+            "torque_high": springs[:, k.TORQUE_HIGH],
+            "torque_mean": springs[:, k.TORQUE_SUM] / self.length,
+            "twist_low": springs[:, k.LOW],
+            "twist_high": springs[:, k.HIGH],
+            "twist_mean": springs[:, k.TWIST_SUM] / self.length,
+            "clearance": float(springs[:, k.CLEARANCE].min()),
+            "contacts": contacts,
+            "state": start,
+        }
 
     def observe(self, x: Array, passage: Passage) -> Observed:
         k, count = staged_flow.kernel(), SAMPLES * self.periods

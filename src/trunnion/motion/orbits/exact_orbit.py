@@ -25,11 +25,11 @@ from trunnion.errors import InputError
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
 from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
 from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
-from trunnion.motion.simulation.exact_motion import StageEvents, first_stages, stage_events, start_state
+from trunnion.motion.simulation.exact_motion import StageEvents, stage_events, start_state
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel
+from trunnion.numerics.piecewise_linear.staged_flow import kernel
 from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, show_speed
@@ -334,11 +334,12 @@ def _found(missed: Array, iterations: int) -> Outcome:
 
 
 def _of_mass(place: OscillatorMap, root: Root) -> PiecewiseOrbit:
-    o, passage, seen = place.oscillator, place.nowhere(), dict.fromkeys(piecewise.COLUMNS, float("nan"))
-    outcome, clearance = _not_converged(root, "the end of a sweep"), float("nan")
+    passage, seen, crossings, clearance = place.nowhere(), place.unmeasured, np.zeros((0, 4)), float("nan")
+    outcome = _not_converged(root, "the end of a sweep")
     if root.converged:
-        passage, seen = place(root.x), place.measure(root.x)
-        outcome, clearance = _found(passage.state - root.x, root.iterations), _clearance(o, root.x, place.length)
+        passage, seen = place(root.x), place.measured(root.x)[0]
+        outcome, crossings = _found(passage.state - root.x, root.iterations), passage.run.crossings
+        clearance = _clearance(place.oscillator, root.x, place.length)
     values = by_modulus(passage.tangents)
     return PiecewiseOrbit(
         start=root.x,
@@ -348,25 +349,17 @@ def _of_mass(place: OscillatorMap, root: Root) -> PiecewiseOrbit:
         verdict=exact_verdict(values),
         iterations=root.iterations,
         outcome=outcome,
-        **displacement(o, seen),
-        oscillator=o,
+        oscillator=place.oscillator,
         periods=place.periods,
-        crossings=passage.run.crossings if root.converged else np.zeros((0, 4)),
-        sides=sides_of(seen["contact"]),
+        crossings=crossings,
         clearance=clearance,
+        **fields_of(PiecewiseOrbit, seen),
     )
 
 
-def displacement(oscillator: PiecewiseOscillator, seen: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a ``Displacement`` from what was measured."""
-    shared = {"lowest": seen["low"], "highest": seen["high"], "mean": seen["mean"], "impacts": seen["impacts"]}
-    of_mass = {f"impact_{name}": oscillator.inertia * seen[name] for name in ("energy", "impulse")}
-    return shared | of_mass
-
-
-def sides_of(code: float) -> str:
-    """Sides touched, by the code of the measurement; "none" where there is none."""
-    return ("none", "upper", "lower", "both")[int(code)] if np.isfinite(code) else "none"
+def fields_of(kind: Any, seen: Mapping[str, Any]) -> dict[str, Any]:
+    """Those of the values seen in a motion that are fields of a result."""
+    return {name: value for name, value in seen.items() if name in kind.__dataclass_fields__}
 
 
 def _clearance(oscillator: PiecewiseOscillator, start: Array, length: float) -> float:
@@ -461,14 +454,14 @@ def _determined(root: Root, scale: Array, held: int) -> bool:
 
 def _of_line(place: LineMap, start: Array, failed: Outcome | None, iterations: int = 0) -> ExactOrbit:
     """The orbit from ``start`` (2m,), or one of NaN where it ``failed``."""
-    line, k, part, nan = place.line, kernel(), start[place.kept], float("nan")
-    count, scale = len(line.springs), place.scale(start)
+    line, part, scale = place.line, start[place.kept], place.scale(start)
     passage = place.nowhere() if failed else place(part, watch=True)
-    run, scaled = passage.run, passage.tangents * scale / scale[:, None]
-    seen = np.full((count, k.SHARES), nan) if failed else run.seen[:count]
-    events = run.events if not failed else np.zeros((0, 5))
-    rates = events[events[:, 1] < count, 4]
-    values = by_modulus(beside_sticking(place, part, scaled, scale)[0] if place.held else passage.tangents)
+    seen = place.unmeasured if failed else place.told_of(part, passage.run)
+    events, matrix = np.zeros((0, 5)) if failed else passage.run.events, passage.tangents
+    rates = events[events[:, 1] < len(line.springs), 4]
+    if place.held:
+        matrix = beside_sticking(place, part, matrix * scale / scale[:, None], scale)[0]
+    values = by_modulus(matrix)
     alike = not any(line.counts[line.source[line.slider_rows[i]]] > 1 for i in place.held)
     return ExactOrbit(
         start=start,
@@ -478,20 +471,13 @@ def _of_line(place: LineMap, start: Array, failed: Outcome | None, iterations: i
         verdict=exact_verdict(values),
         iterations=iterations,
         outcome=failed or _found((passage.state - part) / scale, iterations),
-        torque_low=seen[:, k.TORQUE_LOW],
-        torque_high=seen[:, k.TORQUE_HIGH],
         line=line,
         value=place.value,
         periods=place.periods,
         events=stage_events(line, events),
-        twist_low=seen[:, k.LOW],
-        twist_high=seen[:, k.HIGH],
-        twist_mean=seen[:, k.TWIST_SUM] / place.length,
-        torque_mean=seen[:, k.TORQUE_SUM] / place.length,
-        contacts=() if failed else contacts_of(place, start, run),
-        clearance=float(seen[:, k.CLEARANCE].min()),
-        slowest_crossing=nan if failed else float(np.abs(rates).min(initial=np.inf)),
+        slowest_crossing=float("nan") if failed else float(np.abs(rates).min(initial=np.inf)),
         continuum=continuum(line.assembly, line.placed, Closing(place, scale), part, _watched, alike),
+        **fields_of(ExactOrbit, seen),
     )
 
 
@@ -499,22 +485,3 @@ def _watched(place: LineMap, part: Array) -> Watched:
     """What ``clutches`` asks of a motion."""
     seen, k, rows = place.watched(part).seen, kernel(), place.line.slider_rows
     return Watched(seen[rows, k.LOW], seen[rows, k.HIGH], seen[: rows.start, k.TWIST_SUM] / place.length)
-
-
-def contacts_of(place: LineMap, start: Array, run: StagedPassage) -> tuple[SpringContact, ...]:
-    """What every spring with stages touches in a watched passage from ``start`` (2m,), and how hard it lands.
-
-    An impact is a passage from the softest stage to another, its energy ½ m q̇² with the inertia m that the rest of the
-    line opposes to a push between the ends of the spring.
-    """
-    line, found = place.line, []
-    first, events = first_stages(line, start), stage_events(line, run.events)
-    for e in line.staged:
-        own = events.spring == e
-        sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
-        landed = (sides[1:] != 0) & (sides[:-1] == 0)
-        speeds = np.abs(events.rate[own][landed])
-        shares = run.seen[e, kernel().SHARES :][: line.counts[e]] / place.length
-        stages = line.sides[e, : line.counts[e]]
-        found.append(SpringContact.of(line.springs[e], shares, stages, speeds, 1 / line.inverse[e, e]))
-    return tuple(found)

@@ -7,9 +7,10 @@ of a period amount to, over frequency; and jumps: changes between neighbours tha
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, overload
+from functools import partial
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,22 +22,12 @@ from trunnion.equations.clutch_capacity import refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
-from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
-from trunnion.motion.orbits.exact_orbit import (
-    NUMBERS,
-    Displacement,
-    TorqueRange,
-    contacts_of,
-    displacement,
-    refuse_unbounded,
-    sides_of,
-)
+from trunnion.motion.orbits.exact_map import ExactMap, LineMap, OscillatorMap
+from trunnion.motion.orbits.exact_orbit import NUMBERS, Displacement, TorqueRange, fields_of, refuse_unbounded
 from trunnion.motion.orbits.piecewise_branch import line_over
-from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
-from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
-from trunnion.numerics.piecewise_linear.staged_flow import kernel
 from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
@@ -47,8 +38,6 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 if TYPE_CHECKING:
     import xarray as xr
 
-Place = TypeVar("Place", OscillatorMap, LineMap)
-Seen = TypeVar("Seen")
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 BYTES_A_STEP = 128.0
@@ -326,121 +315,49 @@ def sweep(
     needed = BYTES_A_STEP * states * len(omegas)
     require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
     if isinstance(oscillator, Driveline | Assembly):
-        return _of_line(oscillator, omegas, start, speed, least, most, same)
-    refuse_speed(oscillator.name, speed)
-    for omega in omegas:
-        refuse_unbounded(oscillator.but(frequency=float(omega)))
-    first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
-    maps = [OscillatorMap(float(omega), 1, oscillator) for omega in omegas]
+        maps, state, lost, result = _line(oscillator, omegas, start, speed)
+    else:
+        maps, state, lost, result = _oscillator(oscillator, omegas, start, speed)
+    settled, periods = np.zeros(len(omegas), dtype=bool), np.zeros(len(omegas), dtype=np.int64)
+    rows, outcome = list[dict[str, Any]](), Outcome(True, "swept", "every step was run")
+    for i, place in enumerate(maps):
+        found = place.steady(state, least, most, same)
+        settled[i], periods[i] = found.repeats, found.periods
+        # Over one period where the motion repeats, else over many.
+        measured = (
+            replace(place, periods=1 if found.repeats else MEASURED).measured(found.state) if found.done else None
+        )
+        if measured is None:
+            outcome = Outcome(False, "chatter", lost.format(place.value))
+            break
+        rows.append(measured[0])
+        state = measured[1]
+    rows += [maps[0].unmeasured] * (len(omegas) - len(rows))
+    columns = {name: [row[name] for row in rows] for name in fields_of(result.func, rows[0])}
+    seen = {name: tuple(c) if isinstance(c[0], str | tuple) else np.array(c) for name, c in columns.items()}
+    return result(value=omegas, settled=settled, periods=periods, outcome=outcome, **seen)
+
+
+Bench = tuple[Sequence[ExactMap], Array, str, partial[Any]]
+"""Maps by value, the state to begin with, what is said where a motion cannot be followed, and the result to be."""
+
+
+def _oscillator(o: PiecewiseOscillator, values: Array, start: ArrayLike | None, speed: float | str | None) -> Bench:
+    refuse_speed(o.name, speed)
+    for omega in values:
+        refuse_unbounded(o.but(frequency=float(omega)))
+    first = np.array([o.equilibrium(), 0.0] if start is None else start, dtype=float)
     lost = "the motion at ω = {:g} crosses too often in a period; raise damping"
-    steps = _stepped(maps, first, least, most, same, _measured, lost)
-    rows = np.full((len(omegas), len(COLUMNS)), np.nan)
-    for row, seen in zip(rows, steps.seen, strict=False):
-        row[:] = list(seen.values())
-    column = dict(zip(COLUMNS, rows.T, strict=True))
-    return OscillatorSweep(
-        value=omegas,
-        settled=steps.settled,
-        periods=steps.periods,
-        state=np.stack([column["x"], column["v"]], axis=1),
-        outcome=steps.outcome,
-        **displacement(oscillator, column),
-        oscillator=oscillator,
-        contact=tuple(contact_state(sides_of(code)) for code in column["contact"]),
-    )
+    return [OscillatorMap(float(omega), 1, o) for omega in values], first, lost, partial(OscillatorSweep, oscillator=o)
 
 
-def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float], Array] | None:
-    row = place.measure(state)
-    return (row, np.array([row["x"], row["v"]])) if row else None
-
-
-def _of_line(
-    line: Driveline | Assembly,
-    values: Array,
-    start: ArrayLike | None,
-    speed: float | str | None,
-    least: int,
-    most: int,
-    same: float,
-) -> LineSweep:
+def _line(line: Driveline | Assembly, values: Array, start: ArrayLike | None, speed: float | str | None) -> Bench:
     prepared = line_over(line, float(values[0]), speed)
     for value in values if prepared.sliders and not prepared.turns else ():
         refuse_overload(prepared.assembly, prepared.speed_at(float(value)))
     maps = [LineMap(float(value), 1, prepared) for value in values]
-    first = start_state(prepared, start)[maps[0].kept]
     lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"
-    steps = _stepped(maps, first, least, most, same, _watched, lost)
-    count, springs = len(values), len(prepared.springs)
-    low, high = np.full((2, count, springs), np.nan)
-    states = np.full((count, 2 * prepared.size), np.nan)
-    names = [prepared.springs[e] for e in prepared.staged]
-    nothing = tuple(SpringContact(name, np.zeros(0), np.nan, "none", np.zeros(0), np.nan) for name in names)
-    contacts = [nothing] * count
-    for i, seen in enumerate(steps.seen):
-        low[i], high[i], states[i], contacts[i] = seen
-    return LineSweep(
-        value=values,
-        settled=steps.settled,
-        periods=steps.periods,
-        state=states,
-        outcome=steps.outcome,
-        torque_low=low,
-        torque_high=high,
-        line=prepared,
-        contacts=tuple(contacts),
-    )
-
-
-def _watched(
-    place: LineMap, state: Array
-) -> tuple[tuple[Array, Array, Array, tuple[SpringContact, ...]], Array] | None:
-    run, start, k = place.watched(state), place.whole(state), kernel()
-    if not run.done:
-        return None
-    seen = run.seen[: len(place.line.springs)]
-    contacts = contacts_of(place, start, run)
-    return (seen[:, k.TORQUE_LOW], seen[:, k.TORQUE_HIGH], start, contacts), run.state[place.kept]
-
-
-class _Steps(NamedTuple, Generic[Seen]):
-    """Whether each step settled and after how many periods, both (points,), and what was seen of those run."""
-
-    settled: Flags
-    periods: Integers
-    seen: list[Seen]
-    outcome: Outcome
-
-
-def _stepped(
-    maps: Sequence[Place],
-    start: Array,
-    least: int,
-    most: int,
-    same: float,
-    measure: Callable[[Place, Array], tuple[Seen, Array] | None],
-    lost: str,
-) -> _Steps[Seen]:
-    """Every map from where the one before it ended, measured over one period where the motion repeats, else over many.
-
-    measure : (map, state at phase zero) → what is seen over its periods, and the state after them; None where it cannot
-    be followed, of which ``lost`` is said with the value.
-    """
-    steps = _Steps[Seen](
-        np.zeros(len(maps), dtype=bool), np.zeros(len(maps), dtype=np.int64), [],
-        Outcome(True, "swept", "every step was run"),
-    )  # fmt: skip
-    state = start
-    for i, place in enumerate(maps):
-        found = place.steady(state, least, most, same)
-        steps.settled[i], steps.periods[i] = found.repeats, found.periods
-        over = replace(place, periods=1 if found.repeats else MEASURED)
-        measured = measure(over, found.state) if found.done else None
-        if measured is None:
-            return steps._replace(outcome=Outcome(False, "chatter", lost.format(place.value)))
-        steps.seen.append(measured[0])
-        state = measured[1]
-    return steps
+    return maps, start_state(prepared, start)[maps[0].kept], lost, partial(LineSweep, line=prepared)
 
 
 def rattle_index(

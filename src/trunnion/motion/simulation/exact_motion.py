@@ -21,7 +21,7 @@ from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
 from trunnion.motion.simulation.simulation import positive_time
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.systems.regimes import SLACK
@@ -242,11 +242,6 @@ def stage_events(line: StagedLine, events: Array) -> StageEvents:
     """The events (count, 5) of a passage."""
     spring, stage = events[:, 1].astype(np.int64), events[:, 2].astype(np.int64)
     return StageEvents(events[:, 0], spring, stage, line.sides[spring, stage], events[:, 3])
-
-
-def first_stages(line: StagedLine, state: Array) -> Integers:
-    """Stage of every spring (m,) at a state."""
-    return stages_of(line.flow(), state)
 
 
 def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:
