@@ -275,7 +275,7 @@ def _print_orders(result: PeriodicResponse, unit: str) -> None:
 
 
 def _simulation_json(result: Any) -> dict[str, Any]:
-    from trunnion.motion.simulation.line_simulation import LineSimulation
+    from trunnion.motion.simulation.simulation import LineSimulation
 
     content = {
         "outcome": result.outcome.kind,

@@ -18,8 +18,8 @@ DRAWINGS = {
     "Tongues.plot": "trunnion.plots.tongues:draw",
     "Kinetostatics.plot": "trunnion.plots.kinetostatics:draw",
     # motions
-    "Simulation.plot": "trunnion.plots.motion:draw_history",
-    "Simulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
+    "SystemSimulation.plot": "trunnion.plots.motion:draw_history",
+    "SystemSimulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
     "LineSimulation.plot": "trunnion.plots.motion:draw_line_history",
     "LineSimulation.plot_order_map": "trunnion.plots.order_map:draw",
     "RunUp.plot": "trunnion.plots.run_up:draw",

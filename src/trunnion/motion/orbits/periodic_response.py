@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.clutch_capacity import carries_static_torque, refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
@@ -27,7 +27,8 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
 from trunnion.motion.orbits.linear_comparison import LinearComparison, compared
 from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contacts
-from trunnion.motion.simulation.simulation import simulate_system
+from trunnion.motion.simulation.simulate import simulate_system
+from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier
 from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark, remarks
 from trunnion.results.drawing import Axes, drawing
@@ -58,7 +59,7 @@ ORDERS = 12
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicResponse(Judged, IntegratedOrbit):
+class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
     """The periodic motion of a line at one speed.
 
     torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
@@ -77,16 +78,6 @@ class PeriodicResponse(Judged, IntegratedOrbit):
         return PeriodicOrbit.of(self)
 
     @property
-    def unit(self) -> str:  # type: ignore[override]
-        """Unit that speeds are printed in: that of the line's description."""
-        return speed_unit(self.line.assembly.line)
-
-    @property
-    def shafts(self) -> tuple[str, ...]:
-        """Names of the shafts; massless shafts in series count as one."""
-        return self.line.shafts
-
-    @property
     def turns(self) -> float:
         """Period in turns of the input."""
         return self.period * self.speed / (2 * np.pi)
@@ -97,28 +88,15 @@ class PeriodicResponse(Judged, IntegratedOrbit):
         count = max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(2 * max(self.trajectory.steps, 1)))))
         return np.asarray(self.trajectory.time_of_state[0] + self.period * np.arange(count) / count)
 
-    @cached_property
-    def motion(self) -> LineMotion:
-        """Twists, torques and rotations at ``time``."""
-        return self._at(self.time)
-
-    def _at(self, times: Array) -> LineMotion:
+    def motion_at(self, time: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations at times (m,) of the motion; NaN where none was found."""
+        times = np.atleast_1d(np.asarray(time, dtype=float))
         states = self.trajectory.at(times) if self.outcome.ok else np.full((len(times), self.system.size), np.nan)
         return self.line.observe(self.system, times, states)
 
-    @property
-    def twist(self) -> Array:
-        """Twist [rad] of every shaft (points, shaft)."""
-        return self.motion.twist
-
-    @property
-    def torque(self) -> Array:
-        """Torque [N m] of every shaft (points, shaft), positive with the twist."""
-        return self.motion.torque
-
     @cached_property
     def _torque_extremes(self) -> Extremes:
-        return extremes(lambda times: self._at(times).torque, self.trajectory.time_of_state)
+        return extremes(lambda times: self.motion_at(times).torque, self.trajectory.time_of_state)
 
     @property
     def torque_peak_to_peak(self) -> Array:
@@ -164,10 +142,10 @@ class PeriodicResponse(Judged, IntegratedOrbit):
         if not self.outcome.ok:
             return orders, np.full((count, len(self.shafts)), np.nan, dtype=complex)
         times = self.trajectory.time_of_state
-        found = fourier(lambda times: self._at(times).torque, times, count - 1)
+        found = fourier(lambda times: self.motion_at(times).torque, times, count - 1)
         begun = self.speed * times[0]
         if self.line.assembly.topology.free:  # a shift of time is no change there: count from where the input turns
-            begun += float(fourier(lambda times: self._at(times).rotation[:, :1], times, 0)[0, 0].real)
+            begun += float(fourier(lambda times: self.motion_at(times).rotation[:, :1], times, 0)[0, 0].real)
         return orders, np.asarray(found * np.exp(-1j * orders * begun)[:, None])
 
     def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:

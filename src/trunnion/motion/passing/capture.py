@@ -27,8 +27,8 @@ from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.passing.run_up_ending import WANDERS, Hanging, RunUpEnding, Slip
 from trunnion.motion.passing.schedule import Schedule
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
-from trunnion.motion.simulation.line_simulation import LineSimulation
 from trunnion.motion.simulation.simulate import prolonged, simulate_line
+from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.motion.simulation.strongest_order import strongest_order
 from trunnion.waiting import time_is_up
 

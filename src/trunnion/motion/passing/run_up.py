@@ -33,8 +33,8 @@ from trunnion.motion.passing.run_up_ending import RunUpEnding
 from trunnion.motion.passing.run_up_result import RunUp, SteadyResponse
 from trunnion.motion.passing.schedule import Schedule, check, schedule
 from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.line_simulation import LineSimulation
 from trunnion.motion.simulation.simulate import simulate_line
+from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.curves import extremes_in
 from trunnion.steady.shooting.free_orbit import closes, kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import periodic_orbit

@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Array, Codes
 from trunnion.motion.passing.run_up_ending import RunUpEnding
 from trunnion.motion.passing.schedule import Schedule
-from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.results.counts import counted
 from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing

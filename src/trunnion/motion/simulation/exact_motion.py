@@ -20,7 +20,7 @@ from trunnion.equations.sliders import beyond_capacity
 from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
-from trunnion.motion.simulation.simulation import positive_time
+from trunnion.motion.simulation.simulate import positive_time
 from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome

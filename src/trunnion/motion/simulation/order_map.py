@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import LineSimulation
 
 FEWEST_PER_TURN, PER_STEP = 64, 4
 """Samples: what swings faster than two of them would fold back on the orders shown. An integrator takes several steps
