@@ -78,8 +78,8 @@ from trunnion.motion.orbits.frequency_response import frequency_response as freq
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance as harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs as balance_springs
 from trunnion.motion.orbits.periodic_branch import periodic_branch as periodic_branch
+from trunnion.motion.orbits.periodic_branch import piecewise_branch as piecewise_branch
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch as piecewise_branch
 from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.run_up import run_up as run_up

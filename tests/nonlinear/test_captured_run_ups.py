@@ -15,7 +15,7 @@ import pytest
 from oracles.driven_chains import Chain, keeps, mean_speed, random_chain, reaches, run
 
 import trunnion as tn
-from trunnion.motion.passing.run_up_result import RunUp
+from trunnion.motion.passing.run_up import RunUp
 
 LOOSE, TIGHT = 1e-8, 1e-10
 MOST_EDGES = 0.05

@@ -10,7 +10,7 @@ from gears import HALF_GAP, gear_pair
 
 from trunnion.errors import InputError
 from trunnion.motion.orbits.basins import basins
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.motion.orbits.sweep import rattle_index, sweep
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 

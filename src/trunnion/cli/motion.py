@@ -32,7 +32,7 @@ from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.motion.orbits.periodic_response import PeriodicResponse
-    from trunnion.motion.passing.run_up_result import RunUp
+    from trunnion.motion.passing.run_up import RunUp
     from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 
 Subject = Annotated[

@@ -20,9 +20,9 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
-from trunnion.motion.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.motion.orbits.branch import STEP
-from trunnion.motion.orbits.piecewise_branch import begun_within
+from trunnion.motion.orbits.harmonic_balance import Series, SeriesBranch, balanced
+from trunnion.motion.orbits.periodic_branch import begun_within
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow, once
 from trunnion.numerics.continuation.newton import Root, solve

@@ -24,7 +24,7 @@ from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.motion.orbits.exact_map import ExactMap, LineMap, OscillatorMap
 from trunnion.motion.orbits.exact_orbit import NUMBERS, Displacement, TorqueRange, fields_of, refuse_unbounded
-from trunnion.motion.orbits.piecewise_branch import line_over
+from trunnion.motion.orbits.periodic_branch import line_over
 from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
