@@ -29,9 +29,7 @@ DRAWINGS = {
     "PeriodicResponse.plot_orders": "trunnion.plots.motion:draw_orders",
     "PeriodicBranch.plot": "trunnion.plots.response_curve:draw",
     # gaps
-    "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
-    "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
-    "ResponseComparison.plot": "trunnion.plots.frequency_response:draw_response",
+    "ResponseCurves.plot": "trunnion.plots.frequency_response:draw_response",
     "OscillatorSweep.plot": "trunnion.plots.frequency_response:draw_sweep",
     "LineSweep.plot": "trunnion.plots.frequency_response:draw_line_sweep",
     "Basins.plot": "trunnion.plots.frequency_response:draw_basins",

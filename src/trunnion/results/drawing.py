@@ -16,6 +16,7 @@ else:  # what draws takes long to load, and results are drawn seldom
 def drawing(result: object, method: str) -> Callable[..., Any]:
     """The function that draws ``method`` of ``result``. A result knows no picture; pictures know results."""
     drawings: dict[str, str] = import_module("trunnion.plots").DRAWINGS
-    module, name = drawings[f"{type(result).__name__}.{method}"].split(":")
+    keys = (f"{kind.__name__}.{method}" for kind in type(result).__mro__)
+    module, name = next(drawings[key] for key in keys if key in drawings).split(":")
     found: Callable[..., Any] = getattr(import_module(module), name)
     return found

@@ -35,11 +35,10 @@ from trunnion.motion.orbits.sweep import sweep
 from trunnion.motion.perturbation.averaging import averaging
 from trunnion.motion.perturbation.describing_function import DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales
-from trunnion.motion.perturbation.slow_flow import ApproximateResponse, largest_stable
+from trunnion.motion.perturbation.slow_flow import ApproximateResponse, ResponseCurves, largest_stable
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.curves import at_place, meetings
 from trunnion.results.declared import Described, Held, ending, fields_over, over, remarks
-from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.verdict import Verdict
@@ -68,7 +67,7 @@ SWEPT, SAMPLES = 101, 1024
 
 
 @dataclass(frozen=True, repr=False)
-class FrequencyResponse(Described):
+class FrequencyResponse(ResponseCurves, Described):
     """Half peak-to-peak over frequency by one method.
 
     frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
@@ -119,19 +118,6 @@ class FrequencyResponse(Described):
         yield from remarks(method=self.method, curve=self.curve)
         yield from ending(self.outcome)
 
-    def plot(
-        self,
-        axes: Axes | None = None,
-        *,
-        length: str = "",
-        unit: str | None = None,
-        marks: bool = True,
-        jumps: bool = True,
-        top: float | None = None,
-    ) -> Axes:
-        """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
-
     def describe(self, unit: str | None = None) -> str:
         """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``, by default in its own ``unit``."""
         unit = unit or self.unit
@@ -150,7 +136,7 @@ class FrequencyResponse(Described):
 
 
 @dataclass(frozen=True, repr=False)
-class ResponseComparison(Described):
+class ResponseComparison(ResponseCurves, Described):
     """Several methods side by side; the first is what the others are measured against."""
 
     responses: Mapping[str, FrequencyResponse]
@@ -187,19 +173,6 @@ class ResponseComparison(Described):
         yield over("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
         yield over("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
         yield over("point", "stable", np.concatenate([r.stable for r in found]))
-
-    def plot(
-        self,
-        axes: Axes | None = None,
-        *,
-        length: str = "",
-        unit: str | None = None,
-        marks: bool = True,
-        jumps: bool = True,
-        top: float | None = None,
-    ) -> Axes:
-        """All on one picture."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def describe(self, unit: str | None = None) -> str:
         """The table as text."""

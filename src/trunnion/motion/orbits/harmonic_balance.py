@@ -38,8 +38,7 @@ from trunnion.numerics.curves import extremes
 from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.threads import on_one_thread
-from trunnion.results.declared import Held, Result, over, remarks
-from trunnion.results.drawing import Axes
+from trunnion.results.declared import Held, over, remarks
 from trunnion.results.outcome import Outcome
 from trunnion.steady.shooting.closing import CLEAR, IntegratedClosing
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
@@ -56,15 +55,13 @@ FAR = 100.0
 
 
 @dataclass(frozen=True, repr=False)
-class SeriesBranch(Result):
+class SeriesBranch(PeriodicBranch):
     """A branch of periodic motions as Fourier series.
 
-    ``branch`` holds parameter, multipliers, verdicts, amplitudes and special points as ``periodic_branch`` does;
     rows (points, n, 2H + 1): mean, cosines, sines of every unknown; tail (points,): the largest of the last harmonics
     over the largest of all; periods: of the forcing in one of the motion.
     """
 
-    branch: PeriodicBranch
     rows: Array
     tail: Array
     periods: int
@@ -75,29 +72,24 @@ class SeriesBranch(Result):
         return fourier.order(self.rows)
 
     @property
-    def outcome(self) -> Outcome:
-        """Where the branch ended and why."""
-        return self.branch.outcome
+    def branch(self) -> PeriodicBranch:
+        """The branch alone, as other methods give it."""
+        return PeriodicBranch(**{name: getattr(self, name) for name in PeriodicBranch.__dataclass_fields__})
 
     def declared(self) -> Iterator[Held]:
-        """What the branch holds, with the series."""
-        yield from self.branch.declared()
+        """What every branch has, and the series."""
+        yield from super().declared()
         yield over("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
         yield over("point", "tail", self.tail)
         yield from remarks(harmonics=self.harmonics, periods=self.periods)
-
-    def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
-        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
-        return self.branch.plot(axes, curve=curve, unit=unit, jumps=jumps)
 
     @property
     def _worst(self) -> str:
         return f"tail up to {self.tail.max():.1e}"
 
     def __str__(self) -> str:
-        if not len(self.rows):
-            return str(self.branch)
-        return f"harmonic balance with {self.harmonics} harmonics, {self._worst}\n{self.branch}"
+        head = f"harmonic balance with {self.harmonics} harmonics, {self._worst}\n" if len(self.rows) else ""
+        return f"{head}{super().__str__()}"
 
 
 S = TypeVar("S", bound=SeriesBranch)
@@ -167,17 +159,17 @@ def _followed(
         outcome = Outcome(False, "not found", nothing)
     shape = -1, (len(problem.scale) - 1) // (2 * problem.h + 1), 2 * problem.h + 1
     rows = np.array([problem.rows(point) for point, _ in walk]).reshape(shape)
-    return kind(collect(problem, walk, outcome), rows, np.array([tail_of(row) for row in rows]), problem.periods)
+    tail = np.array([tail_of(row) for row in rows])
+    return collect(problem, walk, outcome, kind, rows=rows, tail=tail, periods=problem.periods)
 
 
 def _judged(found: S, limit: float) -> S:
     """With the outcome that the tail asked for was not reached, if so."""
-    worst, outcome = found.tail.max(initial=0.0), found.branch.outcome
+    worst = found.tail.max(initial=0.0)
     if worst < limit:
         return found
-    words = f"{outcome.sentence}; the last of {found.harmonics} harmonics are still {worst:.1e} of the motion"
-    short = Outcome(False, "tail", f"{words}: raise tail above {limit:.1g}, or give harmonics")
-    return replace(found, branch=replace(found.branch, outcome=short))
+    words = f"{found.outcome.sentence}; the last of {found.harmonics} harmonics are still {worst:.1e} of the motion"
+    return replace(found, outcome=Outcome(False, "tail", f"{words}: raise tail above {limit:.1g}, or give harmonics"))
 
 
 def tail_of(rows: Array) -> float:
@@ -196,8 +188,8 @@ class HarmonicBalance(SeriesBranch):
     def defect(self) -> Array:
         """Distance (points,) between start and end of the true motion through the series' start, in units of the
         states' scales; NaN where that motion cannot be computed (at a grazing)."""
-        assert isinstance(self.branch.problem, _Balance)
-        return np.array([self.branch.problem.defect(CurvePoint(z, z, 0)) for z in self.branch.unknowns])
+        assert isinstance(self.problem, _Balance)
+        return np.array([self.problem.defect(CurvePoint(z, z, 0)) for z in self.unknowns])
 
     def declared(self) -> Iterator[Held]:
         """What the branch holds, with the series and how far it is off."""
