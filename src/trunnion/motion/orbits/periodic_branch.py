@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +31,7 @@ from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
 from trunnion.motion.orbits.exact_orbit import orbit_near, piecewise_orbit, refuse_found_speed
 from trunnion.motion.orbits.periodic_response import require_forced
 from trunnion.motion.simulation.exact_motion import start_state
+from trunnion.results.outcome import Outcome
 from trunnion.results.parameter_names import Names
 from trunnion.steady.shooting.closing import Closing, IntegratedClosing, Phase, refuse_speed
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit, neutral_motions, require_kept_speed, torque_scale
@@ -67,15 +69,13 @@ class SystemOver(Names):
     def map(self, periods: int, tolerance: float, torque: float = 0.0) -> IntegratedMap:
         """The map over ``periods`` of the forcing, its value the parameter; of a line that starts free its values are
         the torque beyond the balance, in steps of a size of ``torque``, and the parameter."""
-        step, look = BESIDE * float(self.scale[-1]), self.observe
-        if not self.free:
-            return IntegratedMap(self.at, (self.begin,), (step,), 0.0, periods, tolerance, MOST_STEPS, look)
+        before, sizes = ((0.0,), (torque,)) if self.free else ((), ())
+        steps = tuple(BESIDE * size for size in (*sizes, float(self.scale[-1])))
+        family = self._driven if self.free else self.at
+        return IntegratedMap(family, (*before, self.begin), steps, 0.0, periods, tolerance, MOST_STEPS, self.observe)
 
-        def driven(drive: float, value: float) -> System:
-            return self.at(value, drive)
-
-        steps = BESIDE * torque, step
-        return IntegratedMap(driven, (0.0, self.begin), steps, 0.0, periods, tolerance, MOST_STEPS, look)
+    def _driven(self, torque: float, value: float) -> System:
+        return self.at(value, torque)
 
     def observe(self, system: System, times: Array, states: Array) -> Array:
         """The curves (times, curves) along states (times, n)."""
@@ -101,13 +101,7 @@ def system_over(
     ------
     InputError : an unknown parameter, a reversed range, an autonomous system, a free line not asked for.
     """
-    if not (np.isfinite(low) and np.isfinite(high) and low < high):
-        raise InputError("must be a rising range", key="low, high", value=[float(low), float(high)])
-    first = float(low if begin is None else begin)
-    if not low <= first <= high:
-        raise InputError(
-            "lies outside the range", key="begin", value=first, remedy=f"choose between {low:g} and {high:g}"
-        )
+    first = begun_within(low, high, begin, -np.inf)
     if isinstance(line, System):
         return _of_system(line, str(parameter), first, (high - low) * width)
     description = line.line if isinstance(line, Assembly) else line
@@ -190,22 +184,18 @@ def periodic_branch(
     """
     # The parameter's scale makes its largest step the one asked for, whatever a state's may be.
     over = system_over(line, parameter, low, high, begin, speed, longest_step / STEP, free=True)
-    problem, unknown, orbit = (
-        _free(over, start, periods, tolerance) if over.free else _forced(over, start, periods, tolerance)
-    )
-    return followed(problem, np.append(unknown, over.begin), low, high, most_points, orbit.outcome, progress=progress)
-
-
-def _forced(
-    over: SystemOver, start: ArrayLike | None, periods: int, tolerance: float
-) -> tuple[IntegratedClosing, Array, PeriodicOrbit]:
-    orbit = periodic_orbit(over.at(over.begin), start=start, periods=periods, tolerance=tolerance)
-    return IntegratedClosing(over.map(periods, tolerance), over.scale, over=over), orbit.start, orbit
+    if over.free:
+        problem, orbit = _free(over, start, periods, tolerance)
+    else:
+        orbit = periodic_orbit(over.at(over.begin), start=start, periods=periods, tolerance=tolerance)
+        problem = IntegratedClosing(over.map(periods, tolerance), over.scale, over=over)
+    first = np.concatenate([orbit.start, orbit.values, [over.begin]])
+    return followed(problem, first, low, high, most_points, orbit.outcome, progress=progress)
 
 
 def _free(
     over: SystemOver, start: ArrayLike | None, periods: int, tolerance: float
-) -> tuple[IntegratedClosing, Array, PeriodicOrbit]:
+) -> tuple[IntegratedClosing, PeriodicOrbit]:
     if periods != 1:
         raise InputError(
             "are followed of a line with a prescribed speed only", element="driveline", key="periods", value=periods,
@@ -221,31 +211,34 @@ def _free(
         over=over,
         neutral=neutral_motions(over.line),
     )
-    return problem, np.append(found.start, found.values), found
+    return problem, found
 
 
-def check_range(low: float, high: float) -> None:
-    """Refuse what is no rising range of positive frequencies.
+def check_range(low: float, high: float, least: float = 0.0) -> None:
+    """Refuse what is no rising range of numbers above ``least``.
 
     Raises
     ------
     InputError : another range.
     """
-    if not (np.isfinite(low) and np.isfinite(high) and 0 < low < high):
-        raise InputError("must be a rising range of positive frequencies", key="low, high", value=[low, high])
+    if not (np.isfinite(low) and np.isfinite(high) and least < low < high):
+        what = " of positive frequencies" if np.isfinite(least) else ""
+        raise InputError(f"must be a rising range{what}", key="low, high", value=[float(low), float(high)])
 
 
-def begun_within(low: float, high: float, begin: float | None) -> float:
-    """Where a branch over a range of frequencies begins: ``low``, or ``begin`` within it.
+def begun_within(low: float, high: float, begin: float | None, least: float = 0.0) -> float:
+    """Where a branch over a range of numbers above ``least`` begins: ``low``, or ``begin`` within it.
 
     Raises
     ------
-    InputError : no rising range, a frequency outside it.
+    InputError : no rising range, a number outside it.
     """
-    check_range(low, high)
-    first = low if begin is None else float(begin)
+    check_range(low, high, least)
+    first = float(low if begin is None else begin)
     if not low <= first <= high:
-        raise InputError("lies outside the range", key="begin", value=first, remedy=f"choose {low:g} to {high:g}")
+        raise InputError(
+            "lies outside the range", key="begin", value=first, remedy=f"choose between {low:g} and {high:g}"
+        )
     return first
 
 
@@ -288,45 +281,52 @@ def piecewise_branch(
     """
     first = begun_within(low, high, begin)
     if isinstance(oscillator, Driveline | Assembly):
-        return _of_line(oscillator, low, high, first, start, speed, periods, longest_step, most_points, progress)
-    refuse_speed(oscillator.name, speed)
-    orbit = piecewise_orbit(oscillator.but(frequency=first), start, periods=periods)
-    size = max([*map(abs, oscillator.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
-    scale = np.array([size, size * oscillator.frequency, (high - low) * longest_step / STEP])
-    place = OscillatorMap(first, periods, oscillator)
-    problem = Closing(place, scale, over=Names("frequency", "rad/s", ("x",), speed_unit=oscillator.speed_unit))
+        begun = _line_begun(oscillator, first, start, speed, periods)
+    else:
+        begun = _oscillator_begun(oscillator, first, start, speed, periods)
+    problem = Closing(begun.map, np.append(begun.size, (high - low) * longest_step / STEP), over=begun.over)
     return followed(
-        problem, np.append(orbit.start, first), low, high, most_points, orbit.outcome, tolerance=1e-11,
+        problem, np.append(begun.start, first), low, high, most_points, begun.outcome, tolerance=begun.tolerance,
         progress=progress,
     )  # fmt: skip
 
 
-def _of_line(
-    line: Driveline | Assembly,
-    low: float,
-    high: float,
-    first: float,
-    start: ArrayLike | None,
-    speed: float | str | None,
-    periods: int,
-    longest_step: float,
-    most_points: int,
-    progress: Progress | None,
-) -> PeriodicBranch:
+class _Begun(NamedTuple):
+    """Where a branch begins: its map, the size of each state that counts as one, the first state and how it was found,
+    what the branch lies over, and how well its points close."""
+
+    map: Any
+    size: Array
+    start: Array
+    outcome: Outcome
+    over: Names
+    tolerance: float
+
+
+def _oscillator_begun(
+    o: PiecewiseOscillator, value: float, start: ArrayLike | None, speed: float | str | None, periods: int
+) -> _Begun:
+    refuse_speed(o.name, speed)
+    orbit = piecewise_orbit(o.but(frequency=value), start, periods=periods)
+    size = max([*map(abs, o.breakpoints), 0.0]) or max(abs(orbit.highest), abs(orbit.lowest), 1e-12)
+    over = Names("frequency", "rad/s", ("x",), speed_unit=o.speed_unit)
+    sizes = size * np.array([1.0, o.frequency])
+    return _Begun(OscillatorMap(value, periods, o), sizes, orbit.start, orbit.outcome, over, 1e-11)
+
+
+def _line_begun(
+    line: Driveline | Assembly, value: float, start: ArrayLike | None, speed: float | str | None, periods: int
+) -> _Begun:
     refuse_friction(line.line if isinstance(line, Assembly) else line, NOT_FOLLOWED, STAND_IN)
-    prepared = line_over(line, first, speed)
-    orbit, place = orbit_near(prepared, start_state(prepared, start), first, periods), LineMap(first, periods, prepared)
+    prepared = line_over(line, value, speed)
+    orbit, place = orbit_near(prepared, start_state(prepared, start), value, periods), LineMap(value, periods, prepared)
     size = np.abs(orbit.start)
     if orbit.outcome.ok:
         # Twists count by the larger of the motion and the gap, rates by that per phase.
         size[: len(prepared.springs)] = np.maximum(np.abs(orbit.twist_low), np.abs(orbit.twist_high))
-    scale = np.append(place.scale(size), (high - low) * longest_step / STEP)
     name = "speed" if prepared.clock == "speed" else "frequency"
-    problem = Closing(
-        place, scale, over=Names(name, "rad/s", prepared.springs, "N*m", speed_unit(prepared.assembly.line))
-    )
-    begins = np.append(orbit.start[place.kept], first)
-    return followed(problem, begins, low, high, most_points, orbit.outcome, tolerance=1e-10, progress=progress)
+    over = Names(name, "rad/s", prepared.springs, "N*m", speed_unit(prepared.assembly.line))
+    return _Begun(place, place.scale(size), orbit.start[place.kept], orbit.outcome, over, 1e-10)
 
 
 def line_over(line: Driveline | Assembly, value: float, speed: float | str | None) -> StagedLine:
