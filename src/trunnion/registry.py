@@ -21,7 +21,7 @@ class Analysis:
     sentence : what it answers, as ``trunnion --help`` says.
     features : the row of ``trunnion.features.ROWS`` that says how it treats each feature of a line; "" where it takes
         no line.
-    pictures : what draws its results, by class and method of the result.
+    pictures : what draws its results, by class and method of the result or of what it is a kind of.
     command : the function of the command of the same name; "" without one.
     view : the view of the application, of ``VIEWS``, that shows it; "" where none does.
     """
@@ -253,18 +253,11 @@ ANALYSES = (
         "frequency_response",
         "Frequency response with folds, jumps and stability, by one method or several.",
         features="branch",
-        pictures={
-            "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
-            "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
-        },
+        pictures={"ResponseCurves.plot": "trunnion.plots.frequency_response:draw_response"},
         command="trunnion.cli.rattle:frequency_response",
         view="motion",
     ),
-    Analysis(
-        "compare_responses",
-        "The same frequency response by several methods.",
-        pictures={"ResponseComparison.plot": "trunnion.plots.frequency_response:draw_response"},
-    ),
+    Analysis("compare_responses", "The same frequency response by several methods."),
     Analysis(
         "sweep",
         "Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.",
