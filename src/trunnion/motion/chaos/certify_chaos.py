@@ -1,8 +1,8 @@
 """A verdict on a motion: regular, chaotic, unbounded or undecided, with its reasons (THA–LEA–PM).
 
 The three steps of Bugaru and Vasile (Appl. Sci. 12, 2022, 6182), with exponents of the standard definition:
-time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria of
-``chaos_criteria``), Poincaré map (PM: does it repeat). The 0–1 test of the map is a second, independent witness.
+time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria below), Poincaré map
+(PM: does it repeat). The 0–1 test of the map is a second, independent witness.
 
     unbounded   the motion grows until it cannot be followed, or states and rates grow from block to block of the run;
                 clocks and what turns (states that may move by a period without changing any rate) do not count

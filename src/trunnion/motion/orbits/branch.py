@@ -102,10 +102,10 @@ class PeriodicBranch(Result):
     """Periodic motions along a branch.
 
     parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a line which starts free
-    sets aside; verdict (points,) codes; peak_to_peak (points,
-    curves): of the shaft torques [N m] of a line, or of the states of a system, named by ``curves``; largest: their
-    largest absolute values; amplitude (points, n): of the fundamental of every state; special:
-    folds and other special points in order; outcome: where the branch ended and why.
+    sets aside; verdict (points,) codes; peak_to_peak (points, curves): of the shaft torques [N m] of a line, or of the
+    states of a system, named by ``curves``; largest: their largest absolute values; amplitude (points, n): of the
+    fundamental of every state; special: folds and other special points in order; outcome: where the branch ended and
+    why.
     """
 
     label: str
