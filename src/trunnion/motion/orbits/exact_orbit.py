@@ -334,12 +334,13 @@ def _found(missed: Array, iterations: int) -> Outcome:
 
 
 def _of_mass(place: OscillatorMap, root: Root) -> PiecewiseOrbit:
-    passage, seen, crossings, clearance = place.nowhere(), place.unmeasured, np.zeros((0, 4)), float("nan")
-    outcome = _not_converged(root, "the end of a sweep")
     if root.converged:
         passage, seen = place(root.x), place.measured(root.x)[0]
         outcome, crossings = _found(passage.state - root.x, root.iterations), passage.run.crossings
         clearance = _clearance(place.oscillator, root.x, place.length)
+    else:
+        passage, seen, crossings, clearance = place.nowhere(), place.unmeasured, np.zeros((0, 4)), float("nan")
+        outcome = _not_converged(root, "the end of a sweep")
     values = by_modulus(passage.tangents)
     return PiecewiseOrbit(
         start=root.x,

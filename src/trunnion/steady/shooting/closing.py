@@ -318,7 +318,9 @@ def refuse_speed(oscillator: str, speed: float | str | None) -> None:
 
 def exact_verdict(values: Complex) -> Verdict:
     """The verdict on multipliers of a motion that is exact in pieces."""
-    return Verdict(int(verdicts(np.abs(values).max(), EXACT_ERROR, _undamped(values))))
+    radius = float(np.abs(values).max())
+    undamped = abs(radius - 1) <= EXACT_ERROR and _undamped(values)
+    return Verdict(int(verdicts(radius, EXACT_ERROR, undamped)))
 
 
 def _undamped(values: Complex) -> bool:
