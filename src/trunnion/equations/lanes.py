@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -66,15 +67,18 @@ def chain_program(
     members = _members(topo, by_speed)
     member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
     return ChainProgram(
-        parent,
-        *_split([speed for speed, _ in walk.joint_input]),
-        *_split([within for _, within in walk.joint_input]),
-        *_split(near),
-        *_split(near_speed),
-        topo.unknown_of[members].astype(np.int64),
-        *_split([walk.within[s] for s in members]),
-        *_split(member_speed),
-        *_split([(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates]),
+        parent=parent,
+        **_split("joint_speed_source joint_rate", [speed for speed, _ in walk.joint_input]),
+        **_split("joint_ratio_source joint_ratio", [within for _, within in walk.joint_input]),
+        **_split("near_source near_ratio", near),
+        **_split("near_speed_source near_speed", near_speed),
+        member_unknown=topo.unknown_of[members].astype(np.int64),
+        **_split("member_source member_ratio", [walk.within[s] for s in members]),
+        **_split("member_speed_source member_speed", member_speed),
+        **_split(
+            "wave_unknown wave_cycles",
+            [(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates],
+        ),
         ripple_first=first,
         ripple_order=np.array([order for order, _ in ripples]),
         ripple_cycles=np.array([cycles for _, cycles in ripples]),
@@ -164,5 +168,7 @@ def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
     return sorted(members, key=lambda s: topo.unknown_of[s])
 
 
-def _split(pairs: list[tuple[int, float]]) -> tuple[Integers, Array]:
-    return np.array([p[0] for p in pairs], dtype=np.int64), np.array([p[1] for p in pairs], dtype=float)
+def _split(names: str, pairs: list[tuple[int, float]]) -> dict[str, Any]:
+    """Sources and numbers of pairs, each under a name."""
+    source, number = names.split()
+    return {source: np.array([p[0] for p in pairs], dtype=np.int64), number: np.array([p[1] for p in pairs], float)}

@@ -238,9 +238,9 @@ def line_regimes(assembly: Assembly) -> LineRegimes | None:
         (),
         lambda t, x, p: 0,
         from_kernel(guards_kernel, "line_jump") if any(part.along for part in parts) else None,
-        transitions,
-        directions,
-        tuple(part for part in parts if part.along),
+        transitions=transitions,
+        directions=directions,
+        sliders=tuple(part for part in parts if part.along),
     )
 
 

@@ -360,10 +360,11 @@ class _Builder:
         springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
-            self.assembly, springs, names, self.source, self.turns, speed, inverse, drag, constant, by_speed, waves,
-            _padded([part.pieces for part in parts], 0.0), _padded([part.guards for part in parts], 0.0),
-            _padded([part.then for part in parts], -1), np.array([len(part.pieces) for part in parts]),
-            _padded([part.side for part in parts], 0), _padded([part.moves for part in parts], 1.0),
+            assembly=self.assembly, springs=springs, sliders=names, source=self.source, turns=self.turns, speed=speed,
+            inverse=inverse, drag=drag, constant=constant, constant_by_speed=by_speed, waves=waves,
+            pieces=_padded([part.pieces for part in parts], 0.0), guards=_padded([part.guards for part in parts], 0.0),
+            then=_padded([part.then for part in parts], -1), counts=np.array([len(part.pieces) for part in parts]),
+            sides=_padded([part.side for part in parts], 0), moves=_padded([part.moves for part in parts], 1.0),
         )  # fmt: skip
 
     def _torques(self) -> list[Wave]:

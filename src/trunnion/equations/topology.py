@@ -378,18 +378,11 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         count += unknown
     names = _names(line, draft, coordinate)
     return Topology(
-        tuple(draft.stations),
-        tuple(compliances),
-        tuple(draft.reference),
-        tuple(coordinate),
-        tuple(draft.prescribed),
-        tuple(draft.disks),
-        tuple(draft.tube_ends),
-        tuple(draft.speed_ratio),
-        tuple(names),
-        tuple(_meshes(line, draft, compliances)),
-        tuple(_points(line, draft, coordinate, names)),
-    )
+        stations=tuple(draft.stations), compliances=tuple(compliances), reference=tuple(draft.reference),
+        coordinate=tuple(coordinate), prescribed=tuple(draft.prescribed), disks=tuple(draft.disks),
+        tube_ends=tuple(draft.tube_ends), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
+        meshes=tuple(_meshes(line, draft, compliances)), points=tuple(_points(line, draft, coordinate, names)),
+    )  # fmt: skip
 
 
 def _points(line: Driveline, draft: _Draft, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:

@@ -10,7 +10,6 @@ mode jumps, and an order in the gap meets it nowhere.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -29,11 +28,12 @@ from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Judged, axis, over, remark
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
 from trunnion.results.units import amplification_words, order_words
+from trunnion.results.words import HERTZ
 from trunnion.steady.orders.forced_response import shaft_names
 
 if TYPE_CHECKING:
@@ -48,75 +48,79 @@ CLOSE = 1e-9
 """Share of the speed within which a crossing of a mode that moves is found."""
 
 
-@dataclass(frozen=True)
+@labelled
 class ExcitationLine:
-    """Frequency = order · Ω + frequency [rad/s], and what excites with it.
+    """Frequency = order · Ω + frequency, and what excites with it.
 
-    torque [N m]: largest amplitude, over the speeds, of the disks' torques of that order, added up; NaN where none acts
-    (joints, meshes, transmission errors) or a table does not reach all speeds.
+    torque: NaN where none acts (joints, meshes, transmission errors) or a table does not reach all speeds.
     """
 
-    order: float
-    frequency: float
-    causes: tuple[str, ...]
-    torque: float = np.nan
+    order: float = variable("", "1")
+    frequency: float = variable("", "rad/s", name="fixed_frequency")
+    causes: tuple[str, ...] = internal("elements that excite")
+    torque: float = variable("", "N*m", "of disks, the largest", default=np.nan)
+
+    @property
+    @computed(variable("", "1", "elements that excite"))
+    def sources(self) -> int:
+        """How many elements excite."""
+        return len(self.causes)
 
     @property
     def name(self) -> str:
         """ "order 2", or the frequency of an excitation fixed in time."""
-        return show_speed(self.frequency, "Hz") if self.frequency else order_words(self.order)
+        return HERTZ.speed(self.frequency) if self.frequency else order_words(self.order)
+
+    def __str__(self) -> str:
+        return self.name
 
 
-@dataclass(frozen=True)
+@labelled
 class Crossing:
-    """Where an excitation line meets a mode: input speed and frequency [rad/s], mode by its number, ζ, 1/(2ζ)."""
+    """Where an excitation line meets a mode."""
 
-    speed: float
-    frequency: float
-    mode: int
-    line: ExcitationLine
-    damping_ratio: float
+    speed: float = variable("", "rad/s", name="crossing_speed")
+    frequency: float = variable("", "rad/s", name="crossing_frequency")
+    mode: int = variable(name="crossing_mode")
+    line: ExcitationLine = variable(name="crossing_line")
+    damping_ratio: float = internal("ζ", "1")
 
     @property
+    @computed(variable("", "1", "1/(2ζ)"))
     def amplification(self) -> float:
         """1/(2ζ); infinite without damping."""
         return 1 / (2 * self.damping_ratio) if self.damping_ratio > 0 else np.inf
 
 
-@dataclass(frozen=True, repr=False)
-class CampbellDiagram(Judged):
-    """Modes over speed and what crosses them.
+@labelled
+class CampbellDiagram(Result):
+    """Modes over speed and what crosses them; the first is mode 2 where the line can turn as a whole."""
 
-    speed (speed,) [rad/s]; mode (mode,) numbers, 2 first where the line can turn as a whole; frequency (speed, mode)
-    damped [rad/s] and damping_ratio (speed, mode) [1], NaN where a mode does not oscillate; kinetic (rotation, mode)
-    and potential (spring, mode): shares of the energy at the middle speed; lines: excitations; crossings: by speed;
-    margin: half width of the band about the modes [1]; jumps: speeds [rad/s] at which a mode jumps over an excitation,
-    with its number and that excitation; bent: whether modes are those of joints made straight; remarks: what is left
-    out.
-    """
+    speed: Array = coordinate("speed", "rad/s")
+    mode: Integers = coordinate("mode")
+    frequency: Array = variable("speed mode", "rad/s", "damped")
+    damping_ratio: Array = variable("speed mode", "1", "NaN where a mode does not oscillate")
+    rotations: tuple[str, ...] = coordinate("rotation")
+    springs: tuple[str, ...] = coordinate("spring")
+    kinetic: Array = variable("rotation mode", "1", "share of the kinetic energy, at the middle speed")
+    potential: Array = variable("spring mode", "1", "share of the elastic energy, at the middle speed")
+    lines: tuple[ExcitationLine, ...] = members(
+        ExcitationLine, "excitation_line", name="name", only="order torque sources frequency"
+    )
+    crossings: tuple[Crossing, ...] = members(Crossing, "crossing", "by speed")
+    margin: float = attribute("half width of the band about the modes")
+    jumps: tuple[tuple[float, int, ExcitationLine], ...] = internal("speed [rad/s], mode and excitation it jumps over")
+    bent: bool = internal("whether modes are those of joints made straight")
+    remarks: tuple[Finding, ...] = internal("what is left out")
+    unit: str = internal("of speeds in print")
 
-    speed: Array
-    mode: Integers
-    frequency: Array
-    damping_ratio: Array
-    kinetic: Array
-    potential: Array
-    rotations: tuple[str, ...]
-    springs: tuple[str, ...]
-    lines: tuple[ExcitationLine, ...]
-    crossings: tuple[Crossing, ...]
-    margin: float
-    jumps: tuple[tuple[float, int, ExcitationLine], ...]
-    bent: bool
-    remarks: tuple[Finding, ...]
-    unit: str
-
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``."""
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
         jumps = [
             Finding(
                 Gravity.NOTE,
-                f"Mode {mode} jumps over {line.name} at {show_speed(float(f'{speed:.5g}'), unit)}, where a spring "
+                f"Mode {mode} jumps over {line.name} at {self.words.speed(float(f'{speed:.5g}'))}, where a spring "
                 "changes its stage: on either side of that speed the order is not at resonance.",
             )
             for speed, mode, line in self.jumps
@@ -146,52 +150,25 @@ class CampbellDiagram(Judged):
                     found.append((off, int(number), line))
         return tuple(sorted(found, key=lambda one: abs(one[0])))
 
-    def declared(self) -> Iterator[Held]:
-        """Modes over speed, shares of energy, crossings."""
-        yield axis("speed", self.speed, "rad/s")
-        yield axis("mode", self.mode)
-        yield axis("rotation", self.rotations)
-        yield axis("spring", self.springs)
-        yield axis("excitation_line", [line.name for line in self.lines])
-        yield over("speed mode", "frequency", self.frequency, "rad/s", "damped")
-        yield over("speed mode", "damping_ratio", self.damping_ratio, "1")
-        yield over("rotation mode", "kinetic", self.kinetic, "1", "share of the kinetic energy")
-        yield over("spring mode", "potential", self.potential, "1", "share of the elastic energy")
-        yield over("excitation_line", "order", [line.order for line in self.lines], "1")
-        yield over("excitation_line", "torque", [line.torque for line in self.lines], "N*m", "of disks, the largest")
-        yield over("excitation_line", "sources", [len(line.causes) for line in self.lines], "1", "elements that excite")
-        yield over("excitation_line", "fixed_frequency", [line.frequency for line in self.lines], "rad/s")
-        yield over("crossing", "crossing_speed", [c.speed for c in self.crossings], "rad/s")
-        yield over("crossing", "crossing_frequency", [c.frequency for c in self.crossings], "rad/s")
-        yield over("crossing", "crossing_mode", [c.mode for c in self.crossings])
-        yield over("crossing", "crossing_line", [c.line.name for c in self.crossings])
-        yield over("crossing", "amplification", [c.amplification for c in self.crossings], "1", "1/(2ζ)")
-        yield remark("margin", self.margin)
-
-    def describe(self, unit: str | None = None) -> str:
-        """The modes by what moves, and the crossings, speeds in ``unit``."""
-        unit = unit or self.unit
-        span = f"{show_speed(self.speed[0], unit)} to {show_speed(self.speed[-1], unit)}"
+    def _lines(self) -> Iterator[str]:
         straight = ", joints made straight" if self.bent else ""
         modes, times = counted(len(self.mode), "mode"), counted(len(self.crossings), "time")
-        rows = [f"{modes} from {span}{straight}, crossed {times}"]
+        yield f"{modes} from {self.words.ends(self.speed[0], self.speed[-1])}{straight}, crossed {times}"
         for m, number in enumerate(self.mode):
             hertz = self.frequency[:, m] / (2 * np.pi)
             low, high = np.nanmin(hertz, initial=np.inf), np.nanmax(hertz, initial=-np.inf)
             if not low <= high:
-                rows.append(f"  mode {number}: overdamped, does not oscillate")
+                yield f"  mode {number}: overdamped, does not oscillate"
                 continue
             size = f"{low:.4g} Hz" if high - low <= 5e-4 * high else f"{low:.4g} to {high:.4g} Hz"
-            rows.append(f"  mode {number}: {size}, {self.named(int(number))}")
+            yield f"  mode {number}: {size}, {self.named(int(number))}"
         for c in self.crossings:
-            rows.append(
-                f"  {show_speed(float(f'{c.speed:.5g}'), unit)}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
+            yield (
+                f"  {self.words.speed(float(f'{c.speed:.5g}'))}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
                 f"{c.mode} ({c.frequency / (2 * np.pi):.4g} Hz), amplification {amplification_words(c.amplification)}"
             )
         if not self.lines:
-            rows.append("  Nothing excites this line.")
-        rows += [f"  {finding}" for finding in self.findings_in(unit)]
-        return "\n".join(rows)
+            yield "  Nothing excites this line."
 
     def plot(
         self,
@@ -258,9 +235,11 @@ def campbell_diagram(
                 else:
                     met.append(Crossing(at, here, int(mode[m]), one, zeta))
     return CampbellDiagram(
-        speed, mode, frequency, ratio, kinetic, potential, assembly.topology.names, shaft_names(assembly), lines,
-        tuple(sorted(met, key=lambda c: c.speed)), margin, tuple(sorted(jumps, key=lambda jump: jump[0])),
-        bent(assembly), left_out("campbell_diagram", assembly.line), speed_unit(assembly.line),
+        speed=speed, mode=mode, frequency=frequency, damping_ratio=ratio, rotations=assembly.topology.names,
+        springs=shaft_names(assembly), kinetic=kinetic, potential=potential, lines=lines,
+        crossings=tuple(sorted(met, key=lambda c: c.speed)), margin=margin,
+        jumps=tuple(sorted(jumps, key=lambda jump: jump[0])), bent=bent(assembly),
+        remarks=left_out("campbell_diagram", assembly.line), unit=speed_unit(assembly.line),
     )  # fmt: skip
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import nan, pi
 
-from trunnion.results.speeds import show_speed
 from trunnion.results.units import order_words
+from trunnion.results.words import HERTZ
 
 CLOSE, FAR = 5e-4, 0.5
 """Distance from a mode, as a share of its frequency, within which one is on it, and beyond which it says nothing."""
@@ -29,7 +29,7 @@ class Cause:
     @property
     def name(self) -> str:
         """ "order 2", "the excitation at 25 Hz"."""
-        return f"the excitation at {show_speed(self.frequency, 'Hz')}" if self.frequency else order_words(self.order)
+        return f"the excitation at {HERTZ.speed(self.frequency)}" if self.frequency else order_words(self.order)
 
     @property
     def critical(self) -> float:

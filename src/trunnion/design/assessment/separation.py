@@ -67,8 +67,8 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
 
 def _near(case: Case, name: str, status: Status, said: str, near: float, speed: float, inputs: str = "") -> Check:
     return Check(
-        name, status, RULE, said + case.suffix, above(near, REQUIRED), 0.0, near, REQUIRED, "1", speed, inputs,
-        case.name,
+        name, status, RULE, said + case.suffix, margin=above(near, REQUIRED), value=near, limit=REQUIRED, unit="1",
+        speed=speed, inputs=inputs, load_case=case.name,
     )  # fmt: skip
 
 

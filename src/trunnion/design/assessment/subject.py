@@ -26,8 +26,8 @@ from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import own_motions_of, response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import Largest, first_speeds, search, sharpened, thinned
-from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.steady.orders.spectrum import order_spectrum
 from trunnion.waiting import OutOfTime
 
@@ -76,7 +76,7 @@ class Subject:
 
     def shown(self, speed: float) -> str:
         """A speed in the unit of the description."""
-        return show_speed(float(f"{speed * speed_factor(self.unit):.5g}") / speed_factor(self.unit), self.unit)
+        return Words(self.unit).speed(speed, 5)
 
     def ranges(self, ends: Iterable[tuple[float, float]]) -> str:
         """ "300 rpm to 400 rpm and 500 rpm"."""

@@ -14,7 +14,7 @@ from trunnion.response.kinetostatics.chain import Chain, period_turns
 from trunnion.response.kinetostatics.motion import Drive
 from trunnion.response.kinetostatics.supports import Supports
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.results.words import Words
 
 NEAR_RESONANCE = 1 / 3
 """Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
@@ -60,11 +60,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     lowest, excitation = float(elastic[0]), max(rates) * drive.speed
     if excitation <= NEAR_RESONANCE * lowest:
         return []
-    unit = frequency_unit(speed_unit(chain.line))
-
-    def show(frequency: float) -> str:
-        return f"{frequency * speed_factor(unit):.4g} {unit}"
-
+    show = Words(speed_unit(chain.line)).of_frequencies.rounded
     torque = "inertia torques of the rigid line" if rigid else "quasi-static inertia torques"
     if excitation < lowest:
         grave, share = Gravity.CAUTION, (excitation / lowest) ** 2

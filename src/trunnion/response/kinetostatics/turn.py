@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
@@ -144,6 +145,7 @@ def kinetostatics(
         findings=remarks(train, drive, rigid, forces, turns, twist),
         power_loss=couples.friction_power,
         power_residual=_power_residual(train, drive, motion, passed, twist, couples.friction_power),
+        unit=speed_unit(line),
     )
 
 

@@ -34,7 +34,7 @@ from trunnion.features import left_out
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import four_figures
+from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 from trunnion.steady.orders.forced_response import shaft_names
@@ -280,7 +280,7 @@ def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Ex
         yield Finding(
             Gravity.CAUTION if grave else Gravity.NOTE,
             f"Torque is applied at the mean angle of {worst[1]}; its swing can shift up to "
-            f"{four_figures(float(f'{100 * worst[0]:.2g}'))} % of it to other orders.{check}",
+            f"{figures(100 * worst[0], 2)} % of it to other orders.{check}",
         )
 
 
