@@ -150,6 +150,7 @@ def assessment_json(result: Assessment) -> dict[str, Any]:
                 **output.record(c, CHECK, words),
                 "rule": c.rule.name,
                 "order": c.cause.order if c.cause else None,
+                **({"order_frequency": c.cause.frequency} if c.cause and c.cause.frequency else {}),
                 "mode": c.cause.mode if c.cause and c.cause.mode else None,
             }
             for c in result.checks

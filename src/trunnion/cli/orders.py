@@ -16,6 +16,7 @@ from trunnion.cli.places import Shown
 from trunnion.cli.readers import is_number, range_of, read_even_axis, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
+from trunnion.results.speeds import order_name
 
 if TYPE_CHECKING:
     import numpy as np
@@ -183,8 +184,6 @@ def _by_order(result: OrderResponse) -> Any:
     """What a table shows: sums over the cycle, then amplitude and phase of every order."""
     import numpy as np
 
-    from trunnion.response.orders.result import order_name
-
     data = _in_unit(result)
     kept = data[["mean_torque", "peak_torque", "vibratory_torque", "rated_torque", "vibratory_stress", "heat"]]
     labels = [order_name(o, f) for o, f in zip(result.order, result.frequency, strict=True)]
@@ -212,22 +211,17 @@ def _response_json(result: OrderResponse, findings: Sequence[Finding]) -> dict[s
 
 def _spring_json(result: OrderResponse, spring: int) -> dict[str, Any]:
     """Largest torques [N m] of a spring, each with its speed; a rated torque of couplings with a rating alone."""
-    from trunnion.response.orders.result import order_name
-
-    factor, columns = (
-        result.words.factor,
-        {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque},
-    )
+    factor = result.words.factor
+    columns = {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque}
     if result.rated[spring]:
         columns["rated_torque"] = result.rated_torque
     found: dict[str, Any] = {"spring": result.springs[spring]}
     for name, values in columns.items():
         value, speed = result.largest(values[:, spring])
         found |= {name: value, "speed" if name == "peak_torque" else f"{name}_speed": speed * factor}
-    order, speed, size = result.leading_order(result.springs[spring])
-    if not size > 0:
-        return found | {"order": "none", "order_amplitude": None, "order_speed": None}
-    name = order_name(order, float(result.frequency[result.order == order].max(initial=0.0)))
+    name, speed, size = result.leading(result.springs[spring])
+    if name == "none":
+        return found | {"order": name, "order_amplitude": None, "order_speed": None}
     return found | {"order": name, "order_amplitude": size, "order_speed": speed * factor}
 
 

@@ -127,10 +127,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     load = co.load - co.not_carried
     walk = _Walk(topo, co.shift, [law.turned for law in co.joints])
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
-    waves = [
-        np.concatenate([getattr(wave, key).T for wave in co.waves]) if co.waves else np.zeros((0, cases))
-        for key in ("share", "phase")
-    ]
+    waves = [one for wave in co.waves for one in wave.harmonics]
     cosine = [law.cosine if isinstance(law, CrossLaw) else np.ones((cases, 1)) for law in co.joints]
     ripples = [law for law in co.joints if isinstance(law, FourierLaw)]
     sizes, phases = ([part for law in ripples for part in getattr(law, key)] for key in ("amplitude", "phase"))
@@ -145,8 +142,8 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
         member_load=np.ascontiguousarray((sign * load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
         member_viscous=np.ascontiguousarray((co.viscous[:, members] / inertia[:, owner] * over_speed[:, None]).T),
         member_quadratic=np.ascontiguousarray((co.quadratic[:, members] / inertia[:, owner]).T),
-        wave_share=np.ascontiguousarray(waves[0]),
-        wave_phase=np.ascontiguousarray(waves[1]),
+        wave_share=np.reshape([one.amplitude for one in waves], (len(waves), cases)),
+        wave_phase=np.reshape([one.phase for one in waves], (len(waves), cases)),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
         ripple=_rows(sizes, cases),
         ripple_phase=_rows(phases, cases),

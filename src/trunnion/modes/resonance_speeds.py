@@ -26,9 +26,9 @@ from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
 from trunnion.features import left_out
+from trunnion.laws.harmonic import common_rate
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
 from trunnion.results.finding import Finding

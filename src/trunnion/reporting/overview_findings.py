@@ -12,7 +12,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import quiet
+from trunnion.equations.harmonics import unexcited
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.along import StabilityAlong
@@ -139,7 +139,7 @@ def response_findings(
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
     try:
-        sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
+        sweep = speed_sweep(unexcited(assembly.line), np.concatenate([places, usual]))
     except (InputError, ComputationError, OutOfTime):  # without a linear response, which the checks say
         return
     torque = sweep.torque_amplitude[: len(places)]

@@ -10,6 +10,8 @@ mode jumps, and an order in the gap meets it nowhere.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,22 +20,21 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
-from trunnion.equations.exciters import Exciter, exciters, size
-from trunnion.equations.harmonic_torques import cylinders
+from trunnion.equations.harmonics import DiskTorque, line_harmonics
 from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.features import left_out
+from trunnion.laws.harmonic import forward, turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.result import Result
-from trunnion.results.units import amplification_words, order_words
-from trunnion.results.words import HERTZ
+from trunnion.results.speeds import order_name
+from trunnion.results.units import amplification_words
 from trunnion.steady.orders.forced_response import shaft_names
 
 if TYPE_CHECKING:
@@ -43,14 +44,14 @@ MULTIPLES = (1, 2)
 """Of a joint's own orders; the second is weaker by the square of the angle."""
 MARGIN = 0.10
 CANCELLED = 1e-9
-"""Share of what all cylinders would give in step below which an order is cancelled by their firing."""
+"""What all cylinders give together, over one of them, below which an order is cancelled by their firing."""
 CLOSE = 1e-9
 """Share of the speed within which a crossing of a mode that moves is found."""
 
 
 @labelled
 class ExcitationLine:
-    """Frequency = order · Ω + frequency, and what excites with it.
+    """Frequency = |order · Ω + frequency|, and what excites with it.
 
     torque: NaN where none acts (joints, meshes, transmission errors) or a table does not reach all speeds.
     """
@@ -68,8 +69,17 @@ class ExcitationLine:
 
     @property
     def name(self) -> str:
-        """ "order 2", or the frequency of an excitation fixed in time."""
-        return HERTZ.speed(self.frequency) if self.frequency else order_words(self.order)
+        """ "order 2", "77.7 Hz" of an excitation fixed in time, "77.7 Hz -2 per turn" of one by both."""
+        return order_name(self.order, self.frequency)
+
+    def at(self, speed: ArrayLike) -> Array:
+        """Its frequency [rad/s] at input speeds [rad/s]."""
+        return np.abs(turning(self.order, self.frequency, np.asarray(speed)))
+
+    @property
+    def standstill(self) -> float:
+        """Input speed [rad/s] at which it turns back up from zero; infinite where no speed moves it."""
+        return -self.frequency / self.order if self.order else np.inf
 
     def __str__(self) -> str:
         return self.name
@@ -145,7 +155,7 @@ class CampbellDiagram(Result):
         for m, number in enumerate(self.mode):
             here = float(np.interp(speed, self.speed, self.frequency[:, m]))
             for line in self.lines:
-                off = (line.order * speed + line.frequency) / here - 1
+                off = float(line.at(speed)) / here - 1
                 if abs(off) <= self.margin:
                     found.append((off, int(number), line))
         return tuple(sorted(found, key=lambda one: abs(one[0])))
@@ -227,9 +237,11 @@ def campbell_diagram(
     lines = excitation_lines(assembly, speed)
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
     met, jumps = [], []
-    for one in lines:
-        for m in range(len(mode)):
-            for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], one):
+    for one, m in product(lines, range(len(mode))):
+        # Where it turns forward, and where it turns the other way beyond its standstill.
+        ways = [one, replace(one, order=-one.order, frequency=-one.frequency)]
+        for way in ways if 0 < one.standstill < speed[-1] else ways[:1]:
+            for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], way):
                 if zeta is None:
                     jumps.append((at, int(mode[m]), one))
                 else:
@@ -245,18 +257,17 @@ def campbell_diagram(
 
 def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine, ...]:
     """Everything that excites at ``speeds`` [rad/s], equal lines together, ascending."""
-    topo, row, names = assembly.topology, assembly.packed.values, assembly.line.names
+    topo, names = assembly.topology, assembly.line.names
     found: dict[tuple[float, float], dict[str, None]] = {}
     torques: dict[tuple[float, float], float] = {}
-    for e in exciters(assembly):
-        if e.held or not row[e.amplitude]:
+    for one in line_harmonics(assembly):
+        largest = _largest(assembly, one, speeds) if isinstance(one, DiskTorque) else np.nan
+        if not one.acts or largest == 0:
             continue
-        largest = _largest(assembly, e, speeds) if e.station >= 0 else np.nan
-        if largest == 0:
-            continue
-        key = (0.0 if e.in_time else float(e.order), float(row[e.frequency]) if e.in_time else 0.0)
-        found.setdefault(key, {})[e.element] = None
-        if e.station >= 0:
+        sense = forward(one.order, one.frequency)
+        key = float(sense * one.order), sense * one.frequency
+        found.setdefault(key, {})[one.name] = None
+        if isinstance(one, DiskTorque):
             torques[key] = torques.get(key, 0.0) + largest
     for j, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
         if law.uneven:
@@ -270,16 +281,13 @@ def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine,
     )
 
 
-def _largest(assembly: Assembly, exciter: Exciter, speeds: Array) -> float:
-    """Largest torque of a disk's harmonic over the speeds [N m]: 0 where its cylinders cancel it, NaN where a table
-    does not reach."""
-    disk = assembly.line.elements[assembly.line.index(exciter.element)]
-    assert isinstance(disk, Disk)
-    fired = len(disk.firing_angles or ())
-    if fired and abs(cylinders(disk, disk.excitation[exciter.number - 1])) <= CANCELLED * fired:
+def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
+    """Largest of a harmonic torque over the speeds [N m]: 0 where its cylinders cancel it, NaN where a table does not
+    reach."""
+    if abs(torque.cylinders) <= CANCELLED:
         return 0.0
     try:
-        return float(np.abs(size(assembly, exciter, assembly.table(len(speeds), speeds))).max())
+        return float(np.abs(torque.size(assembly, assembly.table(len(speeds), speeds))).max())
     except InputError:
         return np.nan
 
@@ -295,7 +303,8 @@ def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
 def _crossings(
     assembly: Assembly, speed: Array, mode: Array, ratio: Array, line: ExcitationLine
 ) -> Iterator[tuple[float, float, float | None]]:
-    """Speed, frequency and damping ratio where a line meets a mode; without a ratio where the mode jumps over it."""
+    """Speed, frequency and damping ratio where a line that turns forward meets a mode; without a ratio where the mode
+    jumps over it."""
     off = line.order * speed + line.frequency - mode
     for i in range(len(speed)):
         if off[i] == 0:
@@ -327,4 +336,4 @@ def _closed_in(
         off, frequency, ratio = here(middle)
         low, high = (middle, high) if (off < 0) == below else (low, middle)
     off, frequency, ratio = here(high)
-    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(line.order, 1.0) else None
+    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(abs(line.order), 1.0) else None

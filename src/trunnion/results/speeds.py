@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from trunnion.errors import InputError
-from trunnion.results.units import figures
+from trunnion.results.units import figures, order_words
 
 PER_RADIAN_PER_SECOND = {"rad/s": 1.0, "rpm": 60 / (2 * pi), "Hz": 1 / (2 * pi)}
 
@@ -28,6 +28,13 @@ def frequency_unit(speed_unit: str | None) -> str:
 def show_speed(speed: float, unit: str = "rad/s") -> str:
     """``1500 rpm``: six figures at most."""
     return f"{speed * speed_factor(unit):.6g} {unit}"
+
+
+def order_name(order: float, frequency: float) -> str:
+    """A harmonic by turns or in time, "order 2", "77.7 Hz", or by both, "77.7 Hz -2 per turn"."""
+    if not frequency:
+        return order_words(order)
+    return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
 
 
 def rounded_speed(speed: float, unit: str) -> str:

@@ -22,6 +22,7 @@ from trunnion.floquet.ranges.span import Gap, Piece, Span
 from trunnion.floquet.ranges.straight import straight_ranges
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.along import StabilityAlong, stability_along
+from trunnion.laws.harmonic import turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import own_motions_of, response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
@@ -438,9 +439,11 @@ def cause(case: Case, at: int, size: Array) -> Cause | None:
         return None
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])
-    frequency = order * case.speeds[at] + extra
+    frequency = float(turning(order, extra, case.speeds[at]))
+    if frequency < 0:
+        order, extra, frequency = -order, -extra, -frequency
     modes = case.modes[at].imag
-    if not np.any(np.isfinite(modes)):
+    if not np.any(np.isfinite(modes)) or not frequency:
         return Cause(order, extra)
     m = int(np.nanargmin(np.abs(np.log(modes / frequency))))
     return Cause(order, extra, m + case.first, float(modes[m]), float(frequency / modes[m] - 1))

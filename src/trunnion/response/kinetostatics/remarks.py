@@ -10,7 +10,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.response.kinetostatics.chain import Chain, period_turns
+from trunnion.response.kinetostatics.chain import Chain
 from trunnion.response.kinetostatics.motion import Drive
 from trunnion.response.kinetostatics.supports import Supports
 from trunnion.results.finding import Finding, Gravity
@@ -47,7 +47,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
     from trunnion.modes.natural_frequencies import natural_frequencies
 
-    rates = [max(chain.steps[i].orders) * abs(chain.mean_ratio(i)) for i in chain.uneven]
+    rates = [float(max(step.orders) * abs(step.speed)) for step in chain.steps if step.orders]
     if not rates:
         return []
     try:
@@ -128,7 +128,7 @@ def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
 
 def _repeats(chain: Chain, turns: int) -> list[Finding]:
     """Whether the turns asked for cover a whole period of a line with ratios."""
-    period = period_turns(chain)
+    period = chain.turns
     if turns % period == 0:
         return []
     return [

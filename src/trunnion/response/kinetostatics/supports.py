@@ -19,9 +19,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings, place_bearings
-from trunnion.response.kinetostatics.chain import Chain, Link, member_ratio
+from trunnion.response.kinetostatics.chain import Chain
 from trunnion.response.kinetostatics.couples import Couples, turned
 from trunnion.response.kinetostatics.frames import member_frames
 from trunnion.results.fields import coordinate, internal, labelled, variable
@@ -189,7 +190,7 @@ class _Statics:
         steps = self.chain.steps
         return Supports(
             tuple(f"{self._shaft(m)} at {x:g} m" for m, x in self.bearings),
-            np.array([member_ratio(self.chain, m) for m, _ in self.bearings]),
+            np.array([float(self.chain.members[m].speed) for m, _ in self.bearings]),
             np.asarray(solution[n : n + 2 * b].reshape(b, 2, points), dtype=np.float64),
             tuple(steps[j].name for j in self.joints),
             np.asarray(np.reshape(local, (len(self.joints), 3, points)), dtype=float),

@@ -11,16 +11,17 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.floquet.stability.where_unstable import where_unstable
+from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.result import Result
+from trunnion.results.speeds import order_name
 from trunnion.results.stretches import largest_over, stretches_above
-from trunnion.results.units import order_words
 from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.results.verdict import Verdict
-from trunnion.results.words import HERTZ, Words
+from trunnion.results.words import Words
 from trunnion.steady.orders.amplitudes import OrderSpectrum, Range
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
@@ -160,14 +161,19 @@ class OrderResponse(Result):
     def heat_parts(self, spring: int) -> Array:
         """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
         spectrum = self.spectrum
-        v = np.abs(self.order * self.speed[:, None] + self.frequency)
+        v = np.abs(self.angular_frequency)
         damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
         return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
 
     @property
     def frequency_factor(self) -> Array:
         """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
-        return frequency_factor(self.order * self.speed[:, None] + self.frequency)
+        return frequency_factor(self.angular_frequency)
+
+    @property
+    def angular_frequency(self) -> Array:
+        """Of every order listed (speed, order) [rad/s], of either sign."""
+        return turning(self.order, self.frequency, self.speed[:, None])
 
     @cached_property
     @computed(variable("speed inertia", "rad"))
@@ -234,22 +240,30 @@ class OrderResponse(Result):
     def leading_order(self, spring: str) -> tuple[float, float, float]:
         """Order, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order (NaN without orders).
 
-        An excitation fixed in time has order 0.
+        An excitation fixed in time has order 0; ``leading`` names it.
         """
+        k, speed, amplitude = self._leading(spring)
+        return float("nan") if k is None else float(self.order[k]), speed, amplitude
+
+    def leading(self, spring: str) -> tuple[str, float, float]:
+        """The same with the name of the order, by turns and in time; "none" where none vibrates."""
+        k, speed, amplitude = self._leading(spring)
+        if k is None or not amplitude > 0:
+            return "none", speed, amplitude
+        return order_name(float(self.order[k]), float(self.frequency[k])), speed, amplitude
+
+    def _leading(self, spring: str) -> tuple[int | None, float, float]:
         size = np.abs(self.torque[:, :, self.springs.index(spring)])
         if not np.any(np.isfinite(size)):
-            return float("nan"), float("nan"), float("nan")
+            return None, float("nan"), float("nan")
         at, k = np.unravel_index(int(np.nanargmax(size)), size.shape)
-        return float(self.order[k]), float(self.speed[at]), float(size[at, k])
+        return int(k), float(self.speed[at]), float(size[at, k])
 
     def wave(self, speed: float | None = None) -> OrderWave:
         """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
         spectrum = self.spectrum
         at = 0 if speed is None else int(np.abs(self.speed - speed).argmin())
-        turns = spectrum.common_turns
-        length = 2 * np.pi * float(turns or 10) / self.speed[at]
-        if len(spectrum.order) == 1 and spectrum.frequency[0]:
-            length = 2 * np.pi / spectrum.frequency[0]
+        length = spectrum.period(at) or 2 * np.pi * 10 / self.speed[at]
         cycles = np.abs(spectrum.angular_frequency[at]).max(initial=self.speed[at]) * length / (2 * np.pi)
         time = np.linspace(0.0, length, int(np.ceil(WAVE_POINTS * cycles)) + 1)
         places = spectrum.channels
@@ -297,8 +311,8 @@ class OrderResponse(Result):
         words = self.in_unit(unit).words
         rows: list[dict[str, object]] = []
         for s, spring in enumerate(self.springs):
-            order, speed, size = self.leading_order(spring)
-            vibrates = bool(size > 0)
+            name, speed, size = self.leading(spring)
+            vibrates = name != "none"
             rated = self._largest("rated torque", self.rated_torque[:, s], words, "  ") if any(self.rated) else {}
             rows.append(
                 {
@@ -306,9 +320,7 @@ class OrderResponse(Result):
                     **self._largest("peak torque", self.peak_torque[:, s], words, ""),
                     **self._largest("vibratory torque", self.vibratory_torque[:, s], words, " "),
                     **rated,
-                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0))
-                    if vibrates
-                    else "none",
+                    "largest order": name,
                     "of it [N m]": size if vibrates else None,
                     f"at [{words.unit}]   ": speed * words.factor if vibrates else None,
                 }
@@ -342,12 +354,8 @@ class OrderResponse(Result):
         return f"{value:.4g} N m at {self.words.speed(speed)}"
 
     def _led_by(self, spring: str) -> str:
-        order, at, size = self.leading_order(spring)
-        if not size > 0:
-            return ""
-        k = int(np.flatnonzero(self.order == order)[0])
-        name = order_name(order, self.frequency[k])
-        return f"; most by one order: {size:.4g} N m of {name} at {self.words.speed(at)}"
+        name, at, size = self.leading(spring)
+        return "" if name == "none" else f"; most by one order: {size:.4g} N m of {name} at {self.words.speed(at)}"
 
 
 def frequency_factor(frequency: Array) -> Array:
@@ -355,22 +363,21 @@ def frequency_factor(frequency: Array) -> Array:
     return np.sqrt(np.maximum(np.abs(frequency) / (2 * np.pi), FREE_FREQUENCY) / FREE_FREQUENCY)
 
 
-def order_name(order: float, frequency: float) -> str:
-    """``order 2``, ``77.7 Hz``, or the sideband of a fixed frequency: ``77.7 Hz -2 per turn``."""
-    if not frequency:
-        return order_words(order)
-    return HERTZ.speed(frequency) + (f" {order:+.6g} per turn" if order else "")
-
-
 def _findings(result: OrderResponse) -> Iterable[Finding]:
-    words = result.words
+    words, spectrum = result.words, result.spectrum
     lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
     for speed in result.speed[lost][:3]:
         k = np.flatnonzero(~np.all(np.isfinite(result.torque[result.speed == speed][0]), axis=1))
-        which, at = words.order(result.order[k[0]]) if len(k) else "an excitation", words.speed(speed)
-        said = f"No steady state exists at {at}: {which} meets a natural frequency without damping."
+        which = order_name(result.order[k[0]], result.frequency[k[0]]) if len(k) else "an excitation"
+        said = f"No steady state exists at {words.speed(speed)}: {which} meets a natural frequency without damping."
         yield Finding(Gravity.DANGER, said)
-    lossy = bool(result.spectrum.loss.any())
+    for i, k in np.argwhere((spectrum.angular_frequency == 0) & ~lost[:, None])[:3]:
+        name = order_name(spectrum.order_numbers[k], spectrum.frequency[k])
+        away = np.isnan(spectrum.amplitude[i, k, spectrum.channels.deviation]).any()
+        drives = ", which drives the line away from that speed" if away else ""
+        said = f"{name} stands still at {words.speed(result.speed[i])}: it is a constant torque there{drives}."
+        yield Finding(Gravity.CAUTION if away else Gravity.NOTE, said)
+    lossy = bool(spectrum.loss.any())
     yield from where_unstable(result.speed, result.verdict, words, lossy=lossy)
     if result.sum_is_bound:
         yield Finding(

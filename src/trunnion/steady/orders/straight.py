@@ -1,9 +1,11 @@
 """Steady response of a line whose equations do not vary: one complex system per order and speed, all at once.
 
-    (−ν² M + iν C + K + i sgn(ν) H) Y = g,   ν = KΩ or a fixed ω,
+    (−w² M + iw C + K + i sgn(w) H) Y = g,   w = KΩ + ν,
 
-with H the part of the stiffness that damps whatever the frequency. The matrix has the pattern of the line's tree, so
-elimination from the leaves solves all orders and speeds together; where that loses figures, a dense solution follows.
+with H the part of the stiffness that damps whatever the frequency. What stands still, w = 0, is a constant torque: it
+drives a line that starts free away, against the loads that go with its speed or else against its inertia, and twists
+it. The matrix has the pattern of the line's tree, so elimination from the leaves solves all orders and speeds together;
+where that loses figures, a dense solution follows.
 """
 
 from __future__ import annotations
@@ -13,11 +15,14 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers, Places
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve
 
 RESIDUAL = 1e-13
+DRAGGED = 1e-9
+"""Share of the largest damping from which dampers resist the line as a whole: less is rounding."""
 ROUNDING = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 SINGULAR = 1e-13
@@ -27,7 +32,8 @@ SINGULAR = 1e-13
 def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, n, n) is H. NaN where the line resonates without damping.
+    ``matrices`` at one time, ``loss`` (case, n, n) is H. NaN where the line resonates without damping. Of a line that
+    starts free and is driven away the deviations are those beside what it turns as a whole.
     """
     mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
     parent = np.full(topo.size, -1, dtype=np.int64)
@@ -54,6 +60,11 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
         x[:, j] = _dense(diagonal[:, j], coupling[:, j], parent, b[:, j])
     weight = np.maximum(np.abs(diagonal), np.abs(coupling)) * np.abs(x)
     x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
+    if topo.free:
+        for j in np.flatnonzero(frequency.ravel() == 0):
+            x[:, j] = _driven_away(
+                rigid_rotation(topo), mass[j % cases], damping[j % cases], stiffness[j % cases], b[:, j]
+            )
     x[:, force == 0] = 0.0
     return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
 
@@ -79,6 +90,15 @@ def straight_about_first(
     size = np.max([np.abs(part).max(axis=2) for part in (right, *parts)], axis=0)
     rest[np.abs(rest).max(axis=2) <= ROUNDING * size] = 0.0
     return np.asarray(first + straight_response(topo, held, *steady, rest))
+
+
+def _driven_away(turn: Array, mass: Array, damping: Array, stiffness: Array, torque: Complex) -> Complex:
+    """Twists under a constant ``torque`` (n,) of a line that turns as ``turn`` (n,): what resists there balances it."""
+    drag = damping @ turn
+    resists = drag if np.abs(drag).max() > DRAGGED * np.abs(damping).max() else mass @ turn
+    left = torque - resists * (turn @ torque) / (turn @ resists)
+    whole = np.outer(turn, turn) * np.abs(stiffness).max() / (turn @ turn)
+    return np.asarray(np.linalg.solve(stiffness + whole, left))
 
 
 def _dense(diagonal: Complex, coupling: Complex, parent: Integers, right: Complex) -> Complex:

@@ -383,6 +383,21 @@ def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = No
         )
     nothing = np.full(n, nan)
     return PeriodicOrbit(
-        root.x[:n], place.length, nothing.astype(complex), np.full((n, n), nan), Verdict.FAILED, root.iterations,
-        outcome, system, nothing, nan, nan, nan, root.size, run, tuple(root.x[n:].tolist()), nan, (),
-    )  # fmt: skip
+        start=root.x[:n],
+        period=place.length,
+        multipliers=nothing.astype(complex),
+        monodromy=np.full((n, n), nan),
+        verdict=Verdict.FAILED,
+        iterations=root.iterations,
+        outcome=outcome,
+        system=system,
+        multiplier_error=nothing,
+        spectral_radius=nan,
+        error_estimate=nan,
+        liouville_defect=nan,
+        residual=root.size,
+        trajectory=run,
+        values=tuple(root.x[n:].tolist()),
+        speed_multiplier=nan,
+        stuck=(),
+    )
