@@ -21,7 +21,7 @@ class Analysis:
     sentence : what it answers, as ``trunnion --help`` says.
     features : the row of ``trunnion.features.ROWS`` that says how it treats each feature of a line; "" where it takes
         no line.
-    pictures : what describes the pictures of its results, by class and method of the result.
+    pictures : what describes the pictures of its results, by class and method of the result or of what it is a kind of.
     command : the function of the command of the same name; "" without one.
     view : the view of the application, of ``VIEWS``, that shows it; "" where none does.
     """
@@ -198,8 +198,8 @@ ANALYSES = (
         "A motion in time, of a driveline or of a reference system (duffing, lorenz, …).",
         features="motion",
         pictures={
-            "Simulation.plot": "trunnion.pictures.motion:history",
-            "Simulation.plot_portrait": "trunnion.pictures.motion:portrait",
+            "SystemSimulation.plot": "trunnion.pictures.motion:history",
+            "SystemSimulation.plot_portrait": "trunnion.pictures.motion:portrait",
             "LineSimulation.plot": "trunnion.pictures.motion:line_history",
             "LineSimulation.plot_order_map": "trunnion.pictures.motion:map_of_orders",
         },
@@ -253,24 +253,17 @@ ANALYSES = (
         "frequency_response",
         "Frequency response with folds, jumps and stability, by one method or several.",
         features="branch",
-        pictures={
-            "FrequencyResponse.plot": "trunnion.pictures.frequency_response:response",
-            "ApproximateResponse.plot": "trunnion.pictures.frequency_response:response",
-        },
+        pictures={"ResponseCurves.plot": "trunnion.pictures.frequency_response:response"},
         command="trunnion.cli.rattle:frequency_response",
         view="motion",
     ),
-    Analysis(
-        "compare_responses",
-        "The same frequency response by several methods.",
-        pictures={"ResponseComparison.plot": "trunnion.pictures.frequency_response:response"},
-    ),
+    Analysis("compare_responses", "The same frequency response by several methods."),
     Analysis(
         "sweep",
         "Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.",
         features="stages",
         pictures={
-            "Sweep.plot": "trunnion.pictures.frequency_response:sweep",
+            "OscillatorSweep.plot": "trunnion.pictures.frequency_response:sweep",
             "LineSweep.plot": "trunnion.pictures.frequency_response:line_sweep",
         },
         command="trunnion.cli.rattle:sweep",

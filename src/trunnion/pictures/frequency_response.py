@@ -12,8 +12,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.motion.orbits.basins import Basins
 from trunnion.motion.orbits.branch import PeriodicBranch
 from trunnion.motion.orbits.frequency_response import ResponseComparison
-from trunnion.motion.orbits.jumps import abrupt_changes
-from trunnion.motion.orbits.piecewise_sweep import LineSweep, Sweep
+from trunnion.motion.orbits.sweep import LineSweep, OscillatorSweep, Sweep, abrupt_changes
 from trunnion.pictures.looks import LOOKS
 from trunnion.pictures.picture import Arrows, Axis, Cells, Item, Key, Line, Picture, Points, points_at, single
 from trunnion.pictures.shared import axis_of, place_of
@@ -178,12 +177,12 @@ def _leaps(found: Any) -> list[tuple[float, float, float]]:
     return leaps
 
 
-def sweep(found: Sweep, *, length: str = "", unit: str | None = None) -> Picture:
+def sweep(found: OscillatorSweep, *, length: str = "", unit: str | None = None) -> Picture:
     """``sweeps`` of one."""
     return sweeps([found], length=length, unit=unit)
 
 
-def sweeps(found: Sequence[Sweep], *, length: str = "", unit: str | None = None) -> Picture:
+def sweeps(found: Sequence[OscillatorSweep], *, length: str = "", unit: str | None = None) -> Picture:
     """Half peak-to-peak of sweeps, coloured by what is touched (full going up, hollow going down), jumps marked."""
     unit = found[0].unit if unit is None else unit
     factor = speed_factor(unit) if unit else 1.0
@@ -212,7 +211,7 @@ def line_sweeps(found: Sequence[LineSweep], *, spring: str = "", unit: str | Non
     return _of_sweeps(items, across, Axis(f"torque of {name}, peak to peak", "N·m", 0.0), f"contact of {name}, sweep")
 
 
-def _swept(one: Sweep | LineSweep, x: Array, size: Array, contact: Sequence[str]) -> list[Item]:
+def _swept(one: Sweep, x: Array, size: Array, contact: Sequence[str]) -> list[Item]:
     """``x`` and ``size`` (points,) in the picture's units, with the contact of each point."""
     items: list[Item] = [Line(x, size, "sweep")]
     way = "up" if one.up else "down"

@@ -6,12 +6,11 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.quantities import TORQUE, shown
-from trunnion.motion.linearity.linearity_result import LinearityCheck
+from trunnion.motion.linearity.linearity_check import LinearityCheck
 from trunnion.motion.orbits.periodic_response import PeriodicResponse
-from trunnion.motion.passing.run_up_result import RunUp
-from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.passing.run_up import RunUp
 from trunnion.motion.simulation.order_map import OrderMap, order_map
-from trunnion.motion.simulation.simulation import Simulation
+from trunnion.motion.simulation.simulation import LineSimulation, SystemSimulation
 from trunnion.pictures.looks import curve
 from trunnion.pictures.picture import (
     Axis,
@@ -53,7 +52,7 @@ ORDER = Axis("order", "cycles per turn of the input")
 TORQUES = Axis("torque", "N·m")
 
 
-def history(result: Simulation, *, states: tuple[str, ...] = ()) -> Picture:
+def history(result: SystemSimulation, *, states: tuple[str, ...] = ()) -> Picture:
     """States over time; all of them, or those named."""
     names, axes = states or result.system.states, state_axes(result.system)
     low, high = result.time_range
@@ -66,7 +65,7 @@ def history(result: Simulation, *, states: tuple[str, ...] = ()) -> Picture:
     return single(Axis("time", "s", low, high), up, items, height=4.0, key="below" if len(names) > 1 else "")
 
 
-def portrait(result: Simulation, *, x: str = "", y: str = "", from_time: float = 0.0) -> Picture:
+def portrait(result: SystemSimulation, *, x: str = "", y: str = "", from_time: float = 0.0) -> Picture:
     """One state over another, from ``from_time`` on; by default the second over the first."""
     names = result.system.states
     i, j = names.index(x) if x else 0, names.index(y) if y else min(1, len(names) - 1)

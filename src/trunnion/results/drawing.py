@@ -1,4 +1,4 @@
-"""How a result finds its picture: in ``trunnion.registry``, by its class and method."""
+"""How a result finds its picture: in ``trunnion.registry``, by its class, or what that is a kind of, and method."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ else:  # what draws takes long to load, and results are drawn seldom
 
 def described(result: object, method: str) -> Callable[..., Any]:
     """The function that describes what ``method`` of ``result`` draws: pictures know results, not the reverse."""
-    found: Callable[..., Any] = found_at(PICTURES[f"{type(result).__name__}.{method}"])
+    keys = (f"{kind.__name__}.{method}" for kind in type(result).__mro__)
+    found: Callable[..., Any] = found_at(PICTURES[next(key for key in keys if key in PICTURES)])
     return found
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.motion.orbits.basins import Basins
 from trunnion.motion.orbits.frequency_response import FrequencyResponse, ResponseComparison
-from trunnion.motion.orbits.piecewise_sweep import Sweep
+from trunnion.motion.orbits.sweep import OscillatorSweep
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse
 from trunnion.pictures.frequency_response import basins, response, responses
 from trunnion.pictures.picture import Axis, Item, Line, Picture, Texts, single
@@ -70,7 +70,7 @@ def _rising(response: ApproximateResponse) -> tuple[Array, Array]:
     return response.frequency[order], response.amplitude[order]
 
 
-def index_figure(up: Sweep, down: Sweep) -> Picture:
+def index_figure(up: OscillatorSweep, down: OscillatorSweep) -> Picture:
     """Rattle index over frequency, swept both ways."""
     items = [
         Line(one.frequency, one.impact_energy, f"index of {way}", way)
