@@ -90,7 +90,7 @@ def test_areas_strips_levels_and_bars() -> None:
     assert (sources["bars"]["bottom"], sources["bars"]["top"]) == ([0.0, -5.0], [4.0, 0.0])
     assert (sources["bars"]["left"], sources["bars"]["right"]) == ([0.75, 1.75], [1.25, 2.25])
     assert [sources["arrows"][key] for key in ("x0", "y0", "x1", "y1")] == [[1.0], [2.0], [3.0], [4.0]]
-    assert sources["words"]["text"] == ["words"]
+    assert [text for text in sources["words"]["text"] if text] == ["words"]
     axes = axes_of(panel(*items))
     heights = [bar.get_height() for bar in axes.patches if bar.get_width() == 0.5]
     assert heights == [4.0, -5.0] and "words" in [text.get_text() for text in axes.texts]
@@ -183,6 +183,29 @@ def test_a_figure_takes_other_panels_of_its_kind_and_leaves_what_is_alike() -> N
     assert [item.label["value"] for item in made.legend.items] == ["other"]
     logarithmic = panel(x=Axis(scale="log"))
     assert Drawn.kind_of(logarithmic) != Drawn.kind_of(panel()) == made.kind
+
+
+def test_rows_of_legends_and_texts_never_become_fewer() -> None:
+    """The page may draw a legend, and measures texts, by the number of rows that there were before a change."""
+    made, before = Drawn(panel()), {"keys": 0, "words": 0}
+    for count in (0, 40, 1, 0):
+        shown = [
+            item for k in range(count) for item in (Line(X, Y, "line", f"name {k}"), Texts([1.0], [2.0], [f"{k}"]))
+        ]
+        made.show(panel(*shown), 300)
+        assert [item.index for item in made.legend.items] == list(range(count))
+        for kind in before:
+            now = len(made.sources[kind].data["x"])
+            assert now >= max(before[kind], count)
+            before[kind] = now
+        assert [text for text in made.sources["words"].data["text"] if text] == [f"{k}" for k in range(count)]
+
+
+def test_a_low_picture_has_no_buttons() -> None:
+    made = Drawn(panel(Line(X, Y, "line")), 150)
+    assert made.figure.toolbar_location is None
+    made.show(panel(Line(X, Y, "line")), 320)
+    assert made.figure.toolbar_location == "right"
 
 
 def test_a_zoom_stays_while_the_ends_are_the_same() -> None:

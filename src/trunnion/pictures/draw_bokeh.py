@@ -48,8 +48,10 @@ MARKERS = {"cross": "x", "": "circle"}
 NUMBERS = BasicTickFormatter(power_limit_high=7, power_limit_low=-4)
 IN_A_ROW, ROW = 3, 24
 """Most names in a row of the legend, and its height in pixels."""
+LOW = 240
+"""Pixels of height up to which a picture has no room for buttons; it still answers the pointer."""
 KEYS = 32
-"""Entries of the legend for which there are rows at first."""
+"""Rows for entries of the legend at first."""
 PLACE, KEY = 62.0, 6.0
 """Letters of a row of the legend in the narrowest page, and the room of the line before a name."""
 WIDE, NARROW = 52, 34
@@ -101,6 +103,7 @@ class Drawn:
             _plain(axis)
         self.ends: dict[str, tuple[float, float]] = {}
         self.entries: list[tuple[str, str, str]] = []
+        self.most = {"words": 0, "keys": KEYS}
         self.words = ""
         self.sources = {kind: ColumnDataSource({one: [] for one in names}) for kind, names in COLUMNS.items()}
         for kind, source in self.sources.items():
@@ -201,9 +204,10 @@ class Drawn:
             corners = [corner for corner in zip(*ends, strict=True) if None not in corner]
             rows["words"] += [(x, y, "", INK, "left", "middle", 0, 0, 0.0, WHITE) for x, y in corners]
         self.entries = list({name: (role, name, kind) for role, name, kind in _entries(panel)}.values())
-        # Never fewer rows than before: a page may draw an entry of the legend when its row has gone already.
-        spare = [("line", "", "line")] * (-len(self.entries) % KEYS)
-        rows["keys"] = [_key(role, kind) for role, _, kind in self.entries + spare]
+        rows["keys"] = [_key(role, kind) for role, _, kind in self.entries]
+        for kind, spare in _SPARE.items():
+            self.most[kind] = max(self.most[kind], len(rows[kind]))
+            rows[kind] += [spare] * (self.most[kind] - len(rows[kind]))
         return rows
 
     def _axes(self, panel: Panel) -> None:
@@ -259,6 +263,7 @@ class Drawn:
         letters = NARROW if self.is_narrow else WIDE
         lines = [line for part in self.words.split("\n") for line in wrap(part, letters)]
         _update(self.legend, ncols=across, visible=bool(names))
+        _update(self.figure, toolbar_location="right" if self.height > LOW else None)
         _update(self.figure, height=self.height + ROW * max(rows - 1, 0) + 16 * max(len(lines) - 1, 0))
         _update(self.figure.title, text="\n".join(lines))
         if isinstance(self.figure.xaxis[0].ticker, BasicTicker):
@@ -593,6 +598,12 @@ def _mesh(item: described.Mesh, panel: Panel) -> list[tuple[str, tuple[Any, ...]
     return rows
 
 
+_SPARE: dict[str, tuple[Any, ...]] = {
+    "words": (np.nan, np.nan, "", INK, "left", "middle", 0, 0, 0.0, WHITE),
+    "keys": _key("line", "line"),
+}  # fmt: skip
+"""Rows that show nothing. Words and keys never become fewer: Bokeh measures texts, and draws entries of legends, by the
+number of rows before."""
 _ROWS: dict[type, Any] = {
     described.Line: _line,
     described.Points: _points,
