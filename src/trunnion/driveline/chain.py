@@ -15,7 +15,7 @@ from trunnion.driveline.record import Name, Record
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError, problems_of
 
-MOST_ELEMENTS = 2000
+MOST_ELEMENTS = 5000
 """Ten times the longest line of practice; its matrices fit into a gigabyte."""
 
 

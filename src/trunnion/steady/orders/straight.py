@@ -3,90 +3,80 @@
     (−ν² M + iν C + K + i sgn(ν) H) Y = g,   ν = KΩ or a fixed ω,
 
 with H the part of the stiffness that damps whatever the frequency. The matrix has the pattern of the line's tree, so
-elimination from the leaves solves all orders and speeds together; where that loses figures, a dense solution follows.
+elimination from the leaves solves all orders and speeds together; where that loses figures, bands with exchange of
+pivots do.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Integers, Places
-from trunnion.equations.linear import LineMatrices
+from trunnion.arrays import Array, Complex
 from trunnion.equations.topology import Topology
-from trunnion.numerics.tree_solve import tree_solve
+from trunnion.equations.tree_matrices import TreeMatrices
+from trunnion.numerics.condensation import Plan
+from trunnion.numerics.tree_blocks import TreeMatrix
 
-RESIDUAL = 1e-13
 ROUNDING = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 SINGULAR = 1e-13
 """Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
 
 
-def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
+def straight_response(
+    topo: Topology, matrices: TreeMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
+) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, n, n) is H. NaN where the line resonates without damping.
+    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping.
+    With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
-    mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
-    parent = np.full(topo.size, -1, dtype=np.int64)
-    for far, near in topo.ends:
-        if far >= 0:
-            parent[far] = near
     orders, cases, n = right.shape
-    tied = np.where(parent >= 0, parent, 0)
-    every = np.arange(n)
+    sign = np.sign(frequency)
 
-    def dynamic(rows: Places, columns: Places) -> Complex:
-        m, c, k, h = (part[:, rows, columns].T[:, None] for part in (mass, damping, stiffness, loss))
-        w = frequency[None]
-        return np.asarray(k - w**2 * m + 1j * (w * c + np.sign(w) * h)).reshape(n, orders * cases)
+    def dynamic(k: Array, c: Array, m: Array) -> Complex:
+        k, c, m = (part[:, None] for part in (k, c, m))
+        return np.asarray(k - frequency**2 * m + 1j * frequency * c)
 
-    diagonal, coupling = dynamic(every, every), dynamic(every, tied)
-    coupling[parent < 0] = 0.0
-    b = np.moveaxis(right, 2, 0).reshape(n, orders * cases)
-    x, residual = tree_solve(diagonal, coupling, parent, b)
-    force = np.abs(b).max(axis=0)
+    three = matrices.stiffness, matrices.damping, matrices.mass
+    own = dynamic(*(part.own[..., 0] for part in three))
+    coupling = dynamic(*(part.down[..., 0] for part in three))
+    for e, (far, near) in enumerate(topo.ends):
+        if not loss[:, e].any():
+            continue
+        lossy, ratio = 1j * loss[:, e] * sign, matrices.ratio[:, 0, e]
+        if far >= 0:
+            own[far] += lossy
+        if near >= 0:
+            own[near] += ratio**2 * lossy
+        if far >= 0 and near >= 0:
+            coupling[far] -= ratio * lossy
+    plan, g = Plan.of(matrices.parent, np.zeros(n, dtype=bool)), np.moveaxis(right, 2, 0)
+    if linearised:
+        # Orders are solved together at the first speed, and stand for themselves at the others.
+        each = [(part[:, k, :, None] for part in (own, coupling, g)) for k in range(orders)]
+        every = [about_first(TreeMatrix(plan, matrices.parent, a, b, []), force) for a, b, force in each]
+        return np.stack([part[..., 0].T for part in every])
+    flat = (n, orders * cases, 1)
+    matrix, b = TreeMatrix(plan, matrices.parent, own.reshape(flat), coupling.reshape(flat), []), g.reshape(flat)
+    return np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
+
+
+def about_first(matrix: TreeMatrix, right: Complex) -> Complex:
+    """Solutions to first order about the first case: X₀ + A₀⁻¹(G − AX₀)."""
+    alone = matrix.of(slice(0, 1))
+    first = bounded(alone, right[:, :1], alone.solved(right[:, :1]))
+    product = matrix.times(np.broadcast_to(first, right.shape))
+    rest = right - product
+    size = np.abs(right) + np.abs(matrix.own * first)
+    rest[:, np.all(np.abs(rest) <= ROUNDING * size.max(axis=(0, 2), keepdims=True), axis=(0, 2))] = 0.0
+    return np.asarray(first + alone.solved(rest))
+
+
+def bounded(matrix: TreeMatrix, right: Complex, x: Complex) -> Complex:
+    """NaN where a motion needs no force, resonance without damping; 0 where nothing acts."""
+    force = np.abs(right).max(axis=(0, 2))
     with np.errstate(invalid="ignore"):
-        lost = np.flatnonzero(~(np.abs(residual).max(axis=0) <= RESIDUAL * force))
-    for j in lost:
-        x[:, j] = _dense(diagonal[:, j], coupling[:, j], parent, b[:, j])
-    weight = np.maximum(np.abs(diagonal), np.abs(coupling)) * np.abs(x)
-    x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
+        x[:, force < SINGULAR * np.abs(matrix.own * x).max(axis=(0, 2))] = np.nan
     x[:, force == 0] = 0.0
-    return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
-
-
-def straight_about_first(
-    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex
-) -> Complex:
-    """The same to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀)."""
-    cases = right.shape[1]
-    held = replace(
-        matrices,
-        **{key: np.repeat(getattr(matrices, key)[:1], cases, axis=0) for key in ("mass", "damping", "stiffness")},
-    )
-    steady = np.repeat(loss[:1], cases, axis=0), np.repeat(frequency[:, :1], cases, axis=1)
-    first = straight_response(topo, held, *steady, np.repeat(right[:, :1], cases, axis=1))
-    w = frequency[..., None]
-    mass, damping, stiffness, lossy = (
-        (part[None] @ first[..., None])[..., 0]
-        for part in (matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0], loss)
-    )
-    parts = (-(w**2) * mass, 1j * w * damping, stiffness + 1j * np.sign(w) * lossy)
-    rest = right - sum(parts)
-    size = np.max([np.abs(part).max(axis=2) for part in (right, *parts)], axis=0)
-    rest[np.abs(rest).max(axis=2) <= ROUNDING * size] = 0.0
-    return np.asarray(first + straight_response(topo, held, *steady, rest))
-
-
-def _dense(diagonal: Complex, coupling: Complex, parent: Integers, right: Complex) -> Complex:
-    matrix = np.diag(diagonal)
-    for i, p in enumerate(parent):
-        if p >= 0:
-            matrix[i, p] = matrix[p, i] = coupling[i]
-    try:
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)
+    return x
