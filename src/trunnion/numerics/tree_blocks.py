@@ -1,11 +1,12 @@
 """Systems of a tree whose places hold some harmonics each, of which a few entries join different ones.
 
-Where nothing joins them each harmonic is a tree of scalars, which ``condensation`` takes out; what is left are the
-places of such entries, all their harmonics together.
+Where nothing joins them each harmonic is a tree of scalars, which ``condensation`` takes out. What is left is a tree of
+few places whose entries are matrices, of all harmonics by all; it is eliminated from its leaves.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -18,13 +19,14 @@ from trunnion.numerics.sparse_matrices import Part, SparseMatrices
 
 BALANCED = 2e-13
 """What a solution may leave unbalanced at a place, over what acts there."""
-DENSE = 2_000_000
-"""Complex numbers of the condensed matrices that are solved at once."""
+AT_ONCE = 3_000_000
+"""Complex numbers of the matrices of what is left, of cases that are solved at once."""
 
 
 @dataclass(frozen=True)
 class Block:
-    """What a varying entry is at some s: ``values`` (case, pair) at harmonics ``far`` and ``near`` (pair,)."""
+    """An entry that joins harmonics: ``values`` (case, pair) at harmonics ``far`` and ``near`` (pair,), by rising
+    ``far``."""
 
     row: int
     column: int
@@ -47,6 +49,17 @@ class Block:
         out[self.row][:, self.far[first]] += product
 
 
+@dataclass(frozen=True)
+class _Leaf:
+    """One place of what is left, taken out: the inverse of its matrix, and that times the couplings with the place
+    ``front`` from the right and from the left; −1 without."""
+
+    front: int
+    inverse: Complex
+    behind: Complex
+    ahead: Complex
+
+
 class TreeMatrix:
     """Matrices of some cases: ``own`` and ``coupling`` (n, case, h), to the place ``parent`` (n,) in front, of what
     joins no harmonics and is symmetric, and the ``blocks`` of what does, at places that the plan keeps."""
@@ -55,73 +68,84 @@ class TreeMatrix:
         self.plan, self.parent, self.own, self.coupling, self.blocks = plan, parent, own, coupling, blocks
         self._tied = np.flatnonzero(parent >= 0)
 
-    @property
-    def transposed(self) -> TreeMatrix:
-        """Its transpose: what does not vary is symmetric."""
-        made = TreeMatrix(self.plan, self.parent, self.own, self.coupling, [b.transposed for b in self.blocks])
-        if "_condensed" in self.__dict__:
-            made.__dict__["_condensed"] = self._condensed
-        return made
-
     def of(self, cases: Any) -> TreeMatrix:
         """Some of the cases."""
         blocks = [replace(b, values=b.values[cases]) for b in self.blocks]
         return TreeMatrix(self.plan, self.parent, self.own[:, cases], self.coupling[:, cases], blocks)
 
-    def times(self, x: Complex) -> Complex:
-        """Products (n, case, h) with x (n, case, h)."""
+    def times(self, x: Complex, *, transposed: bool = False) -> Complex:
+        """Products (n, case, h) with x (n, case, h), of the transpose where that is asked for."""
         out = self.own * x
         for i in self._tied:
             p = self.parent[i]
             out[i] += self.coupling[i] * x[p]
             out[p] += self.coupling[i] * x[i]
         for block in self.blocks:
-            block.add_times(x, out)
+            (block.transposed if transposed else block).add_times(x, out)
         return np.asarray(out)
 
     @cached_property
     def _condensed(self) -> Condensed:
         return Condensed(self.plan, self.own.copy(), self.coupling.copy())
 
-    def eliminated(self, right: Complex) -> Complex:
+    @cached_property
+    def _leaves(self) -> list[_Leaf]:
+        """What is left, by its number there, taken out from the last place on."""
+        own, couplings = self._left()
+        fronts = {b: a for a, b in couplings if a < b}
+        found = list[_Leaf]()
+        with np.errstate(all="ignore"):
+            for k in reversed(range(len(own))):
+                inverse, front = _inverse(own[k]), fronts.get(k, -1)
+                behind = ahead = inverse[:, :0]
+                if front >= 0:
+                    behind, ahead = inverse @ couplings[k, front], couplings[front, k] @ inverse
+                    own[front] -= couplings[front, k] @ behind
+                found.append(_Leaf(front, inverse, behind, ahead))
+        return found[::-1]
+
+    def _left(self) -> tuple[list[Complex], dict[tuple[int, int], Complex]]:
+        """Matrices (case, h, h) of the places that are left and of their couplings, by their numbers."""
+        condensed, cases, count = self._condensed, *self.own.shape[1:]
+        number, every = {one: k for k, one in enumerate(self.plan.left.tolist())}, np.arange(count)
+
+        def diagonal(values: Complex) -> Complex:
+            made = np.zeros((cases, count, count), dtype=complex)
+            made[:, every, every] = values
+            return made
+
+        own = [diagonal(values) for values in condensed.own]
+        couplings = {}
+        for a, b, values in condensed.couplings():
+            couplings[a, b], couplings[b, a] = diagonal(values), diagonal(values)
+        for block in self.blocks:
+            a, b = number[block.row], number[block.column]
+            (own[a] if a == b else couplings[a, b])[:, block.far, block.near] += block.values
+        return own, couplings
+
+    def eliminated(self, right: Complex, *, transposed: bool = False) -> Complex:
         """Solutions (n, case, h) under ``right`` (n, case, h), as elimination without exchange of pivots gives them."""
         x = self._condensed.reduced(right.astype(complex))
-        left = self.plan.left
-        if len(left):
-            x[left] = self._left_solved(x[left])
+        if len(self.plan.left):
+            x[self.plan.left] = self._left_solved(x[self.plan.left], transposed)
         return self._condensed.expanded(x)
 
-    def _left_solved(self, right: Complex) -> Complex:
-        """Solutions (m, case, h) of what is left."""
-        m, cases, count = right.shape
-        size, found = m * count, np.empty((cases, m, count), dtype=complex)
-        alone = self.own.shape[1] == 1
-        at_once = cases if alone else max(1, DENSE // size**2)
-        b = np.moveaxis(right, 0, 1)
-        for begin in range(0, cases, at_once):
-            some = slice(begin, begin + at_once)
-            matrix = self._left(slice(None) if alone else some)
-            found[some] = matrix.solved(b[some].reshape(-1, size)).reshape(-1, m, count)
-        return np.moveaxis(found, 1, 0)
-
-    def _left(self, cases: slice) -> SparseMatrices:
-        """The matrices of what is left, unknowns in the order (place, harmonic)."""
-        condensed, count = self._condensed, self.own.shape[2]
-        m, every = len(self.plan.left), np.arange(count)
-        place = np.arange(m)[:, None] * count + every
-        own = np.moveaxis(condensed.own[:, cases], 1, 0)
-        parts: list[Part] = [(place, place, own.reshape(len(own), -1))]
-        for a, b, coupling in condensed.couplings():
-            parts += [(place[a], place[b], coupling[cases]), (place[b], place[a], coupling[cases])]
-        number = {one: k for k, one in enumerate(self.plan.left.tolist())}
-        for block in self.blocks:
-            row, column = place[number[block.row]], place[number[block.column]]
-            parts.append((row[block.far], column[block.near], block.values[cases]))
-        return SparseMatrices.added(m * count, parts)
+    def _left_solved(self, x: Complex, transposed: bool) -> Complex:
+        """Solutions (m, case, h) of what is left, in place."""
+        with np.errstate(all="ignore"):
+            for k in reversed(range(len(x))):
+                leaf = self._leaves[k]
+                if leaf.front >= 0:
+                    x[leaf.front] -= _applied(leaf.behind if transposed else leaf.ahead, x[k], transposed)
+            for k, leaf in enumerate(self._leaves):
+                x[k] = _applied(leaf.inverse, x[k], transposed)
+                if leaf.front >= 0:
+                    x[k] -= _applied(leaf.ahead if transposed else leaf.behind, x[leaf.front], transposed)
+        return x
 
     def whole(self) -> SparseMatrices:
         """All numbers, unknowns in the order (place, harmonic)."""
-        n, cases, count = self.own.shape
+        n, _, count = self.own.shape
         place = np.arange(n)[:, None] * count + np.arange(count)
         tied, front = place[self._tied], place[self.parent[self._tied]]
         coupling = np.moveaxis(self.coupling[self._tied], 1, 0)
@@ -133,7 +157,12 @@ class TreeMatrix:
 
     def solved(self, right: Complex) -> Complex:
         """Solutions (n, case, h) under ``right`` (n, case, h), balanced to rounding: refined where elimination lost
-        figures, by bands with exchange of pivots where that does not do. NaN where a matrix is singular."""
+        figures, by bands with exchange of pivots where that does not do. NaN where a matrix is singular.
+
+        One case of matrices serves any number of right sides.
+        """
+        if len(parts := list(self._parts())) > 1:
+            return np.concatenate([self.of(some).solved(right[:, some]) for some in parts], axis=1)
         x = self.eliminated(right)
         poor = self._unbalanced(x, right)
         if not poor.any():
@@ -142,13 +171,18 @@ class TreeMatrix:
             x[:, poor] += self._of(poor).eliminated((right - self.times(x))[:, poor])
         poor = self._unbalanced(x, right)
         for case in np.flatnonzero(poor):
-            one = self.of([case]).whole()
-            given = right[:, case].reshape(1, -1)
-            x[:, case] = one.solved(given).reshape(x[:, case].shape)
+            one = self.of([0] if self.own.shape[1] == 1 else [case]).whole()
+            x[:, case] = one.solved(right[:, case].reshape(1, -1)).reshape(x[:, case].shape)
         return x
 
+    def _parts(self) -> Iterator[slice]:
+        """The cases, so many together that what is left of them fits into memory."""
+        _, cases, count = self.own.shape
+        at_once = max(1, AT_ONCE // max(1, 3 * len(self.plan.left) * count**2))
+        yield from (slice(begin, begin + at_once) for begin in range(0, cases, at_once))
+
     def _of(self, cases: Flags) -> TreeMatrix:
-        return self if self.own.shape[1] == 1 else self.of(cases)
+        return self if self.own.shape[1] == 1 or cases.all() else self.of(cases)
 
     def _unbalanced(self, x: Complex, right: Complex) -> Flags:
         """Cases whose solution leaves more than rounding (case,)."""
@@ -157,3 +191,22 @@ class TreeMatrix:
             acting = np.abs(right).max(axis=2) + np.abs(self.own * x).max(axis=2)
             share = np.where(rest > 0, rest / acting, np.where(np.isnan(rest), np.nan, 0.0))
             return np.asarray(~(share <= BALANCED).all(axis=0))
+
+
+def _applied(matrix: Complex, x: Complex, transposed: bool) -> Complex:
+    """Products (case, h) of matrices (case, h, h) with x (case, h)."""
+    return np.asarray((x[:, None] @ matrix)[:, 0] if transposed else (matrix @ x[..., None])[..., 0])
+
+
+def _inverse(matrix: Complex) -> Complex:
+    """Inverses (case, h, h); NaN where there is none."""
+    try:
+        return np.asarray(np.linalg.inv(matrix))
+    except np.linalg.LinAlgError:
+        found = np.full_like(matrix, np.nan)
+        for one, made in zip(matrix, found, strict=True):
+            try:
+                made[:] = np.linalg.inv(one)
+            except np.linalg.LinAlgError:
+                continue
+        return found

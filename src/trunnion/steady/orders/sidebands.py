@@ -16,8 +16,8 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 
 LEAST_SPREAD, LARGEST_SPREAD = 1e-12, 0.95
-DECADES = 12.0
-"""Side orders are taken until their shares fall below 10^−12, to begin with."""
+DECADES = 14.0
+"""Side orders are taken until their shares fall below 10^−14, to begin with."""
 MOST_DECADES = 40.0
 MOST = 2000
 """Side orders of one excitation, at most."""
@@ -30,11 +30,11 @@ def spreads(topo: Topology, coefficients: LineCoefficients, turns: Fraction) -> 
     share: dict[int, float] = {}
     for station, law in zip(topo.joints, coefficients.joints, strict=True):
         for rate in topo.joint_rates(station):
-            share[int(rate * turns)] = share.get(int(rate * turns), 0.0) + law.spread
+            share[int(rate * turns)] = max(share.get(int(rate * turns), 0.0), law.spread)
     waves = {wave.compliance: np.abs(wave.share).max(axis=0) for wave in coefficients.waves}
     for mesh in topo.meshes:
         for rate, size in zip(mesh.stiffness_rates, waves.get(mesh.compliance, ()), strict=False):
-            share[int(rate * turns)] = share.get(int(rate * turns), 0.0) + float(size) / 2
+            share[int(rate * turns)] = max(share.get(int(rate * turns), 0.0), float(size) / 2)
     bounded = {rate: min(max(one, LEAST_SPREAD), LARGEST_SPREAD) for rate, one in share.items() if rate}
     return {rate: -float(np.log10(one)) for rate, one in bounded.items()}
 

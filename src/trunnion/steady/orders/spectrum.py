@@ -247,7 +247,11 @@ class _Case:
             most = MOST if self.fall is None else MOST_DECADES
             if self.rough or self.reach >= most or not np.any(last > SMALL_ENOUGH):
                 return found, last
-            self.reach = min(most, self.reach + max(1, self.reach // 2))
+            self.reach = min(most, self.reach + self._further(float(np.nanmax(last))))
+
+    def _further(self, last: float) -> float:
+        """By how much to raise the reach, where the outermost harmonics have the share ``last``."""
+        return max(1, self.reach // 2) if self.fall is None else max(2.0, 1.0 + np.log10(last / SMALL_ENOUGH))
 
     def _straight(self, table: Array) -> OrderSum:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)

@@ -105,16 +105,10 @@ class TreeHill:
         return TreeMatrix(self.plan, self.parent, own, coupling, blocks)
 
     def _block(self, entry: Varying, s: Complex, h: Integers, weights: Array | None, slope: bool) -> Block:
-        place = {int(harmonic): k for k, harmonic in enumerate(h)}
-        pairs = [
-            (place[int(h[k] + d)], k, j)
-            for k in range(len(h))
-            for j, d in enumerate(entry.apart.tolist())
-            if int(h[k] + d) in place
-        ]
-        far, near, at = (np.array(part, dtype=np.int64) for part in zip(*sorted(pairs), strict=True)) if pairs else (
-            np.zeros(0, dtype=np.int64) for _ in range(3)
-        )  # fmt: skip
+        meant = h[:, None] - entry.apart  # pairs come by their far harmonic
+        place = np.minimum(np.searchsorted(h, meant), len(h) - 1)
+        far, at = np.nonzero(h[place] == meant)
+        near = place[far, at]
         k, c, m = (carried(weights, part)[:, at] for part in entry.parts)
         v = s[:, near]
         values = c + 2 * v * m if slope else k + v * (c + v * m)

@@ -1,0 +1,97 @@
+"""What a steady response leaves unbalanced in time: a check that shares neither harmonics nor elimination with it.
+
+All orders are added up to rotations, speeds and accelerations at some instants; with the equations written out at those
+instants, and every excitation as it acts there, what is left over tells how far the response is from a motion.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Array, Complex, Places
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.exciters import base_of_excitation, exciters, size, torque_on_unknowns, twist_on_unknowns
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.topology import Topology
+from trunnion.equations.tree_matrices import TreeEntries, TreeMatrices, tree_matrices
+from trunnion.steady.orders.amplitudes import OrderSpectrum
+
+INSTANTS = 24
+GOLDEN = (np.sqrt(5) - 1) / 2
+"""Instants lie apart by this share of a turn, which no order repeats after."""
+
+
+def unbalanced(assembly: Assembly, spectrum: OrderSpectrum, at: Places, *, twisted: bool = True) -> Array:
+    """Largest torque left over at any rotation, over what acts there, (at,), at the speeds ``at`` of a ``spectrum`` of
+    the line as described. NaN where there is no response."""
+    topo, speed = assembly.topology, spectrum.speed[at]
+    tau = 2 * np.pi * GOLDEN * np.arange(INSTANTS)
+    table = assembly.table(len(at), speed)
+    co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
+    matrices = tree_matrices(topo, co, tau)
+    nu = spectrum.angular_frequency[at]
+    turning = np.exp(1j * nu[:, None] * (tau / speed[:, None])[..., None])  # (case, time, order)
+    y = spectrum.amplitude[at][..., spectrum.channels.deviation]
+    still = spectrum.mean[at][:, None, spectrum.channels.deviation]
+    moving = [(turning @ ((1j * nu[..., None]) ** p * y)).real for p in range(3)]
+    moving[0] = moving[0] + still
+    parts = [
+        product
+        for entries, motion in zip((matrices.stiffness, matrices.damping, matrices.mass), moving, strict=True)
+        for product in _products(entries, motion)
+    ]
+    parts += [-matrices.forcing, -_excited(assembly, table, co, matrices, tau, twisted)]
+    if co.loss.any():
+        parts.append(_lost(topo, co, matrices, turning, nu, spectrum.amplitude[at][..., spectrum.channels.twist]))
+    rest, acting = np.abs(sum(parts)).max(axis=1), sum(np.abs(part) for part in parts).max(axis=1)
+    return np.asarray(np.divide(rest, acting, out=np.zeros_like(rest), where=~(acting == 0)).max(axis=1))
+
+
+def _products(entries: TreeEntries, x: Array) -> list[Array]:
+    """What the diagonal and what the rotations in front and behind give of A x (case, time, n)."""
+    own, beside = np.moveaxis(entries.own, 0, -1) * x, np.zeros_like(x)
+    tied = np.flatnonzero(entries.parent >= 0)
+    front = entries.parent[tied]
+    beside[..., tied] += np.moveaxis(entries.down[tied], 0, -1) * x[..., front]
+    np.add.at(beside, (slice(None), slice(None), front), np.moveaxis(entries.up[tied], 0, -1) * x[..., tied])
+    return [own, beside]
+
+
+def _excited(
+    assembly: Assembly, table: Array, co: LineCoefficients, matrices: TreeMatrices, tau: Array, twisted: bool
+) -> Array:
+    """Torques of all excitations (case, time, n)."""
+    topo, speed = assembly.topology, table[:, 0]
+    plain = assembly.coefficients(table, statically_twisted=False, any_frequency=True)
+    base = base_of_excitation(topo, co, plain, tau)
+    found = np.zeros((len(table), len(tau), topo.size))
+    for one in exciters(assembly):
+        if one.held or not table[:, one.amplitude].any():
+            continue
+        nu = table[:, one.frequency] if one.in_time else float(one.order) * speed
+        sizes, turned = size(assembly, one, table), np.exp(1j * np.outer(nu / speed, tau))
+        if one.compliance < 0:
+            force = torque_on_unknowns(topo, one, sizes, base)
+        else:
+            e = one.compliance
+            carried = co.stiffness[:, e, None] * matrices.wave[..., e] + 1j * (nu * co.damping[:, e])[:, None]
+            force = twist_on_unknowns(topo, one, carried * sizes[:, None], base.relative)
+        found += (force * turned[..., None]).real
+    return found
+
+
+def _lost(
+    topo: Topology, co: LineCoefficients, matrices: TreeMatrices, turning: Complex, nu: Array, twist: NDArray[Any]
+) -> Array:
+    """Torques (case, time, n) of damping whatever the frequency, of twists (case, order, spring)."""
+    found = np.zeros((*turning.shape[:2], topo.size))
+    torque = (turning @ (1j * np.sign(nu)[..., None] * twist)).real * co.loss[:, None]
+    for e, (far, near) in enumerate(topo.ends):
+        if far >= 0:
+            found[..., far] += torque[..., e]
+        if near >= 0:
+            found[..., near] -= matrices.ratio[..., e] * torque[..., e]
+    return found
