@@ -1,9 +1,10 @@
 """What every analysis does with every feature of a line: counts, refuses, does not judge, or says it is left out.
 
-One row an analysis; what a row does not name is *counted*. ``tests/contract/test_features.py`` builds a line for each
-cell, changes the feature and sees the answer change, the refusal, the sentence, or that nothing changes; an analysis
-without a row fails there, and so does a field of the description without a feature. ``docs/features.md`` prints the
-table. ``left_out`` makes the sentences that results show.
+One row for all analyses that treat features alike, which ``trunnion.registry`` names; what a row does not name is
+*counted*. ``tests/contract/test_features.py`` builds a line for each cell, changes the feature and sees the answer
+change, the refusal, the sentence, or that nothing changes; an analysis without a row fails there, and so does a field
+of the description without a feature. ``docs/features.md`` prints the table. ``left_out`` makes the sentences that
+results show.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import FEATURES, feature
+from trunnion.driveline.features import FEATURES, UNEVEN, feature
 from trunnion.driveline.remarks import HELD, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
+from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
 
 
@@ -88,7 +90,6 @@ _EVEN = {
     "angle of an ideal joint": f"at any angle it passes rotation unchanged; {_PLANE}",
     "double Cardan joint": f"centred, it passes rotation unchanged; {_PLANE}",
 }
-_UNEVEN = ("Hooke's joint", "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre")
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -131,7 +132,7 @@ _UNPROVABLE = {
     **_BASE,
     **dict.fromkeys(
         (
-            "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
+            *(key for key in UNEVEN if key != "Hooke's joint"),
             "ratio", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
             "quadratic load", SERIES,
@@ -146,7 +147,7 @@ _UNPROVABLE |= dict.fromkeys(
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Words] = {
     **_SERIES,
-    **dict.fromkeys(_UNEVEN, (_ALIGNED, "joint angles zero")),
+    **dict.fromkeys(UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
     "quadratic load": "damping ratios are those without it, for it rises with the speed; campbell_diagram has it",
 }
@@ -160,6 +161,9 @@ _MODES_INERT = {
     "drive share": "a constant torque",
     "backlash": "the load presses the mesh together; without a load it is refused",
 }
+_DAMPINGS = (
+    "damping", "loss factor", "damping ratio", "mesh damping", "impact damping", "damping in contact only", SERIES,
+)  # fmt: skip
 _UNDAMPED = "the names stand at the frequencies of the undamped line"
 _ONE_DRIVE = {
     "prescribed far end": "the nonlinear equations have one prescribed speed",
@@ -178,7 +182,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
-        (*_UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
+        (*UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
         "the stages are then not linear with constant coefficients",
     ),
 }
@@ -200,9 +204,9 @@ _RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a r
 _STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
-TABLE: dict[str, Row] = {
-    "natural_frequencies": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT),
-    "resonance_speeds": _row(
+ROWS: dict[str, Row] = {
+    "modes": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT),
+    "resonances": _row(
         refused=_RUBBING,
         said={
             "viscous load": "resonance speeds are those of the line without it",
@@ -214,36 +218,12 @@ TABLE: dict[str, Row] = {
                 ("Hooke's joint", "double Cardan joint off centre"),
                 "the speeds are those at which a bent joint of any angle can resonate",
             ),
-            **dict.fromkeys(
-                (
-                    "damping",
-                    "loss factor",
-                    "damping ratio",
-                    "mesh damping",
-                    "impact damping",
-                    "damping in contact only",
-                    "unlike damping in series",
-                ),
-                _UNDAMPED,
-            ),
+            **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
     ),
-    "stability": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
-    "stability_chart": _row(
-        refused=_BASE,
-        said=_SERIES,
-        inert={**_TORSION, **_EVEN, **_FORCING},
-    ),
-    "stable_limit": _row(
-        refused=_BASE,
-        said=_SERIES,
-        inert={**_TORSION, **_EVEN, **_FORCING},
-    ),
-    **dict.fromkeys(
-        ("tongues", "stable_windows", "minimum_damping", "tolerance_study"),
-        _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
-    ),
-    "campbell_diagram": _row(
+    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
+    "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
+    "loaded modes": _row(
         refused=_RUBBING,
         said=_BY_PLACE,
         inert={
@@ -253,26 +233,18 @@ TABLE: dict[str, Row] = {
             "load torque": _MODES_INERT["load torque"],
         },
     ),
-    "assess": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
-    "envelope": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
-    "compare": _row(
+    "judgement": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
+    "comparison": _row(
         said=_BY_PLACE,
         not_judged={key: (reason, "not compared: frequency, growth rate, torque") for key, reason in _RUBBING.items()},
         inert=_EVEN,
     ),
-    "sensitivity": _row(refused=_RUBBING, said=_BY_PLACE, inert=_PASSIVE),
-    "optimise": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
-    "certify_stability": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
-    "speed_sweep": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
-    "order_response": _row(
-        refused=_FAR_END,
-        said=_BY_PLACE,
-        inert=_PASSIVE,
-    ),
-    "bending_speeds": _row(
+    "derivatives": _row(refused=_RUBBING, said=_BY_PLACE, inert=_PASSIVE),
+    "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
+    "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
     ),
-    "kinetostatics": _row(
+    "turn": _row(
         refused={"prescribed far end": "the output follows from the input"},
         said={
             "damping": _UNDAMPED_TURN,
@@ -298,27 +270,17 @@ TABLE: dict[str, Row] = {
         },
         inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
     ),
-    "phase_forks": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
-    "assembly_sensitivity": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
-    "simulate": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic_response": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "linearity_check": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "run_up": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
-    "safe_accelerations": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
-    "lyapunov_spectrum": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "lyapunov_sweep": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "lyapunov_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "poincare_map": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "bifurcation_diagram": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "certify_chaos": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic_branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
-    "harmonic_balance": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "frequency_response": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
-    "exact_motion": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
-    "piecewise_orbit": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
-    "piecewise_branch": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
-    "sweep": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "forks": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
+    "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
+    "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
+    "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
+    "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
+    "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
 }
+"""How analyses treat features, by the word that ``trunnion.registry`` has for it; several may share a row."""
+TABLE: dict[str, Row] = {one.name: ROWS[one.features] for one in ANALYSES if one.features}
+"""The row of each analysis."""
 
 NOT_ANALYSES = {
     "misfire": "order_response of the line with each cylinder out of work",
@@ -349,8 +311,12 @@ def groups() -> list[tuple[str, ...]]:
 
 def markdown() -> str:
     """The table and its reasons, as ``docs/features.md`` prints them."""
-    found = groups()
-    numbered = [f"{i}. {', '.join(f'`{name}`' for name in names)}" for i, names in enumerate(found, start=1)]
+    found, says = groups(), {one.name: one.sentence for one in ANALYSES}
+    numbered = [
+        f"{f'{i}.' if name == names[0] else '':3} - `{name}`: {says[name]}"
+        for i, names in enumerate(found, start=1)
+        for name in names
+    ]
     head = "| feature | " + " | ".join(str(i + 1) for i in range(len(found))) + " |"
     rows = [
         f"| {f.key} | " + " | ".join(MARKS[TABLE[names[0]][f.key].treatment] for names in found) + " |"

@@ -7,7 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from joints import JOINTS
+
 import trunnion as tn
+from trunnion.driveline.features import FEATURES
 
 Change = Callable[[tn.Driveline], tn.Driveline]
 
@@ -148,6 +151,8 @@ def rippled() -> Change:
 
 END = (tn.Shaft(stiffness=1e4, damping=5, name="end"), tn.ConstantSpeed(name="far"))
 STRAIGHT_JOINT = jointed(tn.IdealJoint(name="extra"))
+OWN = {one.key for one in FEATURES}
+"""Among them the names of joints that are features of their own."""
 CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
 
 CHANGES: dict[str, tuple[Change, Change]] = {
@@ -173,6 +178,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "double Cardan joint off centre": (
         CENTRED, jointed(tn.DoubleCardanJoint(angle=0.3, distance_ratio=1.3, name="extra"))
     ),
+    **{name: (STRAIGHT_JOINT, jointed(joint.but(name="extra"))) for name, joint in JOINTS.items() if name in OWN},
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),

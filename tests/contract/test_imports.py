@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.plots import DRAWINGS
+from trunnion.registry import PICTURES
 
 ROOT = Path(trunnion.__file__).parent
 LAYERS = (
-    {"errors", "arrays", "_version", "portable"},
+    {"errors", "arrays", "_version", "portable", "registry"},
     {"reading", "waiting", "writing", "laws"},
     {"numerics", "driveline"},
     {"numerics/continuation", "numerics/integration", "numerics/patches", "numerics/piecewise_linear"},
@@ -99,7 +99,7 @@ def test_every_layer_stands() -> None:
 
 def test_drawings_exist() -> None:
     """Every entry of the table of drawings names a public method of a result, and a function."""
-    for key, address in DRAWINGS.items():
+    for key, address in PICTURES.items():
         module, name = address.split(":")
         assert callable(getattr(import_module(module), name)), key
     called = {
@@ -111,7 +111,7 @@ def test_drawings_exist() -> None:
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "drawing"
         if isinstance(call.args[1], ast.Constant)
     }
-    assert {f"{owner}.{method}" for owner, method in called} == set(DRAWINGS)
+    assert {f"{owner}.{method}" for owner, method in called} == set(PICTURES)
 
 
 def test_no_import_circle() -> None:

@@ -1,50 +1,39 @@
 """Every kind of joint keeps what its law promises, and every analysis that counts joints takes its law.
 
-A new kind of joint needs a row in ``JOINTS`` and nothing else here. ``Wobble``, a joint that the package does not have,
+A new kind of joint needs a row in ``joints.py`` and nothing else here. ``Wobble``, which the package does not have,
 is made as ``CONTRIBUTING.md`` walks through it.
 """
 
 from __future__ import annotations
 
-import textwrap
+import sys
 import warnings
 from math import gcd
-from pathlib import Path
+from types import ModuleType
 from typing import Any
 
+import joints
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from walks import shown
 
 import trunnion as tn
 from trunnion.driveline.joints import Joint, Numbers
 from trunnion.driveline.kinds import KINDS
-from trunnion.driveline.quantities import Angle, Dimensionless
-from trunnion.laws.fourier import FourierLaw
-from trunnion.laws.joint import JointLaw, through
+from trunnion.laws.joint import through
 
 
 def made_by_the_walk() -> Any:
     """``Wobble``, a joint that nobody builds, as ``CONTRIBUTING.md`` has it."""
-    text = (Path(__file__).parents[2] / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    block = text[text.index("       class Wobble(Joint):") :].partition("\n\n   `number(key)`")[0]
-    names: dict[str, Any] = {
-        "Angle": Angle, "Dimensionless": Dimensionless, "FourierLaw": FourierLaw, "Joint": Joint, "JointLaw": JointLaw,
-        "Numbers": Numbers, "np": np, "__name__": __name__,
-    }  # fmt: skip
-    exec(textwrap.dedent(block), names)
-    return names["Wobble"]
+    module = ModuleType("wobble")
+    sys.modules["wobble"] = module  # where pydantic looks its annotations up
+    exec(shown("src/trunnion/driveline/wobble.py"), vars(module))
+    return module.Wobble
 
 
 Wobble = made_by_the_walk()
-RIPPLE = [{"order": 2, "amplitude": 0.02, "phase": 0.3}, {"order": 6, "amplitude": 1e-3}]
-JOINTS: dict[str, Joint] = {
-    "HookeJoint": tn.HookeJoint(angle=0.6, plane=0.2),
-    "TripodJoint": tn.TripodJoint(angle=0.7, radius=0.06, length=0.15, spider="input"),
-    "RzeppaJoint": tn.RzeppaJoint(angle=0.4, reference_angle=0.3, ripple=RIPPLE),
-    "DoubleCardanJoint": tn.DoubleCardanJoint(angle=0.8, distance_ratio=1.4),
-    "Wobble": Wobble(angle=0.5),
-}
+JOINTS: dict[str, Joint] = {**joints.JOINTS, "Wobble": Wobble(angle=0.5)}
 CHI = np.linspace(-4.0, 9.0, 131)
 
 
@@ -70,7 +59,7 @@ def line_with(joint: Joint, load: float = 20.0, damping: float = 2.0) -> tn.Driv
 
 def test_every_uneven_joint_has_a_row() -> None:
     uneven = {name for name, kind in KINDS.items() if issubclass(kind, Joint) and kind.law is not Joint.law}
-    assert uneven == JOINTS.keys() - {"Wobble"}
+    assert uneven == joints.JOINTS.keys()
 
 
 @pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS)

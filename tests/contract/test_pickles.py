@@ -15,7 +15,7 @@ from typing import Any
 import feature_lines
 import numpy as np
 import pytest
-from test_features import BASE, RUN
+from questions import QUESTIONS
 
 import trunnion as tn
 from trunnion.systems.second_order import Spring
@@ -98,7 +98,7 @@ QUICK = ["stability_chart", "simulate", "periodic_response", "run_up", "certify_
 
 @cache
 def computed(name: str) -> Any:
-    return OWN[name]() if name in OWN else RUN[name](BASE.get(name, feature_lines.bent)())
+    return OWN[name]() if name in OWN else QUESTIONS[name].ask(QUESTIONS[name].line())
 
 
 def answers(found: Any) -> Any:
@@ -141,7 +141,7 @@ def pool() -> Iterator[ProcessPoolExecutor]:
 
 
 NOW = [name for name in (*QUICK, *OWN) if name not in LONG]
-EVERY = [pytest.param(name, marks=() if name in NOW else pytest.mark.slow) for name in (*RUN, *OWN)]
+EVERY = [pytest.param(name, marks=() if name in NOW else pytest.mark.slow) for name in (*QUESTIONS, *OWN)]
 
 
 @pytest.mark.parametrize("name", EVERY)

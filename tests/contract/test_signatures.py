@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.plots import DRAWINGS
+from trunnion.registry import PICTURES
 
 ROOT = Path(trunnion.__file__).parent
 NAMES_OF_THE_READER = {"catalogue", "reference_system", "gear_pair"}
@@ -33,11 +33,11 @@ def keywords(function: object) -> dict[str, object]:
     return {p.name: p.default for p in parameters}
 
 
-@pytest.mark.parametrize("key", DRAWINGS)
+@pytest.mark.parametrize("key", PICTURES)
 def test_a_result_names_what_its_drawing_takes(key: str) -> None:
     """``result.plot`` has every option of the function that draws it, with the same default."""
     owner, method = key.split(".")
-    module, name = DRAWINGS[key].split(":")
+    module, name = PICTURES[key].split(":")
     assert keywords(getattr(result_class(owner), method)) == keywords(getattr(import_module(module), name))
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import trunnion as tn
-from trunnion.cli.options import read_line
+from trunnion.cli.readers import read_line
 from trunnion.errors import InputError
 
 STARTER = "two-shaft"

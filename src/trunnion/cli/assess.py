@@ -9,8 +9,9 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import File, Json, LoadCase, Output, SpeedRange, Unit, Within, read_case, read_speed_ends
-from trunnion.cli.places import check_places, deliver
+from trunnion.cli.options import Line, LoadCase, OwnLine, Progress, SpeedEnds, SpeedUnit
+from trunnion.cli.places import NOTHING, Shown
+from trunnion.cli.typed import Command
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
@@ -21,45 +22,43 @@ DIAGRAM_POINTS = 201
 """Speeds at which the modes of a diagram are computed."""
 
 
+@Command("assessment", writes=NOTHING, within=True)
 def assess(
-    file: File,
-    unit: Unit = None,
+    line: OwnLine,
+    *,
     load_case: LoadCase = None,
-    remedies: Annotated[
-        bool, typer.Option("--remedies", help="What would help: the smallest single changes for what is exceeded.")
-    ] = False,
-    within: Within = None,
-    as_json: Json = False,
-) -> None:
-    """Judge every limit of the file and every rule that applies, over its speed range; the binding one first."""
-    line, unit = read_case(file, unit)
-    helping = None
-    if remedies:
-        with output.progress("remedies", within) as advance:
-            helping = tn.remedies(line, load_case=load_case, unit=unit, progress=advance)
-            result = helping.assessment
-    else:
-        with output.progress("assessment", within):
-            result = tn.assess(line, load_case=load_case, unit=unit)
-    if as_json:
-        output.write_json("assess", assessment_json(result) | (remedies_json(helping) if helping else {}))
-        return
-    print_assessment(result)
-    if helping is not None:
-        print_remedies(helping)
+    remedies: bool = False,
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion assess truck.toml --load-case climb --remedies
+
+    --remedies  What would help: the smallest single changes for what is exceeded.
+    """
+    helping = tn.remedies(line, load_case=load_case, unit=unit, progress=progress) if remedies else None
+    result = helping.assessment if helping else tn.assess(line, load_case=load_case, unit=unit)
+
+    def more() -> None:
+        print_assessment(result)
+        if helping is not None:
+            print_remedies(helping)
+
+    return Shown(
+        result, content=lambda: assessment_json(result) | (remedies_json(helping) if helping else {}),
+        text=lambda: result.sentence, style="bold", more=more,
+    )  # fmt: skip
 
 
+@Command(writes=NOTHING)
 def campbell_diagram(
-    file: File,
-    unit: Unit = None,
-    load_case: LoadCase = None,
+    line: Line,
+    *,
     picture: Annotated[
         Path | None, typer.Option("--output", "-o", metavar="PATH", help="Picture ending in .png, .pdf or .svg.")
     ] = None,
-    as_json: Json = False,
-) -> None:
-    """Modes of the loaded line over its speed range, what excites them, and where the two meet."""
-    line, unit = read_case(file, unit, load_case)
+    unit: SpeedUnit,
+) -> Shown:
+    """Example: trunnion campbell-diagram truck.toml --load-case climb -o campbell.png"""
     import numpy as np
 
     from trunnion.plots.formats import check_format
@@ -68,44 +67,34 @@ def campbell_diagram(
     if picture is not None:
         check_format(picture)
     result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
-    if picture is not None:
-        from trunnion.plots.style import save
+    if picture is None:
+        return Shown(result)
+    from trunnion.plots.style import save
 
-        save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
-    if as_json:
-        output.write_json("campbell-diagram", result.to_dict())
-        return
-    output.say(result.describe(unit))
-    if picture is not None:
-        output.say(f"  written: {picture}")
+    save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
+    return Shown(result, more=lambda: output.say(f"  written: {picture}"))
 
 
+@Command("envelope")
 def envelope(
-    file: File,
-    speeds: SpeedRange = None,
-    points: Annotated[int, typer.Option("--points", help="Of each schedule, beside those it states.")] = 5,
-    parameter: Annotated[
-        str, typer.Option("--parameter", "-p", metavar="PARAMETER", help="Also its largest stable value everywhere.")
-    ] = "",
-    unit: Unit = None,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """The worst of every check over all load cases and schedules of the file, and where it stands.
+    line: OwnLine,
+    *,
+    speeds: SpeedEnds,
+    points: int = 5,
+    parameter: str = "",
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion envelope truck.toml -o envelope.png
 
-    Example: trunnion envelope truck.toml -o envelope.png
+    --points  Of each schedule, beside those it states.
+    --parameter, -p PARAMETER  Also its largest stable value everywhere.
     """
-    line, unit = read_case(file, unit)
-    span = read_speed_ends(speeds, unit)
-    check_places(to)
-    with output.progress("envelope") as advance:
-        found = tn.envelope(line, span, points=points, parameter=parameter, unit=unit, progress=advance)
-    deliver("envelope", file, found, to, as_json)
+    return Shown(tn.envelope(line, speeds, points=points, parameter=parameter, unit=unit, progress=progress))
 
 
 def print_assessment(result: Assessment) -> None:
-    """The verdict, the table of checks, and the rules that they stand on."""
-    output.say(result.sentence, style="bold")
+    """The table of checks below the verdict, and the rules that they stand on."""
     rows = result.table()
     output.table([{k: v for k, v in row.items() if k != "because"} for row in rows], "Checks, the binding one first")
     output.heading("Because")

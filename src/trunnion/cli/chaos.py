@@ -2,34 +2,67 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Final
+from typing import Annotated, Any, Final
 
 import typer
 
 import trunnion as tn
-from trunnion.cli import output
-from trunnion.cli.motion import START, Set, Tolerance
-from trunnion.cli.options import (
-    Json,
-    LoadCase,
-    OutputNoTable,
-    Speed,
-    Unit,
-    Within,
-    only_for_lines,
-    read_case,
-    read_set,
-    read_speed,
-    read_state,
-)
-from trunnion.cli.places import PICTURES_AND_DATA, answer, check_places, deliver, write_results
+from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
+from trunnion.cli.motion import Tolerance
+from trunnion.cli.options import SPEED, LoadCase, Progress, Set, Start, Unit
+from trunnion.cli.places import PICTURES_AND_DATA, Shown
+from trunnion.cli.readers import loaded_line, only_for_lines, read_set, read_speed
+from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
-Subject = Annotated[
-    str,
+TRIPOD: Final = "double-tripod"
+
+
+def _system(file: str, texts: Texts) -> Asked:
+    """The system that FILE names, with parameters set."""
+    from trunnion.motion.chaos.chaos_subject import as_system
+    from trunnion.systems.reference import SYSTEMS
+
+    name, _, part = file.partition(":")
+    speed, called = texts["speed"], file.replace(":", "-")
+    if name == TRIPOD or file in SYSTEMS:
+        only_for_lines("use --set for a system", {"--speed": speed, "--load-case": texts["load_case"]})
+        system: tn.System = tn.catalogue(TRIPOD).system(part or "input") if name == TRIPOD else SYSTEMS[file]()
+    else:
+        asked = loaded_line(file, texts, (*SYSTEMS, TRIPOD))
+        system = as_system(asked.line, None if speed is None else read_speed(asked, speed, "--speed"))
+    return Asked(system.with_parameters(read_set(texts["parameters"])), called, "", texts)
+
+
+def _section(asked: Asked, text: str, key: str) -> tn.Event:
+    state, _, rest = text.partition("=")
+    level, _, sign = rest.partition(":")
+    try:
+        if sign not in ("", "+", "-"):
+            raise ValueError
+        return tn.Event(state.strip(), float(level), direction=-1 if sign == "-" else 1)
+    except ValueError:
+        raise InputError("is not STATE=LEVEL", key=key, value=text, remedy='write "z=27" or "z=27:-"') from None
+
+
+def _swept(asked: Asked, text: str, key: str) -> tuple[str, float, float, int]:
+    parts = text.rsplit(":", 3)
+    try:
+        return parts[0], float(parts[1]), float(parts[2]), int(parts[3])
+    except (ValueError, IndexError):
+        remedy = 'write "frequency:0.9:1.1:25"'
+        raise InputError("is not NAME:LOW:HIGH:N", key=key, value=text, remedy=remedy) from None
+
+
+System = Annotated[
+    "tn.System",
     typer.Argument(
         metavar="FILE",
         help="Driveline file, name of the catalogue, reference system (ueda, …), or double-tripod[:output].",
+    ),
+    Subject(
+        _system,
+        {"speed": Annotated[str | None, SPEED], "parameters": Set, "unit": Unit, "load_case": LoadCase},
     ),
 ]
 Periods = Annotated[int | None, typer.Option("--periods", help="Forcing periods to average over.", min=1)]
@@ -37,38 +70,29 @@ Duration = Annotated[float | None, typer.Option("--duration", help="Instead of p
 Starts = Annotated[int, typer.Option("--starts", help="Motions to follow and compare.", min=1)]
 Transient = Annotated[int | None, typer.Option("--transient", help="Periods to let pass before; default 500.", min=0)]
 Section = Annotated[
-    str | None,
+    "tn.Event | None",
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
+    Read(_section),
 ]
-TRIPOD: Final = "double-tripod"
 
 
+@Command("exponents", writes=PICTURES_AND_DATA, part="exponents")
 def lyapunov_spectrum(
-    file: Subject,
+    system: System,
+    *,
     periods: Periods = None,
     duration: Duration = None,
-    speed: Speed = None,
-    start: START = None,
+    start: Start,
     starts: Starts = 2,
     transient: Transient = None,
-    parameters: Set = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
     tolerance: Tolerance = 1e-10,
-    to: OutputNoTable = None,
-    as_json: Json = False,
-) -> None:
-    """Lyapunov exponents with intervals of confidence, and the sum rule.
-
-    Example: trunnion lyapunov-spectrum ueda --set force=7.5
-    """
-    system = _subject(file, parameters, speed, unit, load_case)
-    check_places(to, PICTURES_AND_DATA)
-    with output.progress("exponents") as advance:
-        result = tn.lyapunov_spectrum(
-            system, periods, duration=duration, start=read_state(start), starts=starts, transient=transient,
-            tolerance=tolerance, progress=advance,
-        )  # fmt: skip
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion lyapunov-spectrum ueda --set force=7.5"""
+    result = tn.lyapunov_spectrum(
+        system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
+        progress=progress,
+    )  # fmt: skip
     content = {
         "system": system.name,
         "exponents": result.exponents,
@@ -79,42 +103,31 @@ def lyapunov_spectrum(
         "samples": result.samples,
         "interval": result.interval,
         "by_start": result.by_start,
-        "outcome": result.outcome.kind,
-        "says": str(result.outcome),
+        **_ending(result),
     }
-    written = deliver("lyapunov-spectrum", _stem(file), result, to, as_json, what="exponents", content=lambda: content)
-    output.finish(result.outcome, written)
+    return Shown(result, content=lambda: content, outcome=result.outcome)
 
 
+@Command("Poincaré map", writes=PICTURES_AND_DATA, part="map")
 def poincare_map(
-    file: Subject,
-    points: Annotated[int, typer.Option("--points", help="Points of the map.", min=1)] = 2000,
-    section: Section = None,
-    every: Annotated[float | None, typer.Option("--every", help="Time between points [s].")] = None,
-    speed: Speed = None,
-    start: START = None,
+    system: System,
+    *,
+    points: Annotated[int, Bounds(1)] = 2000,
+    section: Section,
+    every: float | None = None,
+    start: Start,
     transient: Transient = None,
-    parameters: Set = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
     tolerance: Tolerance = 1e-10,
-    to: OutputNoTable = None,
-    as_json: Json = False,
-) -> None:
-    """Points of a settled motion, once per forcing period or on a section.
+) -> Shown:
+    """Example: trunnion poincare-map rossler --section y=0 -o map.png
 
-    Example: trunnion poincare-map rossler --section y=0 -o map.png
+    --points  Points of the map.
+    --every  Time between points [s].
     """
-    system = _subject(file, parameters, speed, unit, load_case)
-    check_places(to, PICTURES_AND_DATA)
-    with output.progress("Poincaré map"):
-        result = tn.poincare_map(
-            system, points, section=_section(section), every=every, start=read_state(start),
-            transient=500 if transient is None else transient, tolerance=tolerance,
-        )  # fmt: skip
-    written = write_results(to, _stem(file), "map", result, result.plot)
-    if not as_json:
-        output.finish(result.outcome, written)
+    result = tn.poincare_map(
+        system, points, section=section, every=every, start=start, transient=500 if transient is None else transient,
+        tolerance=tolerance,
+    )  # fmt: skip
     content = {
         "system": system.name,
         "section": result.section,
@@ -122,44 +135,33 @@ def poincare_map(
         "repeat": result.repeat,
         "settling": result.settling,
         "states": dict(zip(system.states, result.points.T, strict=True)),
-        "outcome": result.outcome.kind,
-        "says": str(result.outcome),
+        **_ending(result),
     }
-    answer("poincare-map", written, as_json, lambda: content, result.__str__)
-    output.finish(result.outcome, written)
+    return Shown(result, content=lambda: content, outcome=result.outcome, alone=True)
 
 
+@Command("exponents, map and sweep", writes=PICTURES_AND_DATA, part="certificate", within=True)
 def certify_chaos(
-    file: Subject,
+    system: System,
+    *,
     periods: Periods = None,
     duration: Duration = None,
-    section: Section = None,
-    speed: Speed = None,
-    start: START = None,
+    section: Section,
+    start: Start,
     starts: Starts = 2,
     transient: Transient = None,
-    parameters: Set = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    sweep: Annotated[
-        str | None, typer.Option("--sweep", metavar="NAME:LOW:HIGH:N", help="Exponents over this in the figure.")
-    ] = None,
+    sweep: Annotated[tuple[str, float, float, int] | bool, Read(_swept, missing=lambda asked: True)],
     tolerance: Tolerance = 1e-10,
-    to: OutputNoTable = None,
-    within: Within = None,
-    as_json: Json = False,
-) -> None:
-    """Regular, chaotic, unbounded or undecided, with reasons and one figure.
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
 
-    Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
+    --sweep NAME:LOW:HIGH:N  Exponents over this in the figure.
     """
-    system = _subject(file, parameters, speed, unit, load_case)
-    check_places(to, PICTURES_AND_DATA)
-    with output.progress("exponents, map and sweep", within) as advance:
-        result = tn.certify_chaos(
-            system, periods, duration=duration, section=_section(section), start=read_state(start), starts=starts,
-            transient=transient, sweep=_sweep(sweep), tolerance=tolerance, progress=advance,
-        )  # fmt: skip
+    result = tn.certify_chaos(
+        system, periods, duration=duration, section=section, start=start, starts=starts, transient=transient,
+        sweep=sweep, tolerance=tolerance, progress=progress,
+    )  # fmt: skip
     content = {
         "system": system.name,
         "verdict": str(result.verdict),
@@ -172,51 +174,8 @@ def certify_chaos(
         "half_width": result.spectrum.half_width,
         "zero_one_test": None if result.zero_one is None else result.zero_one.k,
     }
-    deliver("certify-chaos", _stem(file), result, to, as_json, what="certificate", content=lambda: content)
+    return Shown(result, content=lambda: content)
 
 
-def _subject(
-    file: str, parameters: list[str] | None, speed: str | None, unit: str | None, load_case: str | None
-) -> tn.System:
-    """The system that FILE names, with parameters set."""
-    from trunnion.motion.chaos.chaos_subject import as_system
-    from trunnion.systems.reference import SYSTEMS
-
-    name, _, part = file.partition(":")
-    if name == TRIPOD or file in SYSTEMS:
-        only_for_lines("use --set for a system", {"--speed": speed, "--load-case": load_case})
-        system = tn.catalogue(TRIPOD).system(part or "input") if name == TRIPOD else SYSTEMS[file]()
-    else:
-        line, unit = read_case(file, unit, load_case, (*SYSTEMS, TRIPOD))
-        system = as_system(line, read_speed(speed, unit))
-    return system.with_parameters(read_set(parameters))
-
-
-def _section(text: str | None) -> tn.Event | None:
-    if text is None:
-        return None
-    state, _, rest = text.partition("=")
-    level, _, sign = rest.partition(":")
-    try:
-        if sign not in ("", "+", "-"):
-            raise ValueError
-        return tn.Event(state.strip(), float(level), direction=-1 if sign == "-" else 1)
-    except ValueError:
-        raise InputError("is not STATE=LEVEL", key="--section", value=text, remedy='write "z=27" or "z=27:-"') from None
-
-
-def _sweep(text: str | None) -> tuple[str, float, float, int] | bool:
-    if text is None:
-        return True
-    parts = text.rsplit(":", 3)
-    try:
-        return parts[0], float(parts[1]), float(parts[2]), int(parts[3])
-    except (ValueError, IndexError):
-        raise InputError(
-            "is not NAME:LOW:HIGH:N", key="--sweep", value=text, remedy='write "frequency:0.9:1.1:25"'
-        ) from None
-
-
-def _stem(file: str) -> str:
-    """``double-tripod:output`` in the names of files."""
-    return file.replace(":", "-")
+def _ending(result: Any) -> dict[str, Any]:
+    return {"outcome": result.outcome.kind, "says": str(result.outcome)}

@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 import trunnion as tn
-from trunnion.cli.options import Json
 from trunnion.cli.output import table, write_json
+from trunnion.cli.typed import Json
 from trunnion.errors import InputError
 
 

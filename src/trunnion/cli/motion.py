@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,227 +9,168 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import (
-    File,
-    Json,
-    LoadCase,
-    Output,
-    Speed,
-    Unit,
-    Within,
+from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
+from trunnion.cli.options import Line, LoadCase, Set, Speed, SpeedUnit, Start, Unit
+from trunnion.cli.places import Shown
+from trunnion.cli.readers import (
+    loaded_line,
     only_for_lines,
-    read_case,
+    range_of,
     read_quantity,
     read_set,
     read_speed,
-    read_state,
-    read_stated_speed,
     read_time,
 )
-from trunnion.cli.places import check_places, deliver
+from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.motion.orbits.periodic_response import PeriodicResponse
     from trunnion.motion.passing.run_up_result import RunUp
+    from trunnion.motion.passing.safe_accelerations import SafeAccelerations
     from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 
-Subject = Annotated[
-    str, typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system.")
-]
-Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Parameter of a reference system; repeat it for more."),
-]
-START = Annotated[str | None, typer.Option("--start", metavar="X,Y,…", help="State to start from.")]
 
-
-def simulate(
-    file: Subject,
-    speed: Speed = None,
-    to_speed: Annotated[str | None, typer.Option("--to-speed", help="Speed at the end, reached evenly.")] = None,
-    turns: Annotated[float | None, typer.Option("--turns", help="Turns of the input; default 20.")] = None,
-    duration: Annotated[float | None, typer.Option("--duration", metavar="SECONDS", help="Instead of turns.")] = None,
-    start: START = None,
-    parameters: Set = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    tolerance: Tolerance = 1e-10,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """A motion in time, of a driveline or of a reference system (duffing, lorenz, …).
-
-    Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
-    """
-    with output.progress("motion"):
-        subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed, "--to-speed": to_speed})
-        if isinstance(subject, tn.Driveline):
-            check_places(to)
-            profile = _course(subject, read_speed(speed, unit), read_speed(to_speed, unit, "--to-speed"), duration)
-            length = None if duration is not None else 20.0 if turns is None else turns
-            begin = read_state(start)
-            result: Any = tn.simulate(subject, duration, speed=profile, turns=length, start=begin, tolerance=tolerance)
-        else:
-            only_for_lines("use --duration, in seconds", {"--turns": turns})
-            check_places(to)
-            seconds = 100.0 if duration is None else duration
-            result = tn.simulate(subject, seconds, start=read_state(start), tolerance=tolerance)
-    text = partial(result.describe, unit) if isinstance(subject, tn.Driveline) else None
-    written = deliver(
-        "simulate", file, result, to, as_json, what="motion", draw=_draw(subject, result, unit), text=text,
-        content=lambda: _simulation_json(result),
-    )  # fmt: skip
-    output.finish(result.outcome, written)
-
-
-def periodic_response(
-    file: Subject,
-    speed: Speed = None,
-    periods: Annotated[int, typer.Option("--periods", help="Of the excitation in one of the motion.", min=1)] = 1,
-    period: Annotated[
-        str | None, typer.Option("--period", help='Guess for a system without excitation: "1.5 s", or a number in s.')
-    ] = None,
-    start: START = None,
-    parameters: Set = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """The true periodic motion, its torques, orders and stability, beside what linear theory says.
-
-    Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
-    """
-    with output.progress("periodic response"):
-        subject, unit = _subject(file, parameters, unit, load_case, {"--speed": speed})
-        if isinstance(subject, tn.Driveline):
-            if period is not None:
-                remedy = "leave it out; the speed of a driveline gives it"
-                raise InputError("belongs to reference systems", key="--period", value=period, remedy=remedy)
-            check_places(to)
-            at = read_speed(speed, unit)
-            result: Any = tn.periodic_response(subject, at, start=read_state(start), periods=periods)
-        else:
-            guess = read_time(period, "--period")
-            check_places(to)
-            result = tn.periodic_response(subject, start=read_state(start), period=guess, periods=periods)
-    result.outcome.require()
-    if isinstance(subject, tn.Driveline):
-        shown: dict[str, Any] = {
-            "content": lambda: _orbit_json(result) | _response_json(result),
-            "text": lambda: result.describe(unit),
-            "more": lambda: _print_orders(result, unit),
-        }
-    else:
-        shown = {"content": lambda: _orbit_json(result)}
-    deliver("periodic-response", file, result, to, as_json, draw=_draw(subject, result, unit), **shown)
-
-
-def linearity_check(
-    file: File,
-    speed: Speed = None,
-    allowed: Annotated[
-        float, typer.Option("--allowed", help="Difference up to which linear theory holds, of the largest order.")
-    ] = 0.05,
-    acceleration: Annotated[
-        float | None, typer.Option("--acceleration", help="Also run through the speed, in rad/s².")
-    ] = None,
-    spring: Annotated[
-        str | None, typer.Option("--spring", help="Shaft or mesh to draw; default: where the two differ most.")
-    ] = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """How far linear theory holds at a speed: order-response beside periodic-response, and what misleads it.
-
-    Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
-    """
-    line, unit = read_case(file, unit, load_case)
-    check_places(to)
-    with output.progress("linearity check"):
-        found = tn.linearity_check(line, read_speed(speed, unit), allowed=allowed, acceleration=acceleration)
-    found.nonlinear.outcome.require()
-    deliver(
-        "linearity-check", file, found, to, as_json,
-        draw=lambda: found.plot(spring=spring, unit=unit), text=lambda: found.describe(unit),
-    )  # fmt: skip
-
-
-def run_up(
-    file: File,
-    first: Annotated[str | None, typer.Option("--from", help="First speed; default: of the file's range.")] = None,
-    last: Annotated[str | None, typer.Option("--to", help="Last speed; default: of the file's range.")] = None,
-    acceleration: Annotated[
-        str, typer.Option("--acceleration", "-a", help="Per second, as a speed: 100rpm.")
-    ] = "100 rpm",
-    ramp: Annotated[
-        float | None,
-        typer.Option("--ramp", help="Seconds over which it sets in; default: three periods of the slowest mode."),
-    ] = None,
-    limit: Annotated[str | None, typer.Option("--limit", help='Torque to be kept by every shaft: "2 kN*m".')] = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    within: Within = None,
-    as_json: Json = False,
-) -> None:
-    """Passage through resonance at an acceleration that sets in smoothly, against the steady response.
-
-    Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
-    """
-    line, unit = read_case(file, unit, load_case)
-    low, high = _range(line, read_speed(first, unit, "--from"), read_speed(last, unit, "--to"))
-    rate = read_stated_speed(acceleration, unit, "--acceleration")
-    torque = None if limit is None else _torque(limit)
-    check_places(to)
-    safe = None
-    with output.progress("run-up", within):
-        result = tn.run_up(line, low, high, acceleration=rate, ramp=ramp)
-        if torque is not None:
-            tried = (rate / 4, rate * 4)
-            safe = tn.safe_accelerations(line, low, high, limit=torque, accelerations=tried, points=9, ramp=ramp)
-    content, said = _run_up_json(result, unit), result.describe(unit)
-    if safe is not None:
-        content["safe_accelerations"] = {
-            "slowest": safe.slowest,
-            "fastest": safe.fastest,
-            "tried": [
-                {"acceleration": one.acceleration, "outcome": one.kind, "share_of_limit": one.share, "safe": one.safe}
-                for one in safe.trials
-            ],
-            "says": safe.describe(unit),
-        }
-        said += f"\n  {safe.describe(unit)}"
-    written = deliver(
-        "run-up", file, result, to, as_json,
-        draw=lambda: result.plot(unit=unit), content=lambda: content, text=lambda: said,
-    )  # fmt: skip
-    output.finish(result.outcome, written)
-
-
-def _subject(
-    file: str, parameters: list[str] | None, unit: str | None, load_case: str | None, of_lines: dict[str, str | None]
-) -> tuple[tn.System | tn.Driveline, str]:
-    """The reference system that FILE names, with ``--set`` applied, or a driveline; and the unit of its speeds."""
+def line_or_system(file: str, texts: Texts) -> Asked:
+    """The reference system that FILE names, with ``--set`` applied, or a driveline."""
     from trunnion.systems.reference import SYSTEMS
 
     if file in SYSTEMS:
-        system = tn.reference_system(file, **read_set(parameters))
-        only_for_lines("use --set for a reference system", {**of_lines, "--load-case": load_case})
-        return system, unit or "rad/s"
-    if parameters:
+        system = tn.reference_system(file, **read_set(texts["parameters"]))
+        of_lines = {"--speed": texts.get("speed"), "--to-speed": texts.get("to_speed")}
+        only_for_lines("use --set for a reference system", {**of_lines, "--load-case": texts["load_case"]})
+        return Asked(system, file, texts["unit"] or "rad/s", texts)
+    if texts["parameters"]:
         remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
-        raise InputError("belongs to reference systems", key="--set", value=parameters[0], remedy=remedy)
-    return read_case(file, unit, load_case, SYSTEMS)
+        raise InputError("belongs to reference systems", key="--set", value=texts["parameters"][0], remedy=remedy)
+    return loaded_line(file, texts, SYSTEMS)
 
 
-def _draw(subject: object, result: Any, unit: str) -> Callable[[], Any]:
-    """How a motion is drawn: of a driveline in the unit of its speeds."""
-    return partial(result.plot, unit=unit) if isinstance(subject, tn.Driveline) else result.plot
+def _period(asked: Asked, text: str, key: str) -> float:
+    if isinstance(asked.subject, tn.Driveline):
+        remedy = "leave it out; the speed of a driveline gives it"
+        raise InputError("belongs to reference systems", key=key, value=text, remedy=remedy)
+    return read_time(text, key)
+
+
+def _torque(asked: Asked, text: str, key: str) -> float:
+    """A positive torque [N m]."""
+    from trunnion.driveline.quantities import TORQUE
+
+    torque = read_quantity(text, TORQUE, key)
+    if not torque > 0:
+        raise InputError("must be a positive torque", key=key, value=text)
+    return torque
+
+
+Subjects = Annotated[
+    "tn.System | tn.Driveline",
+    typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system."),
+    Subject(line_or_system, {"parameters": Set, "unit": Unit, "load_case": LoadCase}),
+]
+Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
+
+
+@Command("motion", part="motion")
+def simulate(
+    subject: Subjects,
+    *,
+    speed: Speed,
+    to_speed: Annotated[float | None, Read(read_speed)],
+    turns: float | None = None,
+    duration: float | None = None,
+    start: Start,
+    tolerance: Tolerance = 1e-10,
+) -> Shown:
+    """Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
+
+    --to-speed  Speed at the end, reached evenly.
+    --turns  Turns of the input; default 20.
+    --duration SECONDS  Instead of turns.
+    """
+    if isinstance(subject, tn.Driveline):
+        length = None if duration is not None else 20.0 if turns is None else turns
+        course = _course(subject, speed, to_speed, duration)
+        found: Any = tn.simulate(subject, duration, speed=course, turns=length, start=start, tolerance=tolerance)
+    else:
+        only_for_lines("use --duration, in seconds", {"--turns": turns})
+        found = tn.simulate(subject, 100.0 if duration is None else duration, start=start, tolerance=tolerance)
+    return Shown(found, content=lambda: _simulation_json(found), outcome=found.outcome)
+
+
+@Command("periodic response")
+def periodic_response(
+    subject: Subjects,
+    *,
+    speed: Speed,
+    periods: Annotated[int, Bounds(1)] = 1,
+    period: Annotated[float | None, Read(_period)],
+    start: Start,
+    unit: SpeedUnit,
+) -> Shown:
+    """Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
+
+    --periods  Of the excitation in one of the motion.
+    --period  Guess for a system without excitation: "1.5 s", or a number in s.
+    """
+    if not isinstance(subject, tn.Driveline):
+        orbit: Any = tn.periodic_response(subject, start=start, period=period, periods=periods)
+        orbit.outcome.require()
+        return Shown(orbit, content=lambda: _orbit_json(orbit))
+    found: Any = tn.periodic_response(subject, speed, start=start, periods=periods)
+    found.outcome.require()
+    return Shown(
+        found, content=lambda: _orbit_json(found) | _response_json(found), more=lambda: _print_orders(found, unit)
+    )
+
+
+@Command("linearity check")
+def linearity_check(
+    line: Line,
+    *,
+    speed: Speed,
+    allowed: float = 0.05,
+    acceleration: float | None = None,
+    spring: str | None = None,
+) -> Shown:
+    """Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
+
+    --allowed  Difference up to which linear theory holds, of the largest order.
+    --acceleration  Also run through the speed, in rad/s².
+    --spring  Shaft or mesh to draw; default: where the two differ most.
+    """
+    found = tn.linearity_check(line, speed, allowed=allowed, acceleration=acceleration)
+    found.nonlinear.outcome.require()
+    return Shown(found, draw=partial(found.plot, spring=spring))
+
+
+@Command("run-up", within=True)
+def run_up(
+    line: Line,
+    *,
+    from_: Annotated[float, Read(read_speed, missing=lambda asked: range_of(asked)[0])],
+    to: Annotated[float, Read(read_speed, missing=lambda asked: range_of(asked)[1])],
+    acceleration: Annotated[float, Read(read_speed, "100 rpm")],
+    ramp: float | None = None,
+    limit: Annotated[float | None, Read(_torque)],
+    unit: SpeedUnit,
+) -> Shown:
+    """Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
+
+    --from  First speed; default: of the file's range.
+    --to  Last speed; default: of the file's range.
+    --acceleration, -a  Per second, as a speed: 100rpm.
+    --ramp  Seconds over which it sets in; default: three periods of the slowest mode.
+    --limit  Torque to be kept by every shaft: "2 kN*m".
+    """
+    found = tn.run_up(line, from_, to, acceleration=acceleration, ramp=ramp)
+    content, said = _run_up_json(found, unit), found.describe(unit)
+    if limit is not None:
+        tried = (acceleration / 4, acceleration * 4)
+        safe = tn.safe_accelerations(line, from_, to, limit=limit, accelerations=tried, points=9, ramp=ramp)
+        content["safe_accelerations"] = _safe_json(safe, unit)
+        said += f"\n  {safe.describe(unit)}"
+    return Shown(found, content=lambda: content, text=lambda: said, outcome=found.outcome)
 
 
 def _course(line: tn.Driveline, first: float | None, last: float | None, duration: float | None) -> Any:
@@ -242,25 +182,6 @@ def _course(line: tn.Driveline, first: float | None, last: float | None, duratio
     if duration is None:
         raise InputError("is missing beside --to-speed", key="--duration", remedy="write --duration 10, in seconds")
     return tn.SpeedProfile([0.0, duration], [operating_speed(line, first), last])
-
-
-def _torque(text: str) -> float:
-    """A positive torque [N m] written at ``--limit``, refused before anything is computed."""
-    from trunnion.driveline.quantities import TORQUE
-
-    torque = read_quantity(text, TORQUE, "--limit")
-    if not torque > 0:
-        raise InputError("must be a positive torque", key="--limit", value=text)
-    return torque
-
-
-def _range(line: tn.Driveline, first: float | None, last: float | None) -> tuple[float, float]:
-    from trunnion.reporting.ranges import speed_range
-
-    if first is not None and last is not None:
-        return first, last
-    low, high = speed_range(line)
-    return first or low, last or high
 
 
 def _print_orders(result: PeriodicResponse, unit: str) -> None:
@@ -349,4 +270,16 @@ def _run_up_json(result: RunUp, unit: str) -> dict[str, Any]:
             }
             for i, name in enumerate(result.shafts)
         ],
+    }
+
+
+def _safe_json(safe: SafeAccelerations, unit: str) -> dict[str, Any]:
+    return {
+        "slowest": safe.slowest,
+        "fastest": safe.fastest,
+        "tried": [
+            {"acceleration": one.acceleration, "outcome": one.kind, "share_of_limit": one.share, "safe": one.safe}
+            for one in safe.trials
+        ],
+        "says": safe.describe(unit),
     }

@@ -3,25 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import (
-    File,
-    Json,
-    LoadCase,
-    Output,
-    Unit,
-    Within,
-    is_number,
-    read_case,
-    read_even_axis,
-    read_stated_speed,
-)
-from trunnion.cli.places import check_places, deliver
+from trunnion.cli.asked import Asked, Read
+from trunnion.cli.options import Line, Progress, SpeedUnit
+from trunnion.cli.places import Shown
+from trunnion.cli.readers import is_number, range_of, read_even_axis, read_speed
+from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
 
@@ -36,174 +29,148 @@ if TYPE_CHECKING:
 
     Array = NDArray[np.float64]
 
-Speeds = Annotated[
-    str | None,
-    typer.Option(
-        "--speed",
-        "-s",
-        metavar="LOW:HIGH[:POINTS]",
-        help='Input speeds: "300rpm:2400rpm", "300:2400:201" in --unit, or one speed; default: the file\'s range.',
-    ),
-]
 SPEED_EXAMPLE = 'write "300rpm:2400rpm" or "300rpm:2400rpm:201"'
-FEW = 61
-"""Speeds of a stable limit, each of which is a scan."""
+SPEEDS = typer.Option(
+    "--speed",
+    "-s",
+    metavar="LOW:HIGH[:POINTS]",
+    help='Input speeds: "300rpm:2400rpm", "300:2400:201" in --unit, or one speed; default: the file\'s range.',
+)
+POINTS, FEW = 241, 61
+"""Speeds where their number is not stated; of a stable limit, each of which is a scan."""
 
 
+def _close_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
+    """Speeds asked for [rad/s], one or many; without a number of them closer together about the resonances."""
+    import numpy as np
+
+    (low, *rest), counted = _stated_speeds(asked, text, key)
+    if not rest:
+        return np.array([low])
+    return np.linspace(low, rest[0], counted) if counted else tn.sweep_speeds(asked.line, low, rest[0], POINTS)
+
+
+def _even_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
+    """The same, a range at even steps."""
+    import numpy as np
+
+    (low, *rest), counted = _stated_speeds(asked, text, key)
+    if not rest:
+        raise InputError("is no rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
+    return np.linspace(low, rest[0], counted or FEW)
+
+
+def _stated_speeds(asked: Asked, text: str, key: str) -> tuple[tuple[float, ...], int]:
+    """One speed or both ends of a range [rad/s], by default that of the file, and how many are stated, 0 for none."""
+    if not text:
+        return range_of(asked), 0
+    ends = text.split(":")
+    if len(ends) > 3:
+        raise InputError("is no range", key=key, value=text, remedy=SPEED_EXAMPLE)
+    counted = ends.pop() if len(ends) == 3 else None
+    read = tuple(read_speed(asked, end.strip(), key) for end in ends)
+    if len(read) == 2 and not read[0] < read[1]:
+        raise InputError("is no rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
+    if counted is not None and not (counted.isdecimal() and 2 <= int(counted) <= 100_000):
+        problem = "must end in a whole number of speeds, 2 to 100 000"
+        raise InputError(problem, key=key, value=text, remedy=SPEED_EXAMPLE)
+    return read, int(counted or 0)
+
+
+def _orders(asked: Asked, text: str, key: str) -> list[float]:
+    parts = text.split(",")
+    if not all(is_number(part) and 0 < float(part) < float("inf") for part in parts):
+        raise InputError("is no list of orders", key=key, value=text, remedy='write "0.5,1,2"')
+    return [float(part) for part in parts]
+
+
+def _known_spring(asked: Asked, text: str, key: str) -> str:
+    from trunnion.driveline.refusals import nearest
+    from trunnion.equations.coefficients import assemble
+    from trunnion.steady.orders.forced_response import shaft_names
+
+    names = shaft_names(assemble(asked.line))
+    if text not in names:
+        remedy = nearest(text, list(names))
+        raise InputError("is no shaft or mesh of the line", key=key, value=text, remedy=remedy)
+    return text
+
+
+def _raised(asked: Asked, text: str, key: str) -> tuple[str, float, float, int]:
+    """A parameter that is raised, and the number of points at which limits are compared."""
+    from trunnion.design.limits.other_limits import SCAN
+
+    return read_even_axis(asked, text, key, SCAN + 1)
+
+
+CloseSpeeds = Annotated["Array", SPEEDS, Read(_close_speeds, missing=_close_speeds)]
+EvenSpeeds = Annotated["Array", SPEEDS, Read(_even_speeds, missing=_even_speeds)]
+
+
+@Command("order response")
 def order_response(
-    file: File,
-    speeds: Speeds = None,
-    orders: Annotated[
-        str | None,
-        typer.Option("--orders", metavar="K,K,…", help="Cycles per turn of the input to list: 0.5,1,2; default: all."),
-    ] = None,
-    spring: Annotated[
-        str | None, typer.Option("--spring", help="Shaft or mesh to draw; default: the one that swings most.")
-    ] = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """Vibratory torque of every shaft and mesh over speed, order by order, with stress, heat and speed fluctuation.
+    line: Line,
+    *,
+    speeds: CloseSpeeds,
+    orders: Annotated[list[float] | None, Read(_orders)],
+    spring: Annotated[str | None, Read(_known_spring)],
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion order-response truck.toml --load-case climb --speed 300rpm:2400rpm -o truck.png -o truck.csv
 
-    Example: trunnion order-response truck.toml --load-case climb --speed 300rpm:2400rpm -o truck.png -o truck.csv
+    --orders K,K,…  Cycles per turn of the input to list: 0.5,1,2; default: all.
+    --spring  Shaft or mesh to draw; default: the one that swings most.
     """
-    line, unit = read_case(file, unit, load_case)
-    at, wanted = _speeds(line, speeds, unit), _orders(orders)
-    _known(line, spring)
-    check_places(to)
-    with output.progress("order response") as advance:
-        result = tn.order_response(line, at, wanted, progress=advance)
-        findings = result.findings_in(unit)
+    result = tn.order_response(line, speeds, orders, progress=progress)
+    findings = result.findings_in(unit)
 
     def more() -> None:
         output.table(result.table(unit))
         output.findings(findings)
 
-    deliver(
-        "order-response", file, result, to, as_json,
-        draw=lambda: result.plot(spring=spring, unit=unit, operating=line.operation), table=_by_order(result, unit),
+    return Shown(
+        result, draw=partial(result.plot, spring=spring, operating=line.operation), table=_by_order(result, unit),
         content=lambda: _response_json(result, findings, unit), text=lambda: result.headline, more=more,
     )  # fmt: skip
 
 
-def speed_sweep(
-    file: File,
-    speeds: Speeds = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """Torque and twist amplitude of every shaft over speed, all orders together; takes bent lines that start free.
-
-    Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png
-    """
-    line, unit = read_case(file, unit, load_case)
-    at = _speeds(line, speeds, unit)
-    check_places(to)
-    with output.progress("torque over speed") as advance:
-        result = tn.speed_sweep(line, at, progress=advance)
-    deliver(
-        "speed-sweep", file, result, to, as_json,
-        draw=lambda: result.plot(unit=unit, operating=line.operation), table=_in_unit(result.data, unit),
-        content=lambda: _sweep_json(result, unit), text=lambda: result.describe(unit),
+@Command("torque over speed")
+def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> Shown:
+    """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""
+    result = tn.speed_sweep(line, speeds, progress=progress)
+    return Shown(
+        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result.data, unit),
+        content=lambda: _sweep_json(result, unit),
     )  # fmt: skip
 
 
+@Command("stable limit", within=True)
 def stable_limit(
-    file: File,
-    parameter: Annotated[
-        str,
-        typer.Option(
-            "--parameter",
-            "-p",
-            metavar="PARAMETER:LOW:HIGH[:STEPS]",
-            help="What is raised until the line is unstable, or PARAMETER alone for angles: 0 to the file's range. "
-            "STEPS are those at which the file's limits are compared.",
-        ),
-    ] = "HookeJoint *.angle",
-    speeds: Speeds = None,
-    margin: Annotated[
-        float, typer.Option("--margin", help="Share by which the speeds between are widened, 0.1 for 10 %.")
-    ] = 0.0,
-    between: Annotated[
-        bool, typer.Option("--between/--listed", help="Every speed between too, or those listed alone.")
-    ] = True,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    to: Output = None,
-    within: Within = None,
-    as_json: Json = False,
-) -> None:
-    """The largest value of a parameter up to which the line is stable, over speed, and which limit binds before.
+    line: Line,
+    *,
+    parameter: Annotated[tuple[str, float, float, int], Read(_raised, "HookeJoint *.angle")],
+    speeds: EvenSpeeds,
+    margin: float = 0.0,
+    between: bool = True,
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
 
-    Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
-    """  # fmt: skip
-    from trunnion.design.limits.other_limits import SCAN
-
-    line, unit = read_case(file, unit, load_case)
-    label, low, high, points = read_even_axis(parameter, line, unit, SCAN + 1, "--parameter")
-    at = _speeds(line, speeds, unit, points=FEW, even=True)
-    check_places(to)
-    with output.progress("stable limit", within) as advance:
-        result = tn.stable_limit(
-            line, label, at, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=advance
-        )
-    deliver(
-        "stable-limit", file, result, to, as_json,
-        draw=lambda: result.plot(unit=unit, operating=line.operation), table=_in_unit(result.data, unit),
-        content=lambda: _limit_json(result, unit), text=lambda: result.describe(unit),
+    --parameter, -p PARAMETER:LOW:HIGH[:STEPS]  What is raised until the line is unstable, or PARAMETER alone for
+        angles: 0 to the file's range. STEPS are those at which the file's limits are compared.
+    --margin  Share by which the speeds between are widened, 0.1 for 10 %.
+    --between/--listed  Every speed between too, or those listed alone.
+    """
+    label, low, high, points = parameter
+    result = tn.stable_limit(
+        line, label, speeds, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=progress
+    )
+    return Shown(
+        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result.data, unit),
+        content=lambda: _limit_json(result, unit),
     )  # fmt: skip
-
-
-def _speeds(line: tn.Driveline, text: str | None, unit: str, *, points: int = 241, even: bool = False) -> Array:
-    """Speeds asked for [rad/s]; without a number of them closer together about the resonances, unless ``even``."""
-    import numpy as np
-
-    from trunnion.reporting.ranges import speed_range
-
-    if text is None:
-        low, high = speed_range(line)
-    else:
-        ends, counted = text.split(":"), None
-        if len(ends) > 3:
-            raise InputError("is no range", key="--speed", value=text, remedy=SPEED_EXAMPLE)
-        if len(ends) == 3:
-            counted = ends.pop()
-        read = [read_stated_speed(end.strip(), unit) for end in ends]
-        if len(read) == 1 and not even:
-            return np.array(read)
-        if len(read) == 1 or not read[0] < read[1]:
-            raise InputError("is no rising range", key="--speed", value=text, remedy=SPEED_EXAMPLE)
-        low, high = read
-        if counted is not None:
-            if not counted.isdecimal() or not 2 <= int(counted) <= 100_000:
-                problem = "must end in a whole number of speeds, 2 to 100 000"
-                raise InputError(problem, key="--speed", value=text, remedy=SPEED_EXAMPLE)
-            return np.linspace(low, high, int(counted))
-    return np.linspace(low, high, points) if even else tn.sweep_speeds(line, low, high, points)
-
-
-def _orders(text: str | None) -> list[float] | None:
-    if text is None:
-        return None
-    parts = text.split(",")
-    if not all(is_number(part) and 0 < float(part) < float("inf") for part in parts):
-        raise InputError("is no list of orders", key="--orders", value=text, remedy='write "0.5,1,2"')
-    return [float(part) for part in parts]
-
-
-def _known(line: tn.Driveline, spring: str | None) -> None:
-    from trunnion.driveline.refusals import nearest
-    from trunnion.equations.coefficients import assemble
-    from trunnion.steady.orders.forced_response import shaft_names
-
-    names = shaft_names(assemble(line))
-    if spring is not None and spring not in names:
-        remedy = nearest(spring, list(names))
-        raise InputError("is no shaft or mesh of the line", key="--spring", value=spring, remedy=remedy)
 
 
 def _in_unit(data: Any, unit: str) -> Any:

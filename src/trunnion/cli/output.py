@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any
 
 from trunnion._version import __version__
 from trunnion.cli.ending import EndedBy
-from trunnion.cli.options import read_time
 from trunnion.errors import ComputationError
 from trunnion.results.plain import plain
 from trunnion.waiting import OutOfTime, TimeLimit, seconds_left, time_limit
@@ -129,13 +128,13 @@ def note(text: str) -> None:
 
 
 @contextmanager
-def progress(what: str, within: str | None = None) -> Iterator[Callable[[float], None]]:
+def progress(what: str, within: float | None = None) -> Iterator[Callable[[float], None]]:
     """A callback for the share done: a bar with the time left on a terminal, else a line now and then.
 
     Time spent on compiling, which happens once, is not taken for the pace of the work. What is computed inside ends
-    ``within`` its time and on Ctrl-C with what it has, see ``stoppable``.
+    ``within`` its time [s] and on Ctrl-C with what it has, see ``stoppable``.
     """
-    with stoppable(read_time(within, "--within")), compile_notice() as clock:
+    with stoppable(within), compile_notice() as clock:
         if not sys.stderr.isatty():
             with _Lines(what, clock) as lines:
                 yield lines

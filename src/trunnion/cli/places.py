@@ -1,26 +1,33 @@
-"""Where results are written: refused before the computation, whole afterwards, and named in the answer."""
+"""What a command hands over: files, refused before the computation and whole afterwards, then words or JSON."""
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trunnion.cli import output
-from trunnion.cli.options import file_stem
 from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.results.outcome import Outcome
 
 DEFAULT_FOLDER = Path("trunnion-out")
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
+TABLES = (*PICTURES_AND_DATA, ".csv")
+NOTHING = ()
 
 
-def check_places(to: list[Path] | None, endings: tuple[str, ...] = ()) -> None:
-    """Refuse what cannot be written, before anything is computed; ``endings`` of a command that writes no tables."""
+def check_places(to: list[Path] | None, endings: tuple[str, ...] = TABLES) -> None:
+    """Refuse what cannot be written, before anything is computed; ``endings`` of files that the command writes."""
     from trunnion.cli.files import check_folder, check_outputs
 
     for path in to or []:
-        if endings and path.suffix.lower() not in endings and not path.is_dir():
+        if endings != TABLES and path.suffix.lower() not in endings and not path.is_dir():
             remedy = f"end it in one of {', '.join(endings)}"
             raise InputError("is nothing this command writes", key="--output", value=str(path), remedy=remedy)
     if to:
@@ -44,63 +51,61 @@ def write_result(path: Path, found: Any, draw: Callable[[], Any], table: Any = N
     return path
 
 
-def write_results(
-    to: list[Path] | None, file: str, what: str, found: Any, draw: Callable[[], Any], table: Any = None
-) -> list[Path]:
-    """The files asked for, or a picture and the numbers of ``file`` in the default folder."""
-    from trunnion.writing import folder_written_whole
+@dataclass(frozen=True)
+class Shown:
+    """What a command found, and what it shows of it where that is not the result's own.
 
-    if to:
-        return [write_result(path, found, draw, table) for path in to]
-    with folder_written_whole(DEFAULT_FOLDER) as temporary:
-        names = [temporary / f"{file_stem(file)}-{what}.{ending}" for ending in ("png", "nc")]
-        for name in names:
-            write_result(name, found, draw)
-    return [DEFAULT_FOLDER / name.name for name in names]
-
-
-def deliver(
-    command: str,
-    file: str,
-    found: Any,
-    to: list[Path] | None,
-    as_json: bool,
-    *,
-    what: str = "",
-    draw: Callable[[], Any] | None = None,
-    table: Any = None,
-    content: Callable[[], Mapping[str, Any]] | None = None,
-    text: Callable[[], str] | None = None,
-    more: Callable[[], None] | None = None,
-    wrap: bool = False,
-) -> list[Path]:
-    """What a command found: written, then said, see ``answer``; without other words the result has its own.
-
-    what : its part in the names of files; default ``command``. draw : its picture. table : as of ``write_numbers``.
+    draw : its picture. table : as of ``write_numbers``. files : writes what stands in the default folder, given the
+    start of the names, where that is not a picture and the numbers. written : files that were written already.
+    content : for JSON. text : in words, lines left to the terminal or, with ``wrap``, wrapped at the width of the
+    tables, in a ``style`` of its own. more : prints what stands below them. outcome : one that failed is said after all
+    else, with ``alone`` in place of the words, and the exit code is 1.
     """
-    written = write_results(to, file, what or command, found, draw or found.plot, table)
-    answer(command, written, as_json, content or found.to_dict, text or found.__str__, more, wrap)
-    return written
+
+    found: Any
+    draw: Callable[[], Any] | None = None
+    table: Any = None
+    files: Callable[[Path], list[Path]] | None = None
+    written: Sequence[Path] = ()
+    content: Callable[[], Mapping[str, Any]] | None = None
+    text: Callable[[], str] | None = None
+    style: str | None = None
+    more: Callable[[], None] | None = None
+    wrap: bool = False
+    outcome: Outcome | None = None
+    alone: bool = False
+
+    def say(self, unit: str) -> None:
+        """Print it, speeds in ``unit`` where the result has words for them."""
+        own = partial(self.found.describe, unit) if hasattr(self.found, "describe") else self.found.__str__
+        output.say((self.text or own)(), self.style, wrap=self.wrap)
+        if self.more is not None:
+            self.more()
+
+    def write(self, to: Sequence[Path] | None, stem: str, unit: str) -> list[Path]:
+        """The files asked for, or those that are called ``stem`` in the default folder."""
+        from trunnion.writing import folder_written_whole
+
+        if to:
+            return [self._write(path, unit) for path in to]
+        with folder_written_whole(DEFAULT_FOLDER) as temporary:
+            names = [temporary / f"{stem}.{ending}" for ending in ("png", "nc")]
+            found = self.files(temporary / stem) if self.files else [self._write(name, unit) for name in names]
+        return [DEFAULT_FOLDER / path.name for path in found]
+
+    def _write(self, path: Path, unit: str) -> Path:
+        plot = self.draw or self.found.plot
+        known = {"unit": unit} if "unit" in inspect.signature(plot).parameters else {}
+        return write_result(path, self.found, partial(plot, **known), self.table)
 
 
-def answer(
-    command: str,
-    written: Sequence[Path] | None,
-    as_json: bool,
-    content: Callable[[], Mapping[str, Any]],
-    text: Callable[[], str],
-    more: Callable[[], None] | None = None,
-    wrap: bool = False,
-) -> None:
-    """A result as one JSON object, or in words with ``more`` below them, and where it was written.
-
-    written : None of a command that writes nothing. wrap : whether the words are broken at the width of the tables.
-    """
+def answer(command: str, written: Sequence[Path] | None, as_json: bool, shown: Shown, unit: str = "") -> None:
+    """A result as one JSON object, or in words, and where it was written: None of a command that writes nothing."""
     if as_json:
         places = {} if written is None else {"written": [str(path) for path in written]}
-        output.write_json(command, {**content(), **places})
-        return
-    output.say(text(), wrap=wrap)
-    if more is not None:
-        more()
-    output.written(written or ())
+        output.write_json(command, {**(shown.content or shown.found.to_dict)(), **places})
+    elif not shown.alone or shown.outcome is None or shown.outcome.ok:
+        shown.say(unit)
+        output.written(written or ())
+    if shown.outcome is not None:
+        output.finish(shown.outcome, written or ())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import typer
@@ -12,22 +13,17 @@ from rich.markup import escape
 from typer.core import TyperGroup
 
 from trunnion._version import __version__
-from trunnion.cli import describe, output, study
+from trunnion.cli import describe, output
 from trunnion.cli.app import app as serve_app
-from trunnion.cli.assess import assess, campbell_diagram, envelope
-from trunnion.cli.chaos import certify_chaos, lyapunov_spectrum, poincare_map
-from trunnion.cli.design import compare, optimise, sensitivity
 from trunnion.cli.ending import EndedBy
 from trunnion.cli.failures import Interrupted, answer
-from trunnion.cli.kinetostatics import kinetostatics
-from trunnion.cli.limits import certify_stability, minimum_damping, stable_windows, tolerance_study, tongues
-from trunnion.cli.motion import linearity_check, periodic_response, run_up, simulate
-from trunnion.cli.options import TABLES_ANYWHERE
-from trunnion.cli.orders import order_response, speed_sweep, stable_limit
-from trunnion.cli.rattle import frequency_response, sweep
+from trunnion.cli.readers import TABLES_ANYWHERE
 from trunnion.cli.reproduce import reproduce
+from trunnion.cli.study import analyze
+from trunnion.cli.typed import callback
 from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark
+from trunnion.registry import ANALYSES, found_at
 
 INTERRUPTED = 130
 """What typer answers a Ctrl-C with, in silence."""
@@ -127,36 +123,9 @@ def _root(
         typer.echo(ctx.get_help())
 
 
-COMMANDS = (
-    study.analyze,
-    assess,
-    campbell_diagram,
-    envelope,
-    study.stability,
-    study.stability_chart,
-    study.natural_frequencies,
-    study.resonance_speeds,
-    kinetostatics,
-    order_response,
-    speed_sweep,
-    stable_limit,
-    tongues,
-    stable_windows,
-    minimum_damping,
-    compare,
-    optimise,
-    sensitivity,
-    certify_stability,
-    tolerance_study,
-    simulate,
-    periodic_response,
-    linearity_check,
-    run_up,
-    frequency_response,
-    sweep,
-    lyapunov_spectrum,
-    poincare_map,
-    certify_chaos,
+COMMANDS: tuple[Callable[..., Any], ...] = (
+    analyze,
+    *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
     reproduce,
     serve_app,
     warm_up,

@@ -4,107 +4,170 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import Json, OutputNoTable, read_line, read_set, read_speed
-from trunnion.cli.places import PICTURES_AND_DATA, check_places, deliver
+from trunnion.cli.asked import Asked, Bounds, Given, Read, Subject, Texts
+from trunnion.cli.options import Progress, SpeedUnit
+from trunnion.cli.places import PICTURES_AND_DATA, Shown
+from trunnion.cli.readers import range_of, read_line, read_set, read_speed
+from trunnion.cli.typed import Command
 from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    Oscillating = tn.PiecewiseOscillator | tn.System | tn.Driveline
 
 GEARS: Final = "gear-rattle"
 DEAD_ZONE = "dead-zone-oscillator"
-Subject = Annotated[
-    str,
+
+
+@dataclass(frozen=True)
+class AskedSwing(Asked):
+    """Also the unit of what swings, "" where it has none."""
+
+    length: str
+
+
+def _swinging(name: str, texts: Texts) -> AskedSwing:
+    """What NAME means, with ``--set`` applied."""
+    from trunnion.driveline.operating_speed import speed_unit
+    from trunnion.results.speeds import frequency_unit
+
+    subject, length = _meant(name, read_set(texts["parameters"]), texts["parameters"])
+    unit = "rad/s"
+    if isinstance(subject, tn.Driveline):
+        unit = speed_unit(subject)
+    elif isinstance(subject, tn.PiecewiseOscillator):
+        unit = frequency_unit(subject.speed_unit)
+    return AskedSwing(subject, name, unit, texts, length)
+
+
+def _meant(name: str, values: dict[str, float], texts: list[str] | None) -> tuple[Oscillating, str]:
+    """What is meant, and the unit of its x if it has one."""
+    from trunnion.driveline.refusals import nearest
+    from trunnion.studies.entries import entries
+    from trunnion.systems.reference import SYSTEMS
+
+    if name == GEARS:
+        return tn.catalogue(GEARS, **values), "rad"
+    if name in SYSTEMS:
+        system = SYSTEMS[name]().with_parameters(values)
+        return tn.PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system, ""
+    lines = [entry.name for entry in entries()]
+    if not Path(name).suffix and not Path(name).exists() and name not in lines:
+        remedy = nearest(name, [GEARS, *SYSTEMS, *lines])
+        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=remedy)
+    if values:
+        remedy = "edit the file instead"
+        raise InputError("belongs to reference systems", key="--set", value=texts, remedy=remedy)
+    return _of_line(read_line(name))
+
+
+def _of_line(line: tn.Driveline) -> tuple[tn.PiecewiseOscillator | tn.Driveline, str]:
+    """One equation where the line is that, and nothing in it grows with the speed; and the unit of its x."""
+    spring = line.elements[1] if len(line.elements) == 3 else None
+    phased = isinstance(spring, tn.GearPair) and bool(spring.transmission_error)
+    if not isinstance(spring, tn.GearPair | tn.PiecewiseShaft) or phased:
+        return line, ""
+    return tn.exact_oscillator(line), "m" if isinstance(spring, tn.GearPair) else "rad"
+
+
+def _usual(asked: Asked) -> tuple[float, float]:
+    """A line's range of speeds, or frequencies about that of the excitation."""
+    if isinstance(asked.subject, tn.Driveline):
+        return range_of(asked)
+    frequency = asked.subject.frequency if isinstance(asked.subject, tn.PiecewiseOscillator) else 1.0
+    return (0.3, 1.3) if 0.3 < frequency < 1.3 else (0.5 * frequency, 1.5 * frequency)
+
+
+SET = typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
+Subjects = Annotated[
+    "Oscillating",
     typer.Argument(
         metavar="NAME", help="gear-rattle, dead-zone-oscillator, another reference system, or a driveline file."
     ),
+    Subject(_swinging, {"parameters": Annotated[list[str] | None, SET]}),
 ]
-From = Annotated[
-    str | None,
-    typer.Option(
-        "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
-    ),
-]
-To = Annotated[str | None, typer.Option("--to", help="Highest frequency or speed.")]
-Set = Annotated[
-    list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="A number of the system; repeat it for more.")
-]
+LOW = typer.Option(
+    "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
+)
+HIGH = typer.Option("--to", help="Highest frequency or speed.")
+From = Annotated[float, LOW, Read(read_speed, missing=lambda asked: _usual(asked)[0])]
+To = Annotated[float, HIGH, Read(read_speed, missing=lambda asked: _usual(asked)[1])]
+XUnit = Annotated[str, Given("length")]
 
 
+@Command("frequency response", writes=PICTURES_AND_DATA)
 def frequency_response(
-    name: Subject,
-    low: From = None,
-    high: To = None,
-    method: Annotated[
-        list[str] | None,
-        typer.Option("--method", help="exact, harmonic balance, averaging, …; repeat it, or write all."),
-    ] = None,
-    parameters: Set = None,
-    fit_range: Annotated[
-        float | None, typer.Option("--fit-range", help="Of the cubic fit of averaging and multiple scales [x].")
-    ] = None,
-    harmonics: Annotated[int | None, typer.Option("--harmonics", help="Of harmonic balance.", min=1)] = None,
-    curve: Annotated[
-        str, typer.Option("--curve", help="State of a system or shaft of a line to look at; default: the first.")
-    ] = "",
-    to: OutputNoTable = None,
-    as_json: Json = False,
-) -> None:
-    """Frequency response with folds, jumps and stability, by one method or several.
+    subject: Subjects,
+    *,
+    low: From,
+    high: To,
+    method: list[str] | None = None,
+    fit_range: float | None = None,
+    harmonics: Annotated[int | None, Bounds(1)] = None,
+    curve: str = "",
+    length: XUnit,
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion frequency-response gear-rattle --method all -o response.png
 
-    Example: trunnion frequency-response gear-rattle --method all -o response.png
+    --method  exact, harmonic balance, averaging, …; repeat it, or write all.
+    --fit-range  Of the cubic fit of averaging and multiple scales [x].
+    --harmonics  Of harmonic balance.
+    --curve  State of a system or shaft of a line to look at; default: the first.
     """
     from trunnion.motion.orbits.frequency_response import ResponseComparison, methods_of
 
-    subject, length = _subject(name, parameters)
-    unit = _unit(subject)
-    first, last = _range(subject, low, high)
-    check_places(to, PICTURES_AND_DATA)
     known = methods_of(subject)
     # The exact motion of longer lines is for those without joints: asked for by name.
     every = known if isinstance(subject, tn.PiecewiseOscillator) else known[:2]
     chosen = list(every) if method == ["all"] else (method or [known[0]])
     if "shooting" in chosen and known[0] == "shooting":
         output.note("following the motions through their contacts, which may take minutes; a narrower range is quicker")
-    with output.progress("frequency response") as advance:
-        shares = _shares(advance, chosen)
-        found = ResponseComparison(
-            {
-                m: tn.frequency_response(
-                    subject, first, last, method=m, curve=curve, **_options(m, fit_range, harmonics, shares[m])
-                )
-                for m in chosen
-            }
-        )
+    shares = _shares(progress, chosen)
+    found = ResponseComparison(
+        {
+            m: tn.frequency_response(
+                subject, low, high, method=m, curve=curve, **_options(m, fit_range, harmonics, shares[m])
+            )
+            for m in chosen
+        }
+    )
     for response in found.responses.values():
         if not len(response.frequency):
             response.outcome.require()
     one = found.responses[chosen[0]]
     text = one.describe(unit) if len(chosen) == 1 else f"{found.describe(unit)}\n\n{one.describe(unit)}"
-    deliver(
-        "frequency-response", name, one, to, as_json,
-        draw=lambda: found.plot(length=length, unit=unit), content=lambda: {"methods": _json(found)}, text=lambda: text,
-    )  # fmt: skip
+    return Shown(
+        one, draw=partial(found.plot, length=length), content=lambda: {"methods": _json(found)}, text=lambda: text
+    )
 
 
+@Command("sweep", writes=PICTURES_AND_DATA)
 def sweep(
-    name: Subject,
-    low: From = None,
-    high: To = None,
-    points: Annotated[int, typer.Option("--points", help="Frequencies.", min=2, max=100_000)] = 101,
-    direction: Annotated[str, typer.Option("--direction", help="up, down or both.")] = "both",
-    curve: Annotated[str, typer.Option("--curve", help="Shaft or mesh of a longer line to draw.")] = "",
-    parameters: Set = None,
-    to: OutputNoTable = None,
-    as_json: Json = False,
-) -> None:
-    """Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.
+    subject: Subjects,
+    *,
+    low: From,
+    high: To,
+    points: Annotated[int, Bounds(2, 100_000)] = 101,
+    direction: str = "both",
+    curve: str = "",
+    name: Annotated[str, Given("file")],
+    length: XUnit,
+    unit: SpeedUnit,
+) -> Shown:
+    """Example: trunnion sweep gear-rattle --set mean_force=0 -o sweep.png
 
-    Example: trunnion sweep gear-rattle --set mean_force=0 -o sweep.png
+    --points  Frequencies.
+    --direction  up, down or both.
+    --curve  Shaft or mesh of a longer line to draw.
     """
     import numpy as np
 
@@ -114,41 +177,32 @@ def sweep(
     from trunnion.motion.orbits.piecewise_branch import check_range
     from trunnion.plots.frequency_response import draw_line_sweeps, draw_sweeps
 
-    subject, length = _subject(name, parameters)
     if isinstance(subject, tn.System):
         raise InputError(
             "has no gap to be swept over", key="NAME", value=name,
             remedy=f"use {GEARS}, {DEAD_ZONE} or a line with gears; or frequency-response, periodic-response",
         )  # fmt: skip
-    first, last = _range(subject, low, high)
     if direction not in ("up", "down", "both"):
         raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
-    check_range(first, last)
+    check_range(low, high)
     if isinstance(subject, tn.PiecewiseOscillator):
         require_forced(subject)
-    elif curve and curve not in (springs := staged_line(subject, first).springs):
+    elif curve and curve not in (springs := staged_line(subject, low).springs):
         remedy = nearest(curve, list(springs))
         raise InputError("is no shaft or mesh of the line", key="--curve", value=curve, remedy=remedy)
-    check_places(to, PICTURES_AND_DATA)
-    grid = np.linspace(first, last, points)
+    grid = np.linspace(low, high, points)
     grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
-    unit = _unit(subject)
-    with output.progress("sweep"):
-        found: list[Any] = [tn.sweep(subject, values) for values in grids]
-    if isinstance(subject, tn.PiecewiseOscillator):
-        deliver(
-            "sweep", name, _Sweeps(found), to, as_json,
-            draw=lambda: draw_sweeps(found, length=length),
-            content=lambda: {"sweeps": [_sweep_json(one, _oscillator_json(one)) for one in found]},
-            text=lambda: "\n".join(map(str, found)),
-        )  # fmt: skip
-    else:
-        deliver(
-            "sweep", name, _Sweeps(found), to, as_json,
-            draw=lambda: draw_line_sweeps(found, spring=curve, unit=unit),
-            content=lambda: {"sweeps": [_sweep_json(one, _line_json(one)) for one in found]},
-            text=lambda: "\n".join(one.describe(unit) for one in found),
-        )  # fmt: skip
+    found: list[Any] = [tn.sweep(subject, values) for values in grids]
+    one_equation = isinstance(subject, tn.PiecewiseOscillator)
+    measured = _oscillator_json if one_equation else _line_json
+    return Shown(
+        _Sweeps(found),
+        draw=lambda: (
+            draw_sweeps(found, length=length) if one_equation else draw_line_sweeps(found, spring=curve, unit=unit)
+        ),
+        content=lambda: {"sweeps": [_sweep_json(one, measured(one)) for one in found]},
+        text=lambda: "\n".join(str(one) if one_equation else one.describe(unit) for one in found),
+    )
 
 
 def _sweep_json(one: Any, measured: dict[str, Any]) -> dict[str, Any]:
@@ -181,64 +235,6 @@ def _line_json(one: Any) -> dict[str, Any]:
         "contact": {s: one.contact_of(s) for s in staged},
         "impact_energy": {s: [row[i].impact_energy for row in one.contacts] for i, s in enumerate(staged)},
     }
-
-
-def _subject(name: str, parameters: list[str] | None) -> tuple[tn.PiecewiseOscillator | tn.System | tn.Driveline, str]:
-    """What is meant, and the unit of its x if it has one."""
-    from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import entries
-    from trunnion.systems.reference import SYSTEMS
-
-    values = read_set(parameters)
-    if name == GEARS:
-        return tn.catalogue(GEARS, **values), "rad"
-    if name in SYSTEMS:
-        system = SYSTEMS[name]().with_parameters(values)
-        return tn.PiecewiseOscillator.gap(name=name, **system.parameters) if name == DEAD_ZONE else system, ""
-    lines = [entry.name for entry in entries()]
-    if not Path(name).suffix and not Path(name).exists() and name not in lines:
-        remedy = nearest(name, [GEARS, *SYSTEMS, *lines])
-        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=remedy)
-    if values:
-        remedy = "edit the file instead"
-        raise InputError("belongs to reference systems", key="--set", value=parameters, remedy=remedy)
-    return _of_line(read_line(name))
-
-
-def _of_line(line: tn.Driveline) -> tuple[tn.PiecewiseOscillator | tn.Driveline, str]:
-    """One equation where the line is that, and nothing in it grows with the speed; and the unit of its x."""
-    spring = line.elements[1] if len(line.elements) == 3 else None
-    phased = isinstance(spring, tn.GearPair) and bool(spring.transmission_error)
-    if not isinstance(spring, tn.GearPair | tn.PiecewiseShaft) or phased:
-        return line, ""
-    return tn.exact_oscillator(line), "m" if isinstance(spring, tn.GearPair) else "rad"
-
-
-def _unit(subject: tn.PiecewiseOscillator | tn.System | tn.Driveline) -> str:
-    from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit
-
-    if isinstance(subject, tn.Driveline):
-        return speed_unit(subject)
-    return frequency_unit(subject.speed_unit) if isinstance(subject, tn.PiecewiseOscillator) else "rad/s"
-
-
-def _range(
-    subject: tn.PiecewiseOscillator | tn.System | tn.Driveline, low: str | None, high: str | None
-) -> tuple[float, float]:
-    """As given; else about the frequency of the excitation, or a line's range of speeds."""
-    from trunnion.reporting.ranges import speed_range
-
-    unit = _unit(subject)
-    first, last = read_speed(low, unit, "--from"), read_speed(high, unit, "--to")
-    if first is not None and last is not None:
-        return first, last
-    usual = 0.3, 1.3
-    if isinstance(subject, tn.Driveline):
-        usual = speed_range(subject)
-    elif isinstance(subject, tn.PiecewiseOscillator) and not usual[0] < subject.frequency < usual[1]:
-        usual = 0.5 * subject.frequency, 1.5 * subject.frequency
-    return usual[0] if first is None else first, usual[1] if last is None else last
 
 
 def _shares(advance: Callable[[float], None], methods: list[str]) -> dict[str, Callable[[float], None]]:

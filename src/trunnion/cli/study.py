@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,23 +12,11 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import (
-    File,
-    Json,
-    LoadCase,
-    Output,
-    Points,
-    Speed,
-    Unit,
-    file_stem,
-    read_axis,
-    read_case,
-    read_line,
-    read_points,
-    read_speed,
-    read_time,
-)
-from trunnion.cli.places import DEFAULT_FOLDER, answer, check_places, deliver, write_result
+from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
+from trunnion.cli.options import FILE, SPEED, Line, LoadCase, OwnLine, Progress, Speed, SpeedUnit, Unit
+from trunnion.cli.places import DEFAULT_FOLDER, NOTHING, Shown, write_result
+from trunnion.cli.readers import loaded_line, own_line, read_axis, read_points, read_speed, read_time
+from trunnion.cli.typed import Command, Json
 from trunnion.waiting import TimeLimit, to_the_end
 
 if TYPE_CHECKING:
@@ -42,7 +32,7 @@ REST, LEAST = 10.0, 0.05
 
 
 def analyze(
-    file: File,
+    file: Annotated[str, FILE],
     to: Annotated[
         Path,
         typer.Option(
@@ -52,7 +42,7 @@ def analyze(
             help="Folder for report, chart and data; or the report alone as NAME.html.",
         ),
     ] = DEFAULT_FOLDER,
-    speed: Speed = None,
+    speed: Annotated[str | None, SPEED] = None,
     unit: Unit = None,
     load_case: LoadCase = None,
     points: Annotated[
@@ -71,9 +61,10 @@ def analyze(
 ) -> None:
     """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
     begun = time.monotonic()
-    line, unit = read_case(file, unit, load_case)
-    size, at = read_points(points) if points else None, read_speed(speed, unit)
-    seconds = read_time(within, "--within")
+    about = loaded_line(file, {"unit": unit, "load_case": load_case})
+    size = read_points(points) if points else None
+    at = None if speed is None else read_speed(about, speed, "--speed")
+    seconds = None if within is None else read_time(within, "--within")
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_begin, print_findings, print_judged, print_overview
     from trunnion.reporting.answer import answer as answer_of
@@ -81,10 +72,10 @@ def analyze(
     from trunnion.reporting.overview import at_speed
 
     check_report(to)
-    question = asked(line, speed=at, unit=unit)
+    question = asked(about.line, speed=at, unit=about.unit)
     if not as_json:
         print_begin(question)
-    with output.progress("verdict", within):
+    with output.progress("verdict", seconds):
         verdict = judged(question)
     if not as_json:
         print_judged(verdict)
@@ -143,7 +134,7 @@ def _written(page: Report, to: Path, file: str) -> list[Path]:
 
     if to.suffix.lower() in REPORTS:
         return [page.save(to)]
-    chart, stem = page.contents.overview.chart, file_stem(file)
+    chart, stem = page.contents.overview.chart, Path(file).stem
     with folder_written_whole(to) as temporary:
         written = [page.save(temporary / f"{stem}-report.html")]
         if chart is not None:
@@ -152,96 +143,99 @@ def _written(page: Report, to: Path, file: str) -> list[Path]:
     return [to / path.name for path in written]
 
 
-def stability(
-    file: File,
-    speed: Speed = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    as_json: Json = False,
-) -> None:
-    """Floquet stability at one speed, with the linear forced response."""
-    line, unit = read_case(file, unit, load_case)
-    at = read_speed(speed, unit)
+def _size(asked: Asked, text: str, key: str) -> tuple[int, int]:
+    return read_points(text)
+
+
+Axis = tuple[str, float, float, int, str]
+AXIS = partial(read_axis, points=0)
+"""With as many points as ``--points`` says where none are stated."""
+
+
+def _frequencies(file: str, texts: Texts) -> Asked:
+    """The line, and the unit of frequencies that goes with that of its speeds."""
+    from trunnion.results.speeds import frequency_unit
+
+    asked = own_line(file, texts)
+    return asked if texts["unit"] else replace(asked, unit=frequency_unit(asked.unit))
+
+
+@Command("stability", writes=NOTHING)
+def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> Shown:
+    """Example: trunnion stability truck.toml --speed "1500 rpm" """
     from trunnion.cli.report import stability_json
 
-    with output.progress("stability"):
-        result = tn.stability(line, at)
-    answer(
-        "stability", None, as_json, lambda: stability_json(result, unit), lambda: result.describe(unit),
-        lambda: output.findings(result.findings_in(unit)), wrap=True,
-    )  # fmt: skip
+    found = tn.stability(line, speed)
+    return Shown(
+        found,
+        content=lambda: stability_json(found, unit),
+        more=lambda: output.findings(found.findings_in(unit)),
+        wrap=True,
+    )
 
 
+@Command("stability chart")
 def stability_chart(
-    file: File,
-    x: Annotated[
-        str,
-        typer.Option(
-            "--x", metavar="PARAMETER:LOW:HIGH[:POINTS][:log]", help="Or PARAMETER alone for the file's range."
-        ),
-    ] = "speed",
-    y: Annotated[str, typer.Option("--y", metavar="PARAMETER:LOW:HIGH[:POINTS][:log]")] = "HookeJoint *.angle",
-    speed: Speed = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    points: Points = "200x150",
-    to: Output = None,
-    as_json: Json = False,
-) -> None:
-    """Stability over any two parameters, as picture and data.
+    line: Line,
+    *,
+    x: Annotated[Axis, Read(AXIS, "speed")],
+    y: Annotated[Axis, Read(AXIS, "HookeJoint *.angle")],
+    speed: Speed,
+    points: Annotated[tuple[int, int], Read(_size, "200x150")],
+    unit: SpeedUnit,
+    progress: Progress,
+) -> Shown:
+    """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
 
-    Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
+    --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
+    --y PARAMETER:LOW:HIGH[:POINTS][:log]  The same.
+    --points NXxNY  Points along x and y where not said there.
     """
-    line, unit = read_case(file, unit, load_case)
-    nx, ny = read_points(points)
-    at = read_speed(speed, unit)
     from trunnion.cli.report import chart_json, chart_text
 
-    across = read_axis(x, line, unit, nx, "--x")
-    up = read_axis(y, line, unit, ny, "--y")
-    check_places(to)
-    with output.progress("stability chart") as advance:
-        chart = tn.stability_chart(line, across, up, speed=at, progress=advance)
-    deliver(
-        "stability-chart", file, chart, to, as_json, draw=lambda: chart.plot(unit=unit),
-        content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True,
-    )  # fmt: skip
+    across, up = ((*axis[:3], axis[3] or n, axis[4]) for axis, n in zip((x, y), points, strict=True))
+    chart = tn.stability_chart(line, across, up, speed=speed, progress=progress)
+    return Shown(chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True)
 
 
-def natural_frequencies(file: File, unit: Unit = None, as_json: Json = False) -> None:
-    """Natural frequencies and damping ratios with all joints straight."""
-    line = read_line(file)
+LineInFrequencies = Annotated["tn.Driveline", FILE, Subject(_frequencies, {"unit": Unit})]
+
+
+@Command(writes=NOTHING)
+def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> Shown:
+    """Example: trunnion natural-frequencies truck.toml --unit Hz"""
     from trunnion.cli.report import modes_json
-    from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit, speed_factor
 
-    unit = unit or frequency_unit(speed_unit(line))
-    speed_factor(unit)
     modes = tn.natural_frequencies(line)
-    answer(
-        "natural-frequencies", None, as_json, lambda: modes_json(modes, unit),
-        lambda: f"{len(modes.names)} natural frequencies, all joints straight",
-        lambda: output.table(modes.table(unit)), wrap=True,
-    )  # fmt: skip
+    return Shown(
+        modes,
+        content=lambda: modes_json(modes, unit),
+        text=lambda: f"{len(modes.names)} natural frequencies, all joints straight",
+        more=lambda: output.table(modes.table(unit)),
+        wrap=True,
+    )
 
 
+@Command(writes=NOTHING)
 def resonance_speeds(
-    file: File,
-    orders: Annotated[int, typer.Option("--orders", help="Highest order k.", min=1, max=20)] = 2,
-    everywhere: Annotated[bool, typer.Option("--all", help="Also those outside the file's speed_range.")] = False,
-    unit: Unit = None,
-    as_json: Json = False,
-) -> None:
-    """Named parametric resonance speeds in the operating range, and which of them can open."""
+    line: OwnLine, *, orders: Annotated[int, Bounds(1, 20)] = 2, all_: bool = False, unit: SpeedUnit
+) -> Shown:
+    """Example: trunnion resonance-speeds truck.toml --orders 3 --all
+
+    --orders  Highest order k.
+    --all  Also those outside the file's speed_range.
+    """
     from trunnion.cli.report import resonances_json
 
-    line, unit = read_case(file, unit)
     found = tn.resonance_speeds(line, orders)
     limits = line.operation.speed_range if line.operation else None
-    shown = found if everywhere or limits is None else found.within(*limits)
+    shown = found if all_ or limits is None else found.within(*limits)
     rows = shown.table(unit)
     where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
-    answer(
-        "resonance-speeds", None, as_json, lambda: resonances_json(shown, unit),
-        lambda: f"{len(rows)} resonance speeds up to order {orders}{where}", lambda: output.table(rows), wrap=True,
-    )  # fmt: skip
+    return Shown(
+        shown,
+        content=lambda: resonances_json(shown, unit),
+        text=lambda: f"{len(rows)} resonance speeds up to order {orders}{where}",
+        more=lambda: output.table(rows),
+        wrap=True,
+    )

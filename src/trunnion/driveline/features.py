@@ -13,8 +13,12 @@ from typing import Any
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.joints import Joint
+from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
+from trunnion.driveline.shafts import Spring
+from trunnion.driveline.stages import PiecewiseShaft
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -68,6 +72,27 @@ def _prescribed_end(line: Driveline) -> list[str]:
     return [n for n, e in zip(line.names[1:], line.elements[1:], strict=True) if isinstance(e, ConstantSpeed)]
 
 
+SPRINGS = [name for name, kind in KINDS.items() if issubclass(kind, Spring | PiecewiseShaft)]
+JOINTS = {name: kind for name, kind in KINDS.items() if issubclass(kind, Joint)}
+_LISTED = ("HookeJoint", "IdealJoint", "TripodJoint", "RzeppaJoint", "DoubleCardanJoint")
+"""Joints whose features stand in the list; one of another kind is a feature of its own, called as the kind."""
+_OTHER_JOINTS = tuple(
+    Feature(name, tuple(f"{name}.{key}" for key in kind.model_fields if key not in (*Element.model_fields, "plane")))
+    for name, kind in JOINTS.items()
+    if name not in _LISTED
+)
+UNEVEN = (
+    "Hooke's joint", "tripod joint", "ripple of a Rzeppa joint", "double Cardan joint off centre",
+    *(one.key for one in _OTHER_JOINTS),
+)  # fmt: skip
+"""Features of joints that do not pass rotation unchanged."""
+
+
+def _of_springs(*keys: str) -> tuple[str, ...]:
+    """Some fields of every kind of spring that has them."""
+    return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
+
+
 FEATURES = (
     Feature(
         "inertia",
@@ -79,36 +104,22 @@ FEATURES = (
     Feature(
         "stiffness",
         (
-            "Shaft.stiffness", "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length", "Shaft.shear_modulus",
-            "Shaft.material", "Coupling.stiffness",
+            *_of_springs("stiffness"), "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length",
+            "Shaft.shear_modulus", "Shaft.material",
         ),
     ),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
-    Feature("damping", ("Shaft.damping", "Coupling.damping", "PiecewiseShaft.damping", "Clutch.damping")),
-    Feature(
-        "loss factor",
-        (
-            "Shaft.loss_factor", "Shaft.loss_factor_frequency", "Coupling.loss_factor", "Coupling.relative_damping",
-            "Coupling.loss_factor_frequency",
-        ),
-    ),
+    Feature("damping", _of_springs("damping")),
+    Feature("loss factor", _of_springs("loss_factor", "loss_factor_frequency", "relative_damping")),
     Feature(
         "damping ratio",
         ("Driveline.damping_ratio", "Driveline.damping_ratio_frequency"),
         lambda line: ["driveline.damping_ratio"] if line.damping_ratio else [],
     ),
     Feature("Hooke's joint", ("HookeJoint.angle",)),
-    Feature(
-        "fork offset",
-        ("Shaft.fork_offset", "Coupling.fork_offset", "PiecewiseShaft.fork_offset", "Clutch.fork_offset"),
-    ),
-    Feature(
-        "joint plane",
-        (
-            "HookeJoint.plane", "IdealJoint.plane", "TripodJoint.plane", "RzeppaJoint.plane", "DoubleCardanJoint.plane",
-        ),
-    ),
+    Feature("fork offset", _of_springs("fork_offset")),
+    Feature("joint plane", tuple(f"{name}.plane" for name, kind in JOINTS.items() if "plane" in kind.model_fields)),
     Feature("angle of an ideal joint", ("IdealJoint.angle",)),
     Feature(
         "tripod joint", ("TripodJoint.angle", "TripodJoint.radius", "TripodJoint.length", "TripodJoint.spider")
@@ -122,6 +133,7 @@ FEATURES = (
     ),
     Feature("double Cardan joint", ("DoubleCardanJoint.angle", "DoubleCardanJoint.yoke_length")),
     Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",)),
+    *_OTHER_JOINTS,
     Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
     Feature(
         "gear mesh",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import pi
 from typing import Any, ClassVar, Self
 
@@ -26,6 +26,9 @@ from trunnion.driveline.quantities import (
     optional,
 )
 from trunnion.errors import InputError
+
+Numbers = Callable[[str], Any]
+"""The values of an element's number by its key, one or many."""
 
 
 class Spring(Element):
@@ -56,11 +59,14 @@ class Spring(Element):
         """Loss factor η, however stated; None where damping is a coefficient."""
         return self.loss_factor
 
+    def stiffness_of(self, number: Numbers) -> Any:
+        """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
+        return number("stiffness")
+
     @property
     def torsional_stiffness(self) -> float:
-        """k [N m/rad]."""
-        assert self.stiffness is not None
-        return self.stiffness
+        """k [N m/rad], as stated or as it follows."""
+        return float(self.stiffness_of(lambda key: getattr(self, key)))
 
     @property
     def damping_coefficient(self) -> float:
@@ -139,13 +145,11 @@ class Shaft(Spring):
         """The fields that differ from their defaults and do not follow from the material."""
         return without_material(super().stated)
 
-    @property
-    def torsional_stiffness(self) -> float:
-        """k [N m/rad], as stated or from the tube."""
+    def stiffness_of(self, number: Numbers) -> Any:
+        """As stated, or of the tube."""
         if self.stiffness is not None:
-            return self.stiffness
-        assert self.outer_diameter and self.length and self.shear_modulus and self.inner_diameter is not None
-        return tube_stiffness(self.outer_diameter, self.inner_diameter, self.length, self.shear_modulus)
+            return number("stiffness")
+        return tube_stiffness(*map(number, ("outer_diameter", "inner_diameter", "length", "shear_modulus")))
 
     @property
     def moment_of_inertia(self) -> float:

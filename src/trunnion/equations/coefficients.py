@@ -16,10 +16,10 @@ from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Ratio
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.geometry import disk_inertia, tube_inertia, tube_stiffness
+from trunnion.driveline.geometry import disk_inertia, tube_inertia
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
-from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.driveline.shafts import Spring
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, static_torque, station_loads
@@ -169,16 +169,13 @@ def _joint_law(assembly: Assembly, table: Array, place: int) -> JointLaw:
 
 
 def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
-    """Torsional stiffness [N m/rad] of one shaft, from its stiffness or its tube geometry; of a mesh or a shaft with
-    stages, that of its stiffest stage."""
+    """Torsional stiffness [N m/rad] of one spring; of a mesh or a shaft with stages, that of its stiffest stage."""
     shaft = assembly.line.elements[element]
     column = assembly.packed.column
     if has_stages(shaft):
         return stage_law(assembly.line, element, column, table).slopes.max(axis=1)
-    if isinstance(shaft, Shaft) and shaft.stiffness is None:
-        keys = ("outer_diameter", "inner_diameter", "length", "shear_modulus")
-        return np.asarray(tube_stiffness(*(table[:, column(element, k)] for k in keys)))
-    return table[:, column(element, "stiffness")]
+    assert isinstance(shaft, Spring)
+    return np.asarray(shaft.stiffness_of(lambda key: table[:, column(element, key)]))
 
 
 def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> tuple[Array, Array]:

@@ -1,10 +1,11 @@
-"""How a result finds its drawing: in the table that ``trunnion.plots`` keeps, by its class and method."""
+"""How a result finds its drawing: in ``trunnion.registry``, by its class and method."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from trunnion.registry import PICTURES, found_at
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes
@@ -15,7 +16,5 @@ else:  # what draws takes long to load, and results are drawn seldom
 
 def drawing(result: object, method: str) -> Callable[..., Any]:
     """The function that draws ``method`` of ``result``. A result knows no picture; pictures know results."""
-    drawings: dict[str, str] = import_module("trunnion.plots").DRAWINGS
-    module, name = drawings[f"{type(result).__name__}.{method}"].split(":")
-    found: Callable[..., Any] = getattr(import_module(module), name)
+    found: Callable[..., Any] = found_at(PICTURES[f"{type(result).__name__}.{method}"])
     return found

@@ -31,7 +31,8 @@ def breaks(solved: MotionsBySpeed, speeds: Array) -> tuple[Break, ...]:
     if not usable:
         return (Break(low, high, NONE),)
     walk = _Walk(solved, low, high)
-    return tuple(_merged([*walk.outside(usable[0], low), *walk.between(usable), *walk.outside(usable[-1], high)]))
+    found = _merged([*walk.outside(usable[0], low), *walk.between(usable), *walk.outside(usable[-1], high)])
+    return tuple(walk.with_outer_motions(one, usable) for one in found)
 
 
 def _merged(found: Iterable[Break]) -> Iterator[Break]:
@@ -67,6 +68,17 @@ class _Walk:
             down = a if up == b else self._carried(b, a)
             if up != b and down != a:
                 yield Break(min(up, down), max(up, down), SEVERAL if up > down else NONE)
+
+    def with_outer_motions(self, found: Break, speeds: list[float]) -> Break:
+        """The same break; of several motions that are known at a fold, the one that goes on outside, up to where the
+        line is judged by it."""
+        below = max((speed for speed in speeds if speed < found.low), default=found.low)
+        above = min((speed for speed in speeds if speed > found.high), default=found.high)
+        for begin, fold in ((below, found.low), (above, found.high)):
+            reached, motion = self.solved.carried(self.solved.known[begin], begin, fold)
+            if reached == fold:
+                self.solved.known[fold] = motion
+        return found
 
     def _lead_over(self, pairs: list[tuple[float, float]]) -> list[bool]:
         """Of pairs of speeds whether the motion at the first leads to that at the second in one small step."""

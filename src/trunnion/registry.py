@@ -1,0 +1,360 @@
+"""Every analysis in one place: what it answers, how it treats features, what draws, asks and shows it.
+
+Everything stands here by address ("module:name"), so that the rooms of the package import downward and nothing is
+loaded before it is needed. ``trunnion.features`` makes its table from this one; results find their pictures here, the
+command line its commands and the application its views. Tests and pages are held against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """One question that can be asked of a line or of a system.
+
+    name : of the public function that answers it, ``trunnion.NAME``.
+    sentence : what it answers, as ``trunnion --help`` says.
+    features : the row of ``trunnion.features.ROWS`` that says how it treats each feature of a line; "" where it takes
+        no line.
+    pictures : what draws its results, by class and method of the result.
+    command : the function of the command of the same name; "" without one.
+    view : the view of the application, of ``VIEWS``, that shows it; "" where none does.
+    """
+
+    name: str
+    sentence: str
+    features: str = ""
+    pictures: Mapping[str, str] = field(default_factory=dict)
+    command: str = ""
+    view: str = ""
+
+
+ANALYSES = (
+    Analysis(
+        "assess",
+        "Judge every limit of the file and every rule that applies, over its speed range; the binding one first.",
+        features="judgement",
+        command="trunnion.cli.assess:assess",
+        view="verdict",
+    ),
+    Analysis(
+        "campbell_diagram",
+        "Modes of the loaded line over its speed range, what excites them, and where the two meet.",
+        features="loaded modes",
+        pictures={"CampbellDiagram.plot": "trunnion.plots.campbell_diagram:draw"},
+        command="trunnion.cli.assess:campbell_diagram",
+    ),
+    Analysis(
+        "envelope",
+        "The worst of every check over all load cases and schedules of the file, and where it stands.",
+        features="judgement",
+        pictures={"Envelope.plot": "trunnion.plots.envelope:draw"},
+        command="trunnion.cli.assess:envelope",
+    ),
+    Analysis(
+        "stability",
+        "Floquet stability at one speed, with the linear forced response.",
+        features="linear motion",
+        command="trunnion.cli.study:stability",
+        view="stability",
+    ),
+    Analysis(
+        "stability_chart",
+        "Stability over any two parameters, as picture and data.",
+        features="multipliers",
+        pictures={"StabilityChart.plot": "trunnion.plots.stability_chart:draw"},
+        command="trunnion.cli.study:stability_chart",
+        view="stability",
+    ),
+    Analysis(
+        "natural_frequencies",
+        "Natural frequencies and damping ratios with all joints straight.",
+        features="modes",
+        pictures={"NaturalFrequencies.plot": "trunnion.plots.mode_shapes:draw"},
+        command="trunnion.cli.study:natural_frequencies",
+        view="driveline",
+    ),
+    Analysis(
+        "resonance_speeds",
+        "Named parametric resonance speeds in the operating range, and which of them can open.",
+        features="resonances",
+        command="trunnion.cli.study:resonance_speeds",
+        view="stability",
+    ),
+    Analysis(
+        "kinetostatics",
+        "Motion, torques, secondary couples and support forces over a turn; fork phasing.",
+        features="turn",
+        pictures={"Kinetostatics.plot": "trunnion.plots.kinetostatics:draw"},
+        command="trunnion.cli.kinetostatics:kinetostatics",
+        view="joints",
+    ),
+    Analysis(
+        "phase_forks",
+        "The fork offsets between joints for the least irregular output.",
+        features="forks",
+        view="joints",
+    ),
+    Analysis(
+        "assembly_sensitivity",
+        "Irregularity of the output under errors of joint angles, planes and fork offsets.",
+        features="forks",
+        view="limits",
+    ),
+    Analysis(
+        "bending_speeds",
+        "Critical bending speed of every shaft that is described as a tube.",
+        features="whirl",
+    ),
+    Analysis(
+        "order_response",
+        "Vibratory torque of every shaft and mesh over speed, order by order, with stress, heat and speed fluctuation.",
+        features="linear motion",
+        pictures={"OrderResponse.plot": "trunnion.plots.order_response:draw"},
+        command="trunnion.cli.orders:order_response",
+        view="orders",
+    ),
+    Analysis(
+        "speed_sweep",
+        "Torque and twist amplitude of every shaft over speed, all orders together; takes bent lines that start free.",
+        features="linear motion",
+        pictures={"SpeedSweep.plot": "trunnion.plots.torque_over_speed:draw"},
+        command="trunnion.cli.orders:speed_sweep",
+    ),
+    Analysis(
+        "stable_limit",
+        "The largest value of a parameter up to which the line is stable, over speed, and which limit binds before.",
+        features="multipliers",
+        pictures={"StableLimit.plot": "trunnion.plots.stable_limit:draw"},
+        command="trunnion.cli.orders:stable_limit",
+        view="limits",
+    ),
+    Analysis(
+        "tongues",
+        "Every instability region in a box of two parameters, as curves with resonance, tip and growth rate.",
+        features="multipliers",
+        pictures={"Tongues.plot": "trunnion.plots.tongues:draw"},
+        command="trunnion.cli.limits:tongues",
+        view="stability",
+    ),
+    Analysis(
+        "stable_windows",
+        "All ranges of a parameter, joint angles first, that keep a range of speeds stable.",
+        features="multipliers",
+        pictures={"StableWindows.plot": "trunnion.plots.tongues:draw_windows"},
+        command="trunnion.cli.limits:stable_windows",
+        view="limits",
+    ),
+    Analysis(
+        "minimum_damping",
+        "All ranges of damping that keep a range of speeds stable.",
+        features="multipliers",
+        command="trunnion.cli.limits:minimum_damping",
+    ),
+    Analysis(
+        "compare",
+        "What changed between two files, and what it did to frequencies, stability, torques and checks.",
+        features="comparison",
+        pictures={"Comparison.plot": "trunnion.plots.comparison:draw"},
+        command="trunnion.cli.design:compare",
+    ),
+    Analysis(
+        "optimise",
+        "Choose numbers of the file within bounds, for one aim or for two, against its checks.",
+        features="linear motion",
+        pictures={"Optimum.plot": "trunnion.plots.optimum:draw"},
+        command="trunnion.cli.design:optimise",
+        view="limits",
+    ),
+    Analysis(
+        "sensitivity",
+        "Derivatives of frequencies, growth rates, torques and checks by the numbers of the file, ranked.",
+        features="derivatives",
+        pictures={"Sensitivities.plot": "trunnion.plots.sensitivity:draw"},
+        command="trunnion.cli.design:sensitivity",
+    ),
+    Analysis(
+        "certify_stability",
+        "Prove that no line within its tolerances is unstable in a range of speeds, or find one that is.",
+        features="proof",
+        pictures={"StabilityCertificate.plot": "trunnion.plots.certificate:draw"},
+        command="trunnion.cli.limits:certify_stability",
+    ),
+    Analysis(
+        "tolerance_study",
+        "The probability that the line is stable within its tolerances, its worst corner, and what matters.",
+        features="multipliers",
+        pictures={"ToleranceStudy.plot": "trunnion.plots.tolerance:draw"},
+        command="trunnion.cli.limits:tolerance_study",
+        view="limits",
+    ),
+    Analysis(
+        "simulate",
+        "A motion in time, of a driveline or of a reference system (duffing, lorenz, …).",
+        features="motion",
+        pictures={
+            "Simulation.plot": "trunnion.plots.motion:draw_history",
+            "Simulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
+            "LineSimulation.plot": "trunnion.plots.motion:draw_line_history",
+            "LineSimulation.plot_order_map": "trunnion.plots.order_map:draw",
+        },
+        command="trunnion.cli.motion:simulate",
+        view="stability",
+    ),
+    Analysis(
+        "periodic_response",
+        "The true periodic motion, its torques, orders and stability, beside what linear theory says.",
+        features="motion",
+        pictures={
+            "PeriodicResponse.plot": "trunnion.plots.motion:draw_period",
+            "PeriodicResponse.plot_orders": "trunnion.plots.motion:draw_orders",
+            "PeriodicOrbit.plot": "trunnion.plots.motion:draw_orbit",
+        },
+        command="trunnion.cli.motion:periodic_response",
+        view="motion",
+    ),
+    Analysis(
+        "linearity_check",
+        "How far linear theory holds at a speed: order-response beside periodic-response, and what misleads it.",
+        features="motion",
+        pictures={"LinearityCheck.plot": "trunnion.plots.linearity:draw"},
+        command="trunnion.cli.motion:linearity_check",
+    ),
+    Analysis(
+        "run_up",
+        "Passage through resonance at an acceleration that sets in smoothly, against the steady response.",
+        features="passage",
+        pictures={"RunUp.plot": "trunnion.plots.run_up:draw"},
+        command="trunnion.cli.motion:run_up",
+        view="motion",
+    ),
+    Analysis(
+        "safe_accelerations",
+        "The slowest and the fastest acceleration whose passage keeps a limit of torque.",
+        features="passage",
+    ),
+    Analysis(
+        "periodic_branch",
+        "The periodic motion of a line or a forced system while a parameter moves.",
+        features="branch",
+        pictures={"PeriodicBranch.plot": "trunnion.plots.response_curve:draw"},
+    ),
+    Analysis(
+        "harmonic_balance",
+        "A periodic motion over a parameter by harmonic balance.",
+        features="long motion",
+    ),
+    Analysis(
+        "frequency_response",
+        "Frequency response with folds, jumps and stability, by one method or several.",
+        features="branch",
+        pictures={
+            "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
+            "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
+        },
+        command="trunnion.cli.rattle:frequency_response",
+        view="motion",
+    ),
+    Analysis(
+        "compare_responses",
+        "The same frequency response by several methods.",
+        pictures={"ResponseComparison.plot": "trunnion.plots.frequency_response:draw_response"},
+    ),
+    Analysis(
+        "sweep",
+        "Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.",
+        features="stages",
+        pictures={
+            "Sweep.plot": "trunnion.plots.frequency_response:draw_sweep",
+            "LineSweep.plot": "trunnion.plots.frequency_response:draw_line_sweep",
+        },
+        command="trunnion.cli.rattle:sweep",
+        view="motion",
+    ),
+    Analysis(
+        "exact_motion",
+        "The motion of a line whose springs are linear stage by stage, to rounding.",
+        features="stages",
+    ),
+    Analysis(
+        "piecewise_orbit",
+        "The exact periodic motion of a line with stages, stable or not.",
+        features="stages",
+    ),
+    Analysis(
+        "piecewise_branch",
+        "Exact periodic motions of a line with stages over a range of speeds.",
+        features="branch by stages",
+    ),
+    Analysis(
+        "basins",
+        "Which settled motion every pair of position and velocity ends in.",
+        pictures={"Basins.plot": "trunnion.plots.frequency_response:draw_basins"},
+    ),
+    Analysis(
+        "lyapunov_spectrum",
+        "Lyapunov exponents with intervals of confidence, and the sum rule.",
+        features="long motion",
+        pictures={"LyapunovSpectrum.plot": "trunnion.plots.chaos:draw_convergence"},
+        command="trunnion.cli.chaos:lyapunov_spectrum",
+        view="motion",
+    ),
+    Analysis(
+        "lyapunov_sweep",
+        "Lyapunov exponents at every value of one parameter.",
+        features="long motion",
+        pictures={"LyapunovSweep.plot": "trunnion.plots.chaos:draw_sweep"},
+    ),
+    Analysis(
+        "lyapunov_map",
+        "The largest Lyapunov exponent over two parameters.",
+        features="long motion",
+        pictures={"LyapunovMap.plot": "trunnion.plots.chaos:draw_lyapunov_map"},
+    ),
+    Analysis(
+        "poincare_map",
+        "Points of a settled motion, once per forcing period or on a section.",
+        features="long motion",
+        pictures={"PoincareMap.plot": "trunnion.plots.chaos:draw_map"},
+        command="trunnion.cli.chaos:poincare_map",
+        view="motion",
+    ),
+    Analysis(
+        "bifurcation_diagram",
+        "Points of the Poincaré map over one parameter.",
+        features="long motion",
+        pictures={"BifurcationDiagram.plot": "trunnion.plots.chaos:draw_bifurcations"},
+    ),
+    Analysis(
+        "certify_chaos",
+        "Regular, chaotic, unbounded or undecided, with reasons and one figure.",
+        features="long motion",
+        pictures={"ChaosCertificate.plot": "trunnion.plots.chaos:draw_certificate"},
+        command="trunnion.cli.chaos:certify_chaos",
+        view="motion",
+    ),
+)
+"""In the order in which help and tables list them."""
+PICTURES: Mapping[str, str] = {key: address for one in ANALYSES for key, address in one.pictures.items()}
+"""What draws a result: ``Class.method`` → address."""
+VIEWS: Mapping[str, str] = {
+    "driveline": "trunnion.app.views.driveline:DrivelineView",
+    "verdict": "trunnion.app.views.verdict:VerdictView",
+    "orders": "trunnion.app.views.orders:OrdersView",
+    "stability": "trunnion.app.views.stability:StabilityView",
+    "joints": "trunnion.app.views.joints:JointsView",
+    "limits": "trunnion.app.views.limits:LimitsView",
+    "motion": "trunnion.app.views.motion:MotionView",
+}
+"""The views of the application, in the order of its page."""
+
+
+def found_at(address: str) -> Any:
+    """What stands at "module:name"."""
+    module, name = address.split(":")
+    return getattr(import_module(module), name)
