@@ -19,7 +19,7 @@ from trunnion.numerics.sparse_matrices import Part, SparseMatrices
 
 BALANCED = 2e-13
 """What a solution may leave unbalanced at a place, over what acts there."""
-AT_ONCE = 3_000_000
+AT_ONCE = 500_000
 """Complex numbers of the matrices of what is left, of cases that are solved at once."""
 
 

@@ -54,4 +54,6 @@ def side_orders(fall: Mapping[int, float], decades: float) -> dict[int, int]:
                 for step in (rate, -rate):
                     if offset + step not in found:
                         heappush(waiting, (lost + decade, offset + step))
+    if OUTERMOST not in found.values():  # so many that the last one stands for the rest
+        found[offset] = OUTERMOST
     return found

@@ -35,13 +35,16 @@ from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.tree_blocks import AT_ONCE
 from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.steady.orders.groups import OWN, Group, SideOrders, groups_of, offsets
 from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
+from trunnion.steady.orders.prices import places_left, tree_pays
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
 from trunnion.steady.orders.straight import straight_response
 from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.steady.orders.unbalanced import balanced
 from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
@@ -53,8 +56,6 @@ FEWEST, MOST, ROUGH_REACH = 3, 48, 1
 """Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""
 SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
-LONG = 1
-"""Unknowns from which on what does not vary is eliminated along the tree."""
 MOST_NUMBERS = 300_000
 """Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
 
@@ -83,18 +84,29 @@ def order_spectrum(
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
     shaken = exciters(assembly)
-    case = _Case(
-        assembly, shaken, statically_twisted, _numbers(assembly, shaken, speed, table), linearised, rough, motions
-    )
+    numbers = _numbers(assembly, shaken, speed, table)
+
+    def solved(*, whole: bool) -> tuple[_Case, OrderSpectrum]:
+        case = _Case(assembly, shaken, statically_twisted, numbers, linearised, rough, motions, whole)
+        return case, _at_all(case, speed, progress)
+
+    case, found = solved(whole=False)
+    if case.along_tree and not rough and not balanced(case.assembly, found, numbers, case.twisted, first=linearised):
+        found = solved(whole=True)[1]
+    return found
+
+
+def _at_all(case: _Case, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
+    """At every ``speed`` (speed,), batch by batch."""
     parts: list[tuple[OrderSum, Array]] = []
     for done in range(0, len(speed), case.batch):
         keep_time()
         parts.append(case.solved(case.numbers[done : done + case.batch]))
         if not done:
-            _require_room(assembly, parts[0][0], len(speed))
+            _require_room(case.assembly, parts[0][0], len(speed))
         if progress:
             progress(min(done + case.batch, len(speed)) / len(speed))
-    channels = channels_of(assembly.topology)
+    channels = case.places
     keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
     amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
     base = np.zeros((len(speed), len(keys), channels.points), dtype=complex)
@@ -173,7 +185,9 @@ class _Case:
         linearised: bool,
         rough: bool,
         motions: MotionsBySpeed | None,
+        whole: bool,
     ) -> None:
+        """With ``whole`` matrices however long the line is."""
         self.linearised, self.rough = linearised, rough
         self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
         self.places = channels_of(self.topo)
@@ -194,10 +208,12 @@ class _Case:
             from trunnion.steady.orders.own_orders import OwnOrders
 
             self.own = OwnOrders(assembly, motions)
-        self.long = self.topo.size >= LONG
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
-        self.fall = spreads(self.topo, one, self.turns) if self.long and self.varies and not rough else None
-        self.reach: float = ROUGH_REACH if rough else _reach(one.joints) if self.fall is None else DECADES
+        self.fall: dict[int, float] | None = None
+        self.reach: float = ROUGH_REACH if rough else _reach(one.joints)
+        self.along_tree = self.varies and self.own is None and not whole and self._tree_pays()
+        if self.along_tree and not rough:
+            self.fall, self.reach = spreads(self.topo, one, self.turns), DECADES
         self.few: Array | None = None
         self.written: dict[float, _Written] = {}
         smooth = self.alike and not self.loss_in_time and not any(tabled_by_speed(assembly.line, e) for e in shaken)
@@ -225,12 +241,16 @@ class _Case:
         widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
         return groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
 
+    def _tree_pays(self) -> bool:
+        groups, sides, _ = self._plan(self.reach)
+        return tree_pays(self.topo, [len(sides.of(group)[0]) for group in groups], len(self.numbers))
+
     def _batch(self) -> int:
         """Speeds together, by the largest arrays of one."""
         groups, sides, times = self._plan(self.reach)
         n = self.topo.size
         most = max(len(sides.of(group)[0]) for group in groups) * n
-        if self.long:
+        if self.along_tree:
             return max(1, MOST_NUMBERS // (most if self.few is not None else max(most, times * n)))
         # To look around, equations that stand for all speeds are written out once.
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
@@ -287,7 +307,7 @@ class _Case:
         base, step = self._base(table, co, tau), table[:, 0] / float(self.turns)
         matrices: LineMatrices | TreeMatrices
         blocks: HillBlocks | TreeHill
-        if self.long:
+        if self.along_tree:
             matrices = tree_matrices(self.topo, co, tau)
             blocks = TreeHill(self.topo, matrices, co.loss, step, linearised=self.linearised)
         else:
@@ -304,15 +324,17 @@ class _Case:
         # Complex: the matrices of the nodes, those of a batch of cases and their factors; and what is sampled.
         matrices = nodes + 2 * min(self.batch, len(self.numbers))
         needed = 16.0 * (matrices * (harmonics * n) ** 2 + 4 * nodes * times * n**2)
-        if self.long:
-            needed = 16.0 * n * (8 * matrices * harmonics + 8 * nodes * times)
+        if self.along_tree:
+            left = places_left(self.topo)
+            needed = 16.0 * (8 * n * (matrices * harmonics + nodes * times) + max(AT_ONCE, 4 * left * harmonics**2))
         element, orders = Counter(e.element for e in self.shaken).most_common(1)[0] if self.shaken else ("driveline", 0)
         require_memory(
             needed,
             element=element,
             key="excitation",
             value=f"{orders} orders",
-            remedy="leave out the orders that matter least; with straight joints each is solved by itself",
+            remedy=f"its joints and meshes make {harmonics} side orders together: leave out the orders that matter "
+            "least; with straight joints each is solved by itself",
         )
 
     def _bent(self, cases: Array, reach: float) -> tuple[OrderSum, Array]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Places
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.exciters import base_of_excitation, exciters, size, torque_on_unknowns, twist_on_unknowns
 from trunnion.equations.line_coefficients import LineCoefficients
@@ -20,16 +21,31 @@ from trunnion.equations.tree_matrices import TreeEntries, TreeMatrices, tree_mat
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 
 INSTANTS = 24
+LEFT, BEYOND_CUT = 1e-9, 100.0
+"""What a response may leave: at least, and over the share of the side orders that are left out."""
 GOLDEN = (np.sqrt(5) - 1) / 2
 """Instants lie apart by this share of a turn, which no order repeats after."""
 
 
-def unbalanced(assembly: Assembly, spectrum: OrderSpectrum, at: Places, *, twisted: bool = True) -> Array:
-    """Largest torque left over at any rotation, over what acts there, (at,), at the speeds ``at`` of a ``spectrum`` of
-    the line as described. NaN where there is no response."""
-    topo, speed = assembly.topology, spectrum.speed[at]
+def balanced(assembly: Assembly, spectrum: OrderSpectrum, numbers: Array, twisted: bool, *, first: bool) -> bool:
+    """Whether a ``spectrum`` of rows of packed ``numbers`` (speed, column) leaves no more than what was left out of it:
+    tried at both ends and where it is largest, of those responses that exist, or at the ``first`` row alone."""
+    torque = np.abs(spectrum.amplitude[..., spectrum.channels.torque]).max(axis=(1, 2), initial=0.0)
+    there = np.flatnonzero(np.isfinite(torque))
+    if not len(there):
+        return True
+    at = np.unique([there[0], there[-1], there[torque[there].argmax()]])[: 1 if first else None]
+    left = unbalanced(assembly, spectrum, numbers, at, twisted=twisted)
+    return bool(np.all(left <= np.maximum(LEFT, BEYOND_CUT * spectrum.cut_off[at])))
+
+
+def unbalanced(
+    assembly: Assembly, spectrum: OrderSpectrum, numbers: Array, at: Places, *, twisted: bool = True
+) -> Array:
+    """Largest torque left over at any rotation, over what acts there, (at,), at the rows ``at`` of a ``spectrum`` of
+    packed ``numbers`` (speed, column). NaN where there is no response."""
+    topo, speed, table = assembly.topology, spectrum.speed[at], numbers[at]
     tau = 2 * np.pi * GOLDEN * np.arange(INSTANTS)
-    table = assembly.table(len(at), speed)
     co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
     matrices = tree_matrices(topo, co, tau)
     nu = spectrum.angular_frequency[at]
@@ -46,7 +62,11 @@ def unbalanced(assembly: Assembly, spectrum: OrderSpectrum, at: Places, *, twist
     parts += [-matrices.forcing, -_excited(assembly, table, co, matrices, tau, twisted)]
     if co.loss.any():
         parts.append(_lost(topo, co, matrices, turning, nu, spectrum.amplitude[at][..., spectrum.channels.twist]))
-    rest, acting = np.abs(sum(parts)).max(axis=1), sum(np.abs(part) for part in parts).max(axis=1)
+    left = np.sum(parts, axis=0)
+    if topo.free:  # a mean torque that turns the whole line is taken to be balanced
+        turn = rigid_rotation(topo)
+        left -= (left @ turn).mean(axis=1)[:, None, None] * turn / (turn @ turn)
+    rest, acting = np.abs(left).max(axis=1), np.sum([np.abs(part) for part in parts], axis=0).max(axis=1)
     return np.asarray(np.divide(rest, acting, out=np.zeros_like(rest), where=~(acting == 0)).max(axis=1))
 
 
@@ -56,7 +76,8 @@ def _products(entries: TreeEntries, x: Array) -> list[Array]:
     tied = np.flatnonzero(entries.parent >= 0)
     front = entries.parent[tied]
     beside[..., tied] += np.moveaxis(entries.down[tied], 0, -1) * x[..., front]
-    np.add.at(beside, (slice(None), slice(None), front), np.moveaxis(entries.up[tied], 0, -1) * x[..., tied])
+    for i, p in zip(tied.tolist(), front.tolist(), strict=True):
+        beside[..., p] += entries.up[i] * x[..., i]
     return [own, beside]
 
 
