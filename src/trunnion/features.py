@@ -95,7 +95,7 @@ _FORCES = "a forcing, which moves no frequency and no multiplier of a linear lin
 _FORCING = dict.fromkeys(
     (
         "excitation by order", "excitation that varies with speed or load", "cylinders", "excitation in time",
-        "excitation of a held disk", "transmission error",
+        "excitation by order and frequency", "excitation of a held disk", "transmission error",
     ),
     _FORCES,
 )  # fmt: skip
@@ -193,7 +193,8 @@ _RIGID = dict.fromkeys(
         "angle of an ideal joint", "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
-        "excitation that varies with speed or load", "cylinders", "excitation in time", "excitation of a held disk",
+        "excitation that varies with speed or load", "cylinders", "excitation in time",
+        "excitation by order and frequency", "excitation of a held disk",
         "unlike damping in series", "free start", "drive share",
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
@@ -260,6 +261,7 @@ ROWS: dict[str, Row] = {
             "excitation that varies with speed or load": _STEADY,
             "cylinders": _STEADY,
             "excitation in time": _STEADY,
+            "excitation by order and frequency": _STEADY,
             "excitation of a held disk": _STEADY,
             "unlike damping in series": _UNDAMPED_TURN,
             "drive share": "the first element drives alone",

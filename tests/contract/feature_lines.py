@@ -198,6 +198,9 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "quadratic load": (same, put("load", quadratic_load=0.005)),
     "excitation by order": (same, put("load", excitation=[{"order": 2, "amplitude": 5.0}])),
     "excitation in time": (same, put("load", excitation=[{"frequency": 100.0, "amplitude": 9.0}])),
+    "excitation by order and frequency": (
+        same, put("load", excitation=[{"order": -1, "frequency": 300.0, "amplitude": 9.0}])
+    ),
     "excitation of a held disk": (flywheel(), flywheel(excitation=[{"order": 2, "amplitude": 50.0}])),
     "unlike damping in series": (in_series(10.0, 10.0), in_series(16.0, 4.0)),
     "excitation that varies with speed or load": (

@@ -6,6 +6,7 @@ import ast
 import inspect
 import re
 from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from re import _parser  # type: ignore[attr-defined]
 
@@ -19,18 +20,80 @@ LONGEST = 700
 FILES = sorted(ROOT.rglob("*.py"))
 RUNS_TEXT = {"numerics/compiled.py"}
 """Loads a kernel's file a second time under other constants."""
+MOST_BY_PLACE = 8
+"""Arguments that a call passes without naming them."""
+TO_KERNELS = {"k", "core", "kernel()", "_kernel()"}
+"""What a kernel's module is called where it is loaded late; compiled code takes all it needs, one by one."""
+NAMED_LATER = {
+    # Being put together anew: they go from this list with the results of motions that get labelled fields.
+    "motion/chaos/bifurcation_diagram.py",
+    "motion/chaos/certify_chaos.py",
+    "motion/chaos/lyapunov_map.py",
+    "motion/chaos/poincare_map.py",
+    "motion/linearity/linearity_check.py",
+    "motion/orbits/frequency_response.py",
+    "motion/orbits/harmonic_balance.py",
+    "motion/orbits/harmonic_balance_springs.py",
+    "motion/orbits/piecewise_branch.py",
+    "motion/orbits/piecewise_orbit.py",
+    "motion/orbits/piecewise_sweep.py",
+    "motion/simulation/exact_motion.py",
+}
+
+
+@cache
+def parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def is_kernel(path: Path) -> bool:
+    """Whether a file is compiled, or part of it."""
+    decorators = [ast.unparse(d) for node in ast.walk(parsed(path)) for d in getattr(node, "decorator_list", [])]
+    return path.stem.endswith("_kernel") or any(d.startswith("njit") for d in decorators)
 
 
 @pytest.mark.parametrize("path", FILES, ids=[str(p.relative_to(ROOT)) for p in FILES])
 def test_files(path: Path) -> None:
     """Kernels may be long, since what is compiled together stands together; no other file may, nor run text as code."""
     text = path.read_text(encoding="utf-8")
-    tree = ast.parse(text)
-    decorators = [ast.unparse(d) for node in ast.walk(tree) for d in getattr(node, "decorator_list", [])]
-    kernel = path.stem.endswith("_kernel") or any(d.startswith("njit") for d in decorators)
-    assert kernel or len(text.splitlines()) <= LONGEST
+    tree = parsed(path)
+    assert is_kernel(path) or len(text.splitlines()) <= LONGEST
     called = {node.func.id for node in ast.walk(tree) if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)}
     assert not called & {"exec", "eval", "compile"} or str(path.relative_to(ROOT).as_posix()) in RUNS_TEXT
+
+
+def crowded(tree: ast.Module, kernels: set[str]) -> list[int]:
+    """Lines of calls that pass more by place than anybody can count, but for those into compiled code."""
+    return [
+        node.lineno
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and len(node.args) > MOST_BY_PLACE
+        if ast.unparse(node.func) not in kernels and ast.unparse(getattr(node.func, "value", node.func)) not in kernels
+    ]
+
+
+def test_the_look_at_calls_sees_what_it_looks_for() -> None:
+    nine = ", ".join("abcdefghi")
+    tree = ast.parse(f"f({nine})\nf({nine[:-3]}, i=i)\nk.run({nine})\nwhole({nine})\nobject.f({nine})\nf(*{nine[:-3]})")
+    assert crowded(tree, TO_KERNELS | {"whole"}) == [1, 5]
+
+
+@pytest.mark.parametrize("path", FILES, ids=[str(p.relative_to(ROOT)) for p in FILES])
+def test_arguments_have_names(path: Path) -> None:
+    """What a call passes beyond eight arguments it names, or it passes what belongs together as one."""
+    if is_kernel(path):
+        return
+    imported = {
+        alias.asname or alias.name
+        for node in ast.walk(parsed(path))
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("trunnion.")
+        for alias in node.names
+        if (home := ROOT.joinpath(*node.module.split(".")[1:]).with_suffix(".py")).exists() and is_kernel(home)
+    }
+    found = crowded(parsed(path), TO_KERNELS | imported)
+    known = path.relative_to(ROOT).as_posix() in NAMED_LATER
+    assert bool(found) == known, f"calls in lines {found}" if found else "take this file from the list"
 
 
 PATTERNS = [path for path in FILES if "import re\n" in path.read_text(encoding="utf-8")]

@@ -1,9 +1,15 @@
-"""Results of a line print speeds in the unit of its description."""
+"""Results of a line print speeds in the unit of its description, or in the one asked for; ``Words`` alone does it."""
 
+import ast
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.results.words import HERTZ, Words
 
+ROOT = Path(tn.__file__).parent
 LINE = [
     tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=5), tn.Disk(inertia=0.1), tn.HookeJoint(angle=0.2),
     tn.Shaft(stiffness=1e4, damping=5), tn.Disk(inertia=0.2, load_torque=20),
@@ -23,6 +29,11 @@ def test_unit_of_the_description(analysis, unit, text):
 
 QUESTIONS = {
     "resonance_speeds": lambda line: tn.resonance_speeds(line, 1),
+    "stability": lambda line: tn.stability(line, tn.rpm(1500)),
+    "order_response": lambda line: tn.order_response(line, [100.0, tn.rpm(1500)]),
+    "tongues": lambda line: tn.tongues(line, ("speed", 140.0, 170.0), ("HookeJoint 1.angle", 0.0, 0.6), rows=5),
+    "stable_windows": lambda line: tn.stable_windows(line, "HookeJoint 1.angle", 0.0, 0.3, (150.0, 160.0)),
+    "tolerance_study": lambda line: tn.tolerance_study(line, {"Shaft 1.stiffness": 0.1}, tn.rpm(1500), samples=256),
     "speed_sweep": lambda line: tn.speed_sweep(line, [100.0, tn.rpm(1500)]),
     "stable_limit": lambda line: tn.stable_limit(line, "HookeJoint 1.angle", [150.0, tn.rpm(1500)], scan=8, high=0.5),
     "periodic_response": lambda line: tn.periodic_response(line, tn.rpm(1500), compare=False),
@@ -41,3 +52,55 @@ def test_speeds_of_every_result_are_in_that_unit(question):
         assert f" {unit}" in str(result) and not any(f" {other}" in str(result) for other in others)
         asked = others.pop()
         assert f" {asked}" in result.describe(asked) and f" {unit}" not in result.describe(asked)
+
+
+BARE = {"show_speed", "rounded_speed", "about_speed", "about_span", "show_acceleration", "acceleration_span"}
+BARE |= {"rounded_span", "ranges_in_words", "quantity_axis", "parameter_axis"}
+"""What ``Words`` stands on: to be called with a unit, so that every caller would have to know it."""
+LATER = ("results/", "motion/", "steady/", "plots/", "studies/")
+"""Their home, and rooms that are being put together anew: they speak through ``Words`` then."""
+
+
+def test_speeds_reach_text_in_one_way() -> None:
+    """Neither functions that take a unit, nor methods of results beside those of their base."""
+    for path in sorted(ROOT.rglob("*.py")):
+        name = path.relative_to(ROOT).as_posix()
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        imported = {a.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names}
+        made = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
+        if not name.startswith(LATER):
+            assert not imported & BARE, name
+            assert not made & {"describe", "findings_in", "sentence_in", "said_in"}, name
+
+
+RESTING = (tn.rpm(600), tn.rpm(600))
+# what is asked, in rpm and in Hz
+SAID = [
+    (lambda words: words.speed(tn.rpm(1234.5678)), "1234.57 rpm", "20.5761 Hz"),
+    (lambda words: words.speed(tn.rpm(1234.5678), 5), "1234.6 rpm", "20.576 Hz"),
+    (lambda words: words.rounded(tn.rpm(1234.5678)), "1235 rpm", "20.58 Hz"),
+    (lambda words: words.rounded(tn.rpm(123456.0)), "123500 rpm", "2058 Hz"),
+    (lambda words: words.about(tn.rpm(1234.0)), "1230 rpm", "20.6 Hz"),
+    (lambda words: words.about(tn.rpm(1234.0), tn.rpm(1254.0)), "1230 to 1250 rpm", "20.6 to 20.9 Hz"),
+    (lambda words: words.ends(tn.rpm(300), tn.rpm(2400)), "300 rpm to 2400 rpm", "5 Hz to 40 Hz"),
+    (lambda words: words.span(tn.rpm(300), tn.rpm(2400), "and"), "300 and 2400 rpm", "5 and 40 Hz"),
+    (lambda words: words.acceleration(tn.rpm(60)), "60 rpm/s", "1 Hz/s"),
+    (lambda words: words.acceleration(tn.rpm(60), tn.rpm(120)), "60 to 120 rpm/s", "1 to 2 Hz/s"),
+    (lambda words: words.ranges([(tn.rpm(300), tn.rpm(360)), RESTING]), "300 to 360 rpm, 600 rpm", "5 to 6 Hz, 10 Hz"),
+    (lambda words: words.parameter("speed", "rad/s").value(tn.rpm(60)), "input speed 60 rpm", "input speed 1 Hz"),
+    (lambda words: words.parameter("a.angle", "rad").value(np.pi / 6), "angle of a 30°", "angle of a 30°"),
+    (lambda words: words.of_frequencies.speed(tn.hz(25)), "25 Hz", "25 Hz"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("ask", "in_rpm", "in_hertz"), SAID, ids=[said for _, said, _ in SAID])
+def test_words(ask, in_rpm, in_hertz):
+    assert ask(Words("rpm")) == in_rpm and ask(Words("Hz")) == in_hertz
+
+
+def test_numbers_of_equations_read_as_they_are():
+    own = Words(None)
+    assert own.parameter("speed", "rad/s").value(60.0) == "speed 60 rad/s" and own.of_frequencies.of_speeds == "rad/s"
+    assert HERTZ.speed(tn.hz(25)) == "25 Hz"
+    with pytest.raises(tn.InputError, match="use one of rad/s, rpm, Hz"):
+        Words("mph").speed(1.0)

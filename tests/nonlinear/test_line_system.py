@@ -272,7 +272,9 @@ def test_excitations_survive_the_file() -> None:
 REFUSED: list[tuple[Any, str]] = [
     ([{"order": 2}], "amplitude: is missing"),
     ([{"amplitude": 2.0}], "order: is missing beside amplitude"),
-    ([{"amplitude": 2.0, "order": 1, "frequency": 3.0}], "stands beside order"),
+    ([{"amplitude": 2.0, "order": 0, "frequency": 3.0}], "order = 0: must not be zero; leave it out"),
+    ([{"amplitude": 2.0, "order": 2, "frequency": 0}], "frequency = 0: must not be zero"),
+    ([{"amplitude": 2.0, "frequency": -3.0}], "frequency = -3: must be positive"),
     ([{"amplitude": 2.0, "order": -1}], "must be positive"),
     ([{"amplitude": "2 deg", "order": 1}], "not the unit of a torque"),
     ([{"amplitud": 2.0, "order": 1}], "did you mean"),

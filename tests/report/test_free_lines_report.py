@@ -15,6 +15,7 @@ from trunnion.reporting.contents import gather
 from trunnion.reporting.overview import at_speed, charted
 from trunnion.reporting.overview_findings import remark_findings, response_findings
 from trunnion.results.finding import Gravity
+from trunnion.results.words import Words
 
 LINES = Path(__file__).parents[1] / "data" / "lines"
 
@@ -58,13 +59,15 @@ def test_a_resonance_beyond_the_range_is_named_where_it_raises_torques_inside() 
     """The truck's joints force ω₃ at twice the speed above its range: the flank reaches in, and is named."""
     line = tn.load(Path(tn.__file__).parent / "driveline" / "starters" / "truck.toml")
     assembly = assemble(line)
-    (finding,) = response_findings(assembly, resonance_speeds(assembly), line.operation.speed_range, "rpm")
+    (finding,) = response_findings(assembly, resonance_speeds(assembly), line.operation.speed_range, Words("rpm"))
     third = tn.natural_frequencies(line).undamped_frequency[2] / 2 / tn.rpm(1)
     assert (
         "ω₃/2" in finding.sentence and f"{third:.4g} rpm" in finding.sentence and "above the range" in finding.sentence
     )
     narrow = (tn.rpm(600), tn.rpm(800))
-    assert not any("ω₃" in f.sentence for f in response_findings(assembly, resonance_speeds(assembly), narrow, "rpm"))
+    assert not any(
+        "ω₃" in f.sentence for f in response_findings(assembly, resonance_speeds(assembly), narrow, Words("rpm"))
+    )
 
 
 @pytest.mark.slow
@@ -139,4 +142,4 @@ def test_lines_without_a_linear_response_are_reported_without_its_findings() -> 
     with pytest.raises(tn.InputError, match="stages or play"):
         tn.speed_sweep(line, [150.0])
     assembly = assemble(line)
-    assert list(response_findings(assembly, resonance_speeds(assembly), (10.0, 2000.0), "rpm")) == []
+    assert list(response_findings(assembly, resonance_speeds(assembly), (10.0, 2000.0), Words("rpm"))) == []

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.quantities import eye_unit
-from trunnion.response.orders.result import order_name
+from trunnion.results.speeds import order_name
 from trunnion.results.units import amplification_words
 from trunnion.results.written import write_numbers
 
@@ -146,7 +146,7 @@ def campbell(result: Any) -> Plain:
         "speed": result.speed,
         "mode": list(result.mode),
         "frequency": result.frequency,
-        "lines": [(one.name, one.order * result.speed + one.frequency) for one in result.lines],
+        "lines": [(one.name, one.at(result.speed)) for one in result.lines],
         "crossing_speed": np.array([c.speed for c in result.crossings]),
         "crossing_frequency": np.array([c.frequency for c in result.crossings]),
         "crossing": [

@@ -12,12 +12,17 @@ from trunnion.cli import output
 from trunnion.cli.options import Line, LoadCase, OwnLine, Progress, SpeedEnds, SpeedUnit
 from trunnion.cli.places import NOTHING, Shown
 from trunnion.cli.typed import Command
-from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from trunnion.design.assessment.result import Assessment
     from trunnion.design.remedies.result import Remedies
 
+CHECK = (
+    "name status decides margin required_margin value error limit unit speed because barred covered "
+    "rule.formula rule.source rule.certainty inputs load_case guideline element"
+)
+REMEDY = "check variable before after unit value margin required_margin verdict sentence"
+"""What answers have of each."""
 DIAGRAM_POINTS = 201
 """Speeds at which the modes of a diagram are computed."""
 
@@ -123,21 +128,7 @@ def print_remedies(found: Remedies) -> None:
 def remedies_json(found: Remedies) -> dict[str, Any]:
     """Remedies by check, and how each value follows every design variable; angles per radian."""
     return {
-        "remedies": [
-            {
-                "check": r.check,
-                "variable": r.variable,
-                "before": r.before,
-                "after": r.after,
-                "unit": r.unit,
-                "value": r.value,
-                "margin": r.margin,
-                "required_margin": r.required_margin,
-                "verdict": str(r.verdict),
-                "sentence": r.sentence,
-            }
-            for r in found.remedies
-        ],
+        "remedies": [output.record(r, REMEDY) for r in found.remedies],
         "closest": found.closest,
         "sensitivities": {
             check: {v.path: s for v, s in zip(found.variables, row, strict=True)}
@@ -148,39 +139,18 @@ def remedies_json(found: Remedies) -> dict[str, Any]:
 
 def assessment_json(result: Assessment) -> dict[str, Any]:
     """Verdict and checks; speeds in ``speed_unit``, values and limits in the SI unit of each check."""
-    factor = speed_factor(result.unit)
+    words = result.words
     return {
-        "verdict": str(result.verdict),
-        "sentence": result.sentence,
+        **output.record(result, "verdict sentence barred application", words),
         "speed_unit": result.unit,
-        "speed_range": [result.low * factor, result.high * factor],
-        "barred": [[a * factor, b * factor] for a, b in result.barred],
-        "application": result.application,
-        "switched_off": [{"rule": one.rule, "reason": one.reason} for one in result.switched_off],
+        "speed_range": [end * words.factor for end in (result.low, result.high)],
+        "switched_off": [output.record(one, "rule reason") for one in result.switched_off],
         "checks": [
             {
-                "name": c.name,
-                "status": str(c.status),
+                **output.record(c, CHECK, words),
                 "rule": c.rule.name,
-                "decides": c.decides,
-                "margin": c.margin,
-                "required_margin": c.required_margin,
-                "value": c.value,
-                "error": c.error,
-                "limit": c.limit,
-                "unit": c.unit,
-                "speed": c.speed * factor,
-                "because": c.because,
-                "barred": [[a * factor, b * factor] for a, b in c.barred],
-                "covered": [[a * factor, b * factor] for a, b in c.covered],
-                "formula": c.rule.formula,
-                "source": c.rule.source,
-                "certainty": c.rule.certainty,
-                "inputs": c.inputs,
-                "load_case": c.load_case,
-                "guideline": c.guideline,
-                "element": c.element,
                 "order": c.cause.order if c.cause else None,
+                **({"order_frequency": c.cause.frequency} if c.cause and c.cause.frequency else {}),
                 "mode": c.cause.mode if c.cause and c.cause.mode else None,
             }
             for c in result.checks

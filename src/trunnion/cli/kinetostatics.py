@@ -101,7 +101,7 @@ def kinetostatics(
     result = tn.kinetostatics(
         line, speed, branch=branch, rigid=not elastic, inertia=inertia, output_torque=output_torque, friction=friction,
         supports=support, lengths=dict(length or ()), turns=turns, points=points,
-    )  # fmt: skip
+    ).in_unit(unit)  # fmt: skip
     limits = tn.check_limits(result, irregularity=limit)
     phasing = tn.phase_forks(line, pitch, branch=branch) if phase or pitch else None
 
@@ -112,7 +112,7 @@ def kinetostatics(
         }
 
     def more() -> None:
-        output.table(result.table(unit), "Shafts")
+        output.table(result.table(), "Shafts")
         if phasing is not None:
             output.heading("Fork phasing")
             output.say(str(phasing))
@@ -125,21 +125,15 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
     """The numbers of a turn in SI units; the curves themselves are in the files written."""
     slow, fast = result.speed_ratio
     return {
+        **output.record(result, "rigid inertia turns"),
         "driveline": result.line.name,
         "speed": result.input_speed,
-        "rigid": result.rigid,
-        "inertia": result.inertia,
-        "turns": result.turns,
         "points": len(result.input_angle),
         "speed_ratio": {"smallest": slow, "largest": fast},
-        "irregularity": result.irregularity,
-        "equivalent_angle": result.equivalent_angle,
-        "homokinetic_deviation": result.homokinetic_deviation,
-        "peak_acceleration": result.peak_acceleration,
+        **output.record(result, "irregularity equivalent_angle homokinetic_deviation peak_acceleration efficiency"),
         "branches": list(result.branches),
         "output": result.branch,
         "drive_torque": {"smallest": result.drive_torque.min(), "largest": result.drive_torque.max()},
-        "efficiency": result.efficiency,
         "shafts": result.table("rad/s"),
         "secondary_couples": [{"fork": f, **_parts(result.couple_parts(f))} for f in result.forks],
         "supports": [
@@ -151,19 +145,12 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
 
 
 def _phasing_json(phasing: Any) -> dict[str, Any]:
-    return {
-        "fork_offsets": phasing.offsets,
-        "irregularity": phasing.irregularity,
-        "before": phasing.before,
-        "bound": phasing.bound,
-    }
+    return {"fork_offsets": phasing.offsets, **output.record(phasing, "irregularity before bound")}
 
 
 def _parts(part: Any) -> dict[str, Any]:
     return {
-        "largest": part.largest,
-        "steady": list(part.steady),
-        "two_per_turn": part.two_per_turn,
+        **output.record(part, "largest steady two_per_turn"),
         "twice_forward": part.twice,
         "twice_backward": part.twice_back,
         "rotating": part.once,

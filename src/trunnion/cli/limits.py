@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Annotated, Any
 
 import trunnion as tn
@@ -61,9 +60,9 @@ def tongues(
     --x PARAMETER:LOW:HIGH  Or PARAMETER for the file's range.
     --y PARAMETER:LOW:HIGH[:ROWS]  Or an angle alone.
     """
-    found = tn.tongues(line, x[0], y[0], speed=speed, rows=y[1], progress=progress)
+    found = tn.tongues(line, x[0], y[0], speed=speed, rows=y[1], progress=progress).in_unit(unit)
     boundaries = found.data[["of_tongue", "boundary_x", "boundary_y"]]
-    return Shown(found, table=boundaries, text=lambda: found.said_in(unit))
+    return Shown(found, table=boundaries)
 
 
 @Command("minimum damping", within=True)
@@ -84,7 +83,7 @@ def minimum_damping(
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     found = tn.minimum_damping(line, speeds, damping=damping, maximum=maximum, margin=margin, progress=progress)
-    return Shown(replace(found, speed_unit=unit))
+    return Shown(found.in_unit(unit))
 
 
 @Command("stable windows", within=True)
@@ -104,7 +103,7 @@ def stable_windows(
     """
     ends, rows = parameter
     found = tn.stable_windows(line, *ends, speeds, margin=margin, rows=rows, progress=progress)
-    return Shown(replace(found, speed_unit=unit))
+    return Shown(found.in_unit(unit))
 
 
 @Command("tolerance study", within=True)
@@ -131,7 +130,7 @@ def tolerance_study(
         line, dict(tolerance) if tolerance else None, speed,
         checks=True if checks < 0 else checks, samples=samples, seed=seed, progress=progress,
     )  # fmt: skip
-    return Shown(replace(found, unit=unit))
+    return Shown(found.in_unit(unit))
 
 
 @Command("certificate", writes=PICTURES_AND_DATA, part="certificate", within=True)
@@ -151,4 +150,4 @@ def certify_stability(
     """
     given = dict(tolerance) if tolerance else None
     found = tn.certify_stability(line, given, speeds, most_boxes=boxes, progress=progress)
-    return Shown(replace(found, unit=unit))
+    return Shown(found.in_unit(unit))

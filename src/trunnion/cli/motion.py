@@ -218,11 +218,8 @@ def _simulation_json(result: Any) -> dict[str, Any]:
 
 def _orbit_json(result: PeriodicResponse | PeriodicOrbit) -> dict[str, Any]:
     return {
+        **output.record(result, "period spectral_radius error_estimate growth_rate"),
         "verdict": str(result.verdict),
-        "period": result.period,
-        "spectral_radius": result.spectral_radius,
-        "error_estimate": result.error_estimate,
-        "growth_rate": result.growth_rate,
         "multipliers": list(map(complex, result.multipliers)),
         "says": str(result.outcome),
         "written": (),  # its place; the answer fills it
@@ -232,8 +229,7 @@ def _orbit_json(result: PeriodicResponse | PeriodicOrbit) -> dict[str, Any]:
 def _response_json(result: PeriodicResponse) -> dict[str, Any]:
     orders, amplitude = result.order_spectrum()
     return {
-        "speed": result.speed,
-        "turns": result.turns,
+        **output.record(result, "speed turns"),
         "shafts": [
             {"name": name, "mean_torque": mean, "torque_peak_to_peak": peak}
             for name, mean, peak in zip(result.shafts, result.torque_mean, result.torque_peak_to_peak, strict=True)
@@ -254,9 +250,7 @@ def _run_up_json(result: RunUp, unit: str) -> dict[str, Any]:
         "ramp": result.ramp,
         "end": result.simulation.end,
         "end_speed": ending.speed if ending else result.schedule.last,
-        "hung": {"speed": ending.hanging.speed, "since": ending.hanging.since, "until": ending.hanging.until}
-        if ending and ending.hanging
-        else None,
+        "hung": output.record(ending.hanging, "speed since until") if ending and ending.hanging else None,
         "shafts": [
             {
                 "name": name,

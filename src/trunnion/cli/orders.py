@@ -16,7 +16,7 @@ from trunnion.cli.places import Shown
 from trunnion.cli.readers import is_number, range_of, read_even_axis, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
-from trunnion.results.speeds import speed_factor
+from trunnion.results.speeds import order_name
 
 if TYPE_CHECKING:
     import numpy as np
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from trunnion.response.orders.result import OrderResponse
     from trunnion.response.speed_sweep import SpeedSweep
     from trunnion.results.finding import Finding
+    from trunnion.results.words import Words
 
     Array = NDArray[np.float64]
 
@@ -122,26 +123,26 @@ def order_response(
     --orders K,K,…  Cycles per turn of the input to list: 0.5,1,2; default: all.
     --spring  Shaft or mesh to draw; default: the one that swings most.
     """
-    result = tn.order_response(line, speeds, orders, progress=progress)
-    findings = result.findings_in(unit)
+    result = tn.order_response(line, speeds, orders, progress=progress).in_unit(unit)
+    findings = result.findings
 
     def more() -> None:
-        output.table(result.table(unit))
+        output.table(result.table())
         output.findings(findings)
 
     return Shown(
-        result, draw=partial(result.plot, spring=spring, operating=line.operation), table=_by_order(result, unit),
-        content=lambda: _response_json(result, findings, unit), text=lambda: result.headline, more=more,
+        result, draw=partial(result.plot, spring=spring, operating=line.operation), table=_by_order(result),
+        content=lambda: _response_json(result, findings), text=lambda: result.headline, more=more,
     )  # fmt: skip
 
 
 @Command("torque over speed")
 def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> Shown:
     """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""
-    result = tn.speed_sweep(line, speeds, progress=progress)
+    result = tn.speed_sweep(line, speeds, progress=progress).in_unit(unit)
     return Shown(
-        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result.data, unit),
-        content=lambda: _sweep_json(result, unit),
+        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
+        content=lambda: _sweep_json(result),
     )  # fmt: skip
 
 
@@ -166,24 +167,24 @@ def stable_limit(
     label, low, high, points = parameter
     result = tn.stable_limit(
         line, label, speeds, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=progress
-    )
+    ).in_unit(unit)
     return Shown(
-        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result.data, unit),
-        content=lambda: _limit_json(result, unit),
+        result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
+        content=lambda: _limit_json(result),
     )  # fmt: skip
 
 
-def _in_unit(data: Any, unit: str) -> Any:
-    return data.assign_coords(speed=("speed", data.speed.values * speed_factor(unit), {"units": unit}))
+def _in_unit(result: OrderResponse | SpeedSweep | StableLimit) -> Any:
+    """Its dataset, the speeds in its unit."""
+    words = result.words
+    return result.data.assign_coords(speed=("speed", result.speed * words.factor, {"units": words.unit}))
 
 
-def _by_order(result: OrderResponse, unit: str) -> Any:
+def _by_order(result: OrderResponse) -> Any:
     """What a table shows: sums over the cycle, then amplitude and phase of every order."""
     import numpy as np
 
-    from trunnion.response.orders.result import order_name
-
-    data = _in_unit(result.data, unit)
+    data = _in_unit(result)
     kept = data[["mean_torque", "peak_torque", "vibratory_torque", "rated_torque", "vibratory_stress", "heat"]]
     labels = [order_name(o, f) for o, f in zip(result.order, result.frequency, strict=True)]
     axes = ("speed", "order_number", "spring")
@@ -195,78 +196,67 @@ def _by_order(result: OrderResponse, unit: str) -> Any:
     return kept.assign(parts).assign(moving.data_vars).assign_coords(order_number=labels)
 
 
-def _response_json(result: OrderResponse, findings: Sequence[Finding], unit: str) -> dict[str, Any]:
+def _response_json(result: OrderResponse, findings: Sequence[Finding]) -> dict[str, Any]:
     """The largest of every spring; the numbers by speed and order are in the files written."""
     return {
-        **_span(result.speed, unit),
+        **_span(result.words, result.speed),
         "orders": [
             {"order": o, "frequency": f} for o, f in zip(result.order.tolist(), result.frequency.tolist(), strict=True)
         ],
         "sum_is_bound": result.sum_is_bound,
-        "springs": [_spring_json(result, spring, unit) for spring in range(len(result.springs))],
+        "springs": [_spring_json(result, spring) for spring in range(len(result.springs))],
         "findings": output.findings_json(findings),
     }
 
 
-def _spring_json(result: OrderResponse, spring: int, unit: str) -> dict[str, Any]:
+def _spring_json(result: OrderResponse, spring: int) -> dict[str, Any]:
     """Largest torques [N m] of a spring, each with its speed; a rated torque of couplings with a rating alone."""
-    from trunnion.response.orders.result import order_name
-
+    factor = result.words.factor
     columns = {"peak_torque": result.peak_torque, "vibratory_torque": result.vibratory_torque}
     if result.rated[spring]:
         columns["rated_torque"] = result.rated_torque
     found: dict[str, Any] = {"spring": result.springs[spring]}
     for name, values in columns.items():
         value, speed = result.largest(values[:, spring])
-        found |= {name: value, "speed" if name == "peak_torque" else f"{name}_speed": speed * speed_factor(unit)}
-    order, speed, size = result.leading_order(result.springs[spring])
-    if not size > 0:
-        return found | {"order": "none", "order_amplitude": None, "order_speed": None}
-    name = order_name(order, float(result.frequency[result.order == order].max(initial=0.0)))
-    return found | {"order": name, "order_amplitude": size, "order_speed": speed * speed_factor(unit)}
+        found |= {name: value, "speed" if name == "peak_torque" else f"{name}_speed": speed * factor}
+    name, speed, size = result.leading(result.springs[spring])
+    if name == "none":
+        return found | {"order": name, "order_amplitude": None, "order_speed": None}
+    return found | {"order": name, "order_amplitude": size, "order_speed": speed * factor}
 
 
-def _span(speed: Array, unit: str) -> dict[str, Any]:
-    factor = speed_factor(unit)
+def _span(words: Words, speed: Array) -> dict[str, Any]:
     return {
-        "speed_unit": unit,
-        "speeds": {"low": float(speed.min()) * factor, "high": float(speed.max()) * factor, "points": len(speed)},
+        "speed_unit": words.unit,
+        "speeds": {"low": speed.min() * words.factor, "high": speed.max() * words.factor, "points": len(speed)},
     }
 
 
-def _sweep_json(result: SpeedSweep, unit: str) -> dict[str, Any]:
+def _sweep_json(result: SpeedSweep) -> dict[str, Any]:
     peaks = {shaft: result.peak(shaft) for shaft in result.shafts}
     return {
-        **_span(result.speed, unit),
+        **_span(result.words, result.speed),
         "shafts": [
-            {"shaft": shaft, "torque_amplitude": torque, "speed": at * speed_factor(unit)}
+            {"shaft": shaft, "torque_amplitude": torque, "speed": at * result.words.factor}
             for shaft, (torque, at) in peaks.items()
         ],
         "linear": bool(result.linear.all()),
-        "findings": output.findings_json(result.findings_in(unit)),
+        "findings": output.findings_json(result.findings),
     }
 
 
-def _limit_json(result: StableLimit, unit: str) -> dict[str, Any]:
+def _limit_json(result: StableLimit) -> dict[str, Any]:
     from trunnion.design.limits.result import LimitKind
 
-    at, factor = result.critical_speed, speed_factor(unit)
+    at, words = result.critical_speed, result.words
     return {
-        **_span(result.speed, unit),
-        "sentence": result.sentence_in(unit),
-        "parameter": result.parameter,
-        "unit": result.unit,
-        "smallest": result.smallest,
-        "critical_speed": None if at is None else at * factor,
-        "speed": result.speed * factor,
-        "limit": result.limit,
+        **_span(words, result.speed),
+        **output.record(result, "sentence parameter unit smallest speed limit intervals usable binding", words),
+        "critical_speed": None if at is None else at * words.factor,
         "kind": [LimitKind(int(kind)).name.lower() for kind in result.kind],
-        "intervals": result.intervals,
         "unstable": [ranges.tolist() for ranges in result.unstable],
-        "usable": result.usable,
-        "binding": list(result.binding),
-        "others": [{"name": o.name, "allowed": o.allowed, "unit": o.unit, "reached": o.reached} for o in result.others],
-        "whole": None if result.whole is None else result.whole.to_dict(),
+        "others": [output.record(one, "name allowed unit reached") for one in result.others],
+        "whole": None if result.whole is None else result.whole.in_unit(words.unit).to_dict(),
         "search": {"low": result.low, "high": result.high, "complete": result.complete, "words": result.search},
         "findings": output.findings_json(result.findings),
     }

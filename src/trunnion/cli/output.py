@@ -12,8 +12,10 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, suppress
 from contextvars import copy_context
+from enum import Enum
 from functools import cache
 from importlib.abc import MetaPathFinder
+from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
 
     from trunnion.results.finding import Finding
     from trunnion.results.outcome import Outcome
+    from trunnion.results.words import Words
 
 LONG = 10.0
 """Seconds between lines of progress where stderr is not a terminal."""
@@ -92,9 +95,28 @@ def findings(found: Sequence[Finding], title: str = "Findings") -> None:
     _console().print(grid)
 
 
+def record(one: Any, names: str, words: Words | None = None) -> dict[str, Any]:
+    """What ``one`` has under some names (with blanks between, dots to what it has); with ``words`` what its labels give
+    in rad/s is in their unit."""
+    from trunnion.results.fields import labels  # which loads numpy
+
+    found: dict[str, Any] = {}
+    known = labels(type(one))
+    for path in names.split():
+        value = attrgetter(path)(one)
+        if words is not None and value is not None and path in known and known[path].unit == "rad/s":
+            value = _times(value, words.factor)
+        found[path.rpartition(".")[2]] = str(value) if isinstance(value, Enum) else value
+    return found
+
+
+def _times(value: Any, factor: float) -> Any:
+    return [_times(one, factor) for one in value] if isinstance(value, tuple | list) else value * factor
+
+
 def findings_json(found: Sequence[Finding]) -> list[dict[str, str]]:
     """Gravity and sentence of each."""
-    return [{"gravity": str(f.gravity), "sentence": f.sentence} for f in found]
+    return [record(one, "gravity sentence") for one in found]
 
 
 def written(paths: Sequence[Path]) -> None:

@@ -77,7 +77,7 @@ class Shown:
 
     def say(self, unit: str) -> None:
         """Print it, speeds in ``unit`` where the result has words for them."""
-        own = partial(self.found.describe, unit) if hasattr(self.found, "describe") else self.found.__str__
+        own = partial(self.found.describe, unit or None) if hasattr(self.found, "describe") else self.found.__str__
         output.say((self.text or own)(), self.style, wrap=self.wrap)
         if self.more is not None:
             self.more()

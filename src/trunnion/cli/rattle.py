@@ -36,14 +36,14 @@ class AskedSwing(Asked):
 def _swinging(name: str, texts: Texts) -> AskedSwing:
     """What NAME means, with ``--set`` applied."""
     from trunnion.driveline.operating_speed import speed_unit
-    from trunnion.results.speeds import frequency_unit
+    from trunnion.results.words import Words
 
     subject, length = _meant(name, read_set(texts["parameters"]), texts["parameters"])
     unit = "rad/s"
     if isinstance(subject, tn.Driveline):
         unit = speed_unit(subject)
     elif isinstance(subject, tn.PiecewiseOscillator):
-        unit = frequency_unit(subject.speed_unit)
+        unit = Words(subject.speed_unit).of_frequencies.of_speeds
     return AskedSwing(subject, name, unit, texts, length)
 
 
@@ -217,12 +217,8 @@ def _sweep_json(one: Any, measured: dict[str, Any]) -> dict[str, Any]:
 
 def _oscillator_json(one: Any) -> dict[str, Any]:
     return {
-        "frequency": one.frequency,
+        **output.record(one, "frequency mean contact impacts impact_energy"),
         "half_peak_to_peak": one.peak_to_peak / 2,
-        "mean": one.mean,
-        "contact": list(one.contact),
-        "impacts": one.impacts,
-        "impact_energy": one.impact_energy,
     }
 
 
@@ -255,10 +251,8 @@ def _options(
 def _json(found: Any) -> list[dict[str, Any]]:
     return [
         {
-            "method": r.method,
+            **output.record(r, "method frequency half_peak_to_peak"),
             "peak": {"frequency": r.peak[0], "half_peak_to_peak": r.peak[1]},
-            "frequency": r.frequency,
-            "half_peak_to_peak": r.half_peak_to_peak,
             "stable": [bool(s) for s in r.stable],
             "marks": [{"kind": k, "frequency": f, "half_peak_to_peak": a} for k, f, a in r.marks],
             "says": str(r.outcome),

@@ -12,12 +12,10 @@ import numpy as np
 from trunnion.cli import output
 from trunnion.cli.assess import assessment_json
 from trunnion.cli.kinetostatics import kinetostatics_json
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.results.counts import counted
-from trunnion.results.quantity_axes import quantity_axis
-from trunnion.results.speeds import frequency_unit, show_speed, speed_factor
 from trunnion.results.units import with_error
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 
 if TYPE_CHECKING:
     from trunnion.floquet.stability.stability import Stability
@@ -33,8 +31,8 @@ MOST_ROWS = 24
 
 def print_begin(given: Asked) -> None:
     """What is about to be judged: the verdict of a long line takes some seconds."""
-    low, high = (show_speed(end, given.unit) for end in given.speed_range)
-    said = [counted(len(given.line.elements), "element"), f"judged from {low} to {high}"]
+    span = Words(given.unit).ends(*given.speed_range)
+    said = [counted(len(given.line.elements), "element"), f"judged from {span}"]
     if given.line.operation and (cases := given.line.operation.load_cases):
         said.append(f"as it is and under {counted(len(cases), 'load case')}")
     output.say(f"{given.line.name or 'driveline'}: {', '.join(said)}", wrap=True)
@@ -44,10 +42,9 @@ def print_judged(given: Judged) -> None:
     """The verdict and the checks: what is known first."""
     from trunnion.design.assessment.check import Status
 
-    judged, unit = given.assessment, given.unit
-    low, high = (show_speed(end, unit) for end in given.speed_range)
+    judged = given.assessment
     output.say(f"{given.line.name or 'driveline'}: {judged.sentence}", style="bold")
-    output.heading(f"Checks from {low} to {high}")
+    output.heading(f"Checks from {Words(given.unit).ends(*given.speed_range)}")
     rows = [r for r, c in zip(judged.table(), judged.checks, strict=True) if c.status is not Status.NOT_APPLICABLE]
     output.table([{k: v for k, v in row.items() if k != "because"} for row in rows])
     for one in judged.switched_off:
@@ -62,12 +59,12 @@ def print_findings(given: Answer) -> None:
 
 def print_overview(seen: Overview, given: Answer) -> None:
     """What follows the answer: modes, resonance speeds, the joints, stability at one speed, the chart."""
-    unit, (low, high) = seen.unit, seen.speed_range
+    unit, words = seen.unit, Words(seen.unit)
     output.heading("Driveline")
     output.say(str(seen.line))
-    modes = seen.natural_frequencies.table(frequency_unit(speed_unit(seen.line)))
+    modes = seen.natural_frequencies.table(seen.natural_frequencies.words.of_frequencies.of_speeds)
     output.table(modes, "Natural frequencies, all joints straight")
-    span = f"from {show_speed(low, unit)} to {show_speed(high, unit)}"
+    span = f"from {words.ends(*seen.speed_range)}"
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
     output.heading(f"Resonance speeds {span} that can open: {len(able) or 'none'}")
     output.table([{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
@@ -77,7 +74,7 @@ def print_overview(seen: Overview, given: Answer) -> None:
         output.heading("One turn of the joints")
         output.say(seen.turn.describe(unit))
     if seen.stability is not None:
-        output.heading(f"Stability at {show_speed(seen.stability.speed, unit)}")
+        output.heading(f"Stability at {words.speed(seen.stability.speed)}")
         output.say(seen.stability.describe(unit), wrap=True)
     if seen.chart is not None:
         output.heading("Stability chart, all joints at one angle")
@@ -89,12 +86,12 @@ def print_overview(seen: Overview, given: Answer) -> None:
 
 def chart_text(chart: StabilityChart, unit: str) -> str:
     """What a chart covers, how its points count, the worst, and what was clipped."""
-    across = quantity_axis(chart.x_label, chart.x_unit, unit)
-    up = quantity_axis(chart.y_label, chart.y_unit, unit)
+    words = Words(unit)
+    across, up = words.parameter(chart.x_label, chart.x_unit), words.parameter(chart.y_label, chart.y_unit)
     counts = ", ".join(f"{n} {v}" for v in Verdict if (n := chart.count(v)))
     lines = [f"  {axis.said(values)}, {len(values)} points" for axis, values in ((across, chart.x), (up, chart.y))]
     if chart.speed is not None:
-        lines.append(f"  at {show_speed(chart.speed, unit)}")
+        lines.append(f"  at {words.speed(chart.speed)}")
     lines.append(f"  {counts}")
     if chart.count(Verdict.FAILED) < chart.verdict.size:
         i, j = np.unravel_index(np.nanargmax(chart.spectral_radius), chart.spectral_radius.shape)
@@ -112,26 +109,26 @@ def chart_text(chart: StabilityChart, unit: str) -> str:
 
 def overview_json(seen: Overview, written: Sequence[Path]) -> dict[str, Any]:
     """An overview as plain values; angles in rad, speeds in ``speed_unit``, frequencies in Hz."""
-    factor, paths = speed_factor(seen.unit), [str(path) for path in written]
+    paths = [str(path) for path in written]
     return {
         "driveline": seen.line.name,
         "elements": list(seen.line.names),
         "speed_unit": seen.unit,
-        "speed_range": [end * factor for end in seen.speed_range],
+        "speed_range": [end * Words(seen.unit).factor for end in seen.speed_range],
         "angle_range": list(seen.angle_range),
         "assessment": assessment_json(seen.assessment),
         "natural_frequencies": modes_json(seen.natural_frequencies, "Hz"),
         "resonance_speeds": resonances_json(seen.resonance_speeds, seen.unit),
         "kinetostatics": None if seen.turn is None else kinetostatics_json(seen.turn),
-        "stability": None if seen.stability is None else stability_json(seen.stability, seen.unit),
+        "stability": None if seen.stability is None else stability_json(seen.stability.in_unit(seen.unit)),
         "stability_chart": None if seen.chart is None else chart_json(seen.chart, seen.unit) | {"written": paths},
         "findings": output.findings_json(seen.findings),
         "written": paths,
     }
 
 
-def stability_json(result: Stability, unit: str) -> dict[str, Any]:
-    """Speeds in ``unit``, growth in 1/s, the period in rad of input angle."""
+def stability_json(result: Stability) -> dict[str, Any]:
+    """Speeds in the unit of the result, growth in 1/s, the period in rad of input angle."""
     response = result.response
     shafts = [] if response is None else [
         {"shaft": name, "twist_amplitude": t, "torque_amplitude": f, "torque_mean": m}
@@ -144,42 +141,35 @@ def stability_json(result: Stability, unit: str) -> dict[str, Any]:
         )
     ]  # fmt: skip
     return {
-        "speed": result.speed * speed_factor(unit),
-        "speed_unit": unit,
-        "verdict": str(result.verdict),
-        "spectral_radius": result.spectral_radius,
-        "error_estimate": result.error_estimate,
-        "growth_rate": result.growth_rate,
-        "growth_rate_error": result.growth_rate_error,
-        "period": result.period,
-        "multipliers": result.multipliers,
-        "multiplier_error": result.multiplier_error,
+        **output.record(
+            result, "speed verdict spectral_radius error_estimate growth_rate growth_rate_error", result.words
+        ),
+        **output.record(result, "period multipliers multiplier_error"),
+        "speed_unit": result.unit,
         "resonance": None if result.resonance is None else str(result.resonance),
         "forced_response": shafts,
         "forced_response_linear": None if response is None else response.linear,
-        "findings": output.findings_json(result.findings_in(unit)),
+        "findings": output.findings_json(result.findings),
     }
 
 
 def chart_json(chart: StabilityChart, unit: str) -> dict[str, Any]:
     """What the chart covers and counts; the points themselves are in the files written."""
+    words = Words(unit)
 
     def ends(label: str, si_unit: str, values: Any) -> dict[str, Any]:
-        factor, shown = (speed_factor(unit), unit) if label == "speed" else (1.0, si_unit)
+        factor, shown = (words.factor, unit) if label == "speed" else (1.0, si_unit)
         ends = {"low": float(values[0]) * factor, "high": float(values[-1]) * factor}
         return {"parameter": label, "unit": shown, **ends, "points": len(values)}
 
     return {
         "x": ends(chart.x_label, chart.x_unit, chart.x),
         "y": ends(chart.y_label, chart.y_unit, chart.y),
-        "speed": None if chart.speed is None else chart.speed * speed_factor(unit),
+        **output.record(chart, "speed unstable_share way remarks", words),
         "speed_unit": unit,
         "counts": {str(v): chart.count(v) for v in Verdict},
-        "unstable_share": chart.unstable_share,
         "error_estimate": _error_json(chart),
         "spot_check": None if chart.spot_check is None else asdict(chart.spot_check),
-        "way": chart.way,
-        "remarks": list(chart.remarks),
     }
 
 
@@ -191,14 +181,15 @@ def _error_json(chart: StabilityChart) -> dict[str, float] | None:
 
 def modes_json(modes: NaturalFrequencies, unit: str) -> dict[str, Any]:
     """Frequencies in ``unit``, null where a mode is overdamped; decay in 1/s; shapes by the names of the inertias."""
+    factor = Words(unit).factor
     return {
         "frequency_unit": unit,
         "rigid_body": modes.rigid_body,
         "modes": [
             {
-                "frequency": float(modes.frequency[i]) * speed_factor(unit),
+                "frequency": float(modes.frequency[i]) * factor,
                 "damping_ratio": float(modes.damping_ratio[i]),
-                "undamped_frequency": float(modes.undamped_frequency[i]) * speed_factor(unit),
+                "undamped_frequency": float(modes.undamped_frequency[i]) * factor,
                 "decay_rates": modes.decay_rate[i].tolist(),
                 "shape": dict(zip(modes.names, modes.shape[:, i].tolist(), strict=True)),
             }
@@ -212,15 +203,5 @@ def resonances_json(found: ResonanceSpeeds, unit: str) -> dict[str, Any]:
     return {
         "speed_unit": unit,
         "orders": found.orders,
-        "resonances": [
-            {
-                "speed": r.speed * speed_factor(unit),
-                "kind": r.kind,
-                "modes": list(r.modes),
-                "order": r.order,
-                "formula": r.formula,
-                "opens": r.opens,
-            }
-            for r in found
-        ],
+        "resonances": [output.record(r, "speed kind modes order formula opens", Words(unit)) for r in found],
     }

@@ -154,10 +154,10 @@ AXIS = partial(read_axis, points=0)
 
 def _frequencies(file: str, texts: Texts) -> Asked:
     """The line, and the unit of frequencies that goes with that of its speeds."""
-    from trunnion.results.speeds import frequency_unit
+    from trunnion.results.words import Words
 
     asked = own_line(file, texts)
-    return asked if texts["unit"] else replace(asked, unit=frequency_unit(asked.unit))
+    return asked if texts["unit"] else replace(asked, unit=Words(asked.unit).of_frequencies.of_speeds)
 
 
 @Command("stability", writes=NOTHING)
@@ -165,11 +165,11 @@ def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> Shown:
     """Example: trunnion stability truck.toml --speed "1500 rpm" """
     from trunnion.cli.report import stability_json
 
-    found = tn.stability(line, speed)
+    found = tn.stability(line, speed).in_unit(unit)
     return Shown(
         found,
-        content=lambda: stability_json(found, unit),
-        more=lambda: output.findings(found.findings_in(unit)),
+        content=lambda: stability_json(found),
+        more=lambda: output.findings(found.findings),
         wrap=True,
     )
 

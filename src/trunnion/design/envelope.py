@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import nan
 
 import numpy as np
@@ -22,57 +22,57 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import moves_by_itself
 from trunnion.floquet.ranges.span import Span
 from trunnion.results.counts import few
-from trunnion.results.declared import Held, Result, axis, members_over, over, remark, remarks_of
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.quantity_axes import quantity_axis
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
+from trunnion.results.words import Words
 
+WORST = "the worst of each, the binding one first, load case within"
 POINTS = 5
 LIMIT_SPEEDS = 9
 """Speeds of the range at which a stable limit is solved for, beside the answer for all between."""
 
 
-@dataclass(frozen=True)
+@labelled
 class Place:
-    """One point of a schedule ("" for the line as stated), over "travel" [m] or "speed" [rad/s]; what it is called, and
-    the line there. ``along``: all of a schedule over speed, searched from end to end [rad/s], value NaN."""
+    """One point of a schedule ("" for the line as stated), and the line there."""
 
-    schedule: str
-    over: str
-    value: float
-    label: str
-    line: Driveline
-    along: tuple[float, float] | None = None
+    schedule: str = variable()
+    over: str = internal('"travel" or "speed"')
+    value: float = variable(words="travel [m] or speed [rad/s]", name="schedule_value")
+    label: str = internal("what it is called")
+    line: Driveline = internal("there")
+    along: tuple[float, float] | None = internal("all of a schedule over speed, value NaN", "rad/s", default=None)
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Envelope(Result):
-    """A line judged under its load cases at every point of its schedules.
+    """A line judged under its load cases at every point of its schedules; see ``Assessment`` for the verdict.
 
-    places: points of schedules, the line as stated first; checks: the worst of each, the binding one first, load case
-    within; where: the place of each; margin (places, checks); limit (places,): largest stable value of ``parameter``,
-    NaN where none was asked for or it is unknown at one of the speeds; verdict, low, high, unit: as of ``Assessment``.
+    The largest stable value is NaN where none was asked for or it is unknown at one of the speeds.
     """
 
-    verdict: Status
-    places: tuple[Place, ...]
-    checks: tuple[Check, ...]
-    where: tuple[int, ...]
-    margin: Array
-    parameter: str
-    limit: Array
-    parameter_unit: str
-    low: float
-    high: float
-    unit: str
-    findings: tuple[Finding, ...] = ()
+    verdict: Status = attribute()
+    places: tuple[Place, ...] = members(Place, "place", "points of schedules, the line as stated first", name="label")
+    checks: tuple[Check, ...] = members(Check, "check", WORST, name="name", only="status load_case value speed because")
+    where: tuple[int, ...] = internal("number of the place of each check")
+    margin: Array = variable("place check", "1", "distance to the limit over the limit")
+    parameter: str = attribute("whose largest stable value was asked for")
+    limit: Array = variable("place", "{self.parameter_unit}", "largest stable {self.parameter}", name="stable_limit")
+    parameter_unit: str = internal()
+    low: float = internal("end of the running range", "rad/s")
+    high: float = internal("end of the running range", "rad/s")
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = attribute(default=())
 
     def plot(self, axes: Axes | None = None, *, schedule: str = "") -> Axes:
         """Margins of the worst checks along a schedule; see ``plots.envelope.draw``."""
         return drawing(self, "plot")(self, axes, schedule=schedule)
 
     @property
+    @computed(attribute())
     def sentence(self) -> str:
         """The verdict in one sentence, and where the worst stands."""
         bind = next(iter(self.checks), None)
@@ -84,36 +84,20 @@ class Envelope(Result):
         place = self.places[self.where[0]].label
         return f"{self.verdict} over {len(self.places)} places: {bind.name} binds {place}: {bind.because}"
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Margins over places and checks, and the stable limit over places."""
-        yield axis("place", [p.label for p in self.places])
-        yield axis("check", [c.name for c in self.checks])
-        yield over("place", "schedule", [p.schedule for p in self.places])
-        yield over("place", "schedule_value", [p.value for p in self.places], about="travel [m] or speed [rad/s]")
-        yield over("place check", "margin", self.margin, "1", "distance to the limit over the limit")
-        yield over("check", "status", [str(c.status) for c in self.checks])
-        yield over("check", "worst_place", [self.places[k].label for k in self.where])
-        yield from members_over("check", self.checks, load_case="")
-        yield from members_over("check", self.checks, "in the unit of its check", value="")
-        yield from members_over("check", self.checks, "input speed where it binds", speed="rad/s")
-        yield from members_over("check", self.checks, because="")
-        yield over("place", "stable_limit", self.limit, self.parameter_unit, f"largest stable {self.parameter}")
-        yield remark("verdict", str(self.verdict))
-        yield from remarks_of(self, "sentence", "parameter")
-        yield remark("findings", [str(f) for f in self.findings])
+        yield from super().declared()
+        yield Variable("worst_place", [self.places[k].label for k in self.where], "check")
 
-    def __str__(self) -> str:
-        span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
-        rows = [f"envelope from {span}: {self.sentence}"]
+    def _lines(self) -> Iterator[str]:
+        yield f"envelope from {self.words.ends(self.low, self.high)}: {self.sentence}"
         for check, k in zip(self.checks, self.where, strict=True):
-            judged = check.judged
-            where = f" {self.places[k].label}" if judged and len(self.places) > 1 else ""
-            rows.append(f"  {check.word}: {check.name}{where}: {check.because}")
+            where = f" {self.places[k].label}" if check.judged and len(self.places) > 1 else ""
+            yield f"  {check.word}: {check.name}{where}: {check.because}"
         if self.parameter and np.isfinite(self.limit).any():
             k = int(np.nanargmin(self.limit))
-            shown = quantity_axis(self.parameter, self.parameter_unit, self.unit)
-            rows.append(f"  {shown.quantity}: stable up to {shown.number(self.limit[k])}, least {self.places[k].label}")
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+            shown = self.words.parameter(self.parameter, self.parameter_unit)
+            yield f"  {shown.quantity}: stable up to {shown.number(self.limit[k])}, least {self.places[k].label}"
 
 
 def envelope(
@@ -147,18 +131,18 @@ def envelope(
     tell = progress or (lambda share: None)
     stated = _stripped(line, line.operation, {})
     first = assess(stated, speeds, unit=unit)
-    shown = unit or speed_unit(line)
+    words = Words(unit or speed_unit(line))
     places = [Place("", "", nan, "as stated", stated)]
     for schedule in line.operation.schedules if line.operation else ():
-        places += _places(line, schedule, points, (first.low, first.high), shown)
-        places += _whole(line, schedule, (first.low, first.high), shown)
+        places += _places(line, schedule, points, (first.low, first.high), words)
+        places += _whole(line, schedule, (first.low, first.high), words)
     judged, limits = [first], []
     for k, place in enumerate(places):
         if k:
             judged.append(_judged(line, place, first, unit))
         limits.append(_limit(place, parameter, (low, high), _span(place, first)))
         tell((k + 1) / len(places))
-    return _together(line, places, judged, limits, parameter, shown)
+    return _together(line, places, judged, limits, parameter, words.of_speeds)
 
 
 def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, dict[str, float]]) -> Driveline:
@@ -170,15 +154,17 @@ def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, d
     return line.replace_all(changes, operation=operation.model_copy(update=left))
 
 
-def _places(line: Driveline, schedule: Schedule, points: int, span: tuple[float, float], unit: str) -> Iterator[Place]:
+def _places(
+    line: Driveline, schedule: Schedule, points: int, span: tuple[float, float], words: Words
+) -> Iterator[Place]:
     at_speed = schedule.over == "speed"
     for value in schedule.between(points, *(span if at_speed else ())):
-        shown = show_speed(value, unit) if at_speed else f"{1e3 * value:.4g} mm"
+        shown = words.speed(value) if at_speed else f"{1e3 * value:.4g} mm"
         changed = _stripped(line, line.operation, schedule.changes_at(value))
         yield Place(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
 
 
-def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], unit: str) -> Iterator[Place]:
+def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], words: Words) -> Iterator[Place]:
     """All of a schedule over speed; not of a bent line that starts free, which is solved speed by speed."""
     low, high = max(schedule.points[0], span[0]), min(schedule.points[-1], span[1])
     if schedule.over != "speed" or not low < high:
@@ -187,8 +173,8 @@ def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], unit:
     bend = [sum(abs(angles[k]) for angles in schedule.angles.values()) for k in range(len(schedule.points))]
     changed = _stripped(line, line.operation, schedule.changes_at(schedule.points[int(np.argmax(bend))]))
     if not moves_by_itself(assemble(changed)):
-        ends = f"{show_speed(low, unit)} to {show_speed(high, unit)}"
-        yield Place(schedule.name, "speed", nan, f"along {schedule.name}, {ends}", changed, (low, high))
+        label = f"along {schedule.name}, {words.ends(low, high)}"
+        yield Place(schedule.name, "speed", nan, label, changed, (low, high))
 
 
 def _judged(line: Driveline, place: Place, first: Assessment, unit: str | None) -> Assessment:
@@ -243,7 +229,7 @@ def _not_reached(line: Driveline, first: Assessment) -> Iterator[str]:
     for schedule in line.operation.schedules if line.operation else ():
         ends = schedule.points[0], schedule.points[-1]
         if schedule.over == "speed" and not ends[0] <= first.low <= first.high <= ends[1]:
-            own = " to ".join(show_speed(x, first.unit) for x in ends)
+            own = first.words.ends(*ends)
             yield f"Schedule {schedule.name} goes from {own}: at speeds beyond, the line is judged as stated alone"
 
 

@@ -1,4 +1,4 @@
-"""Torques that shake a disk: harmonic in time, or in the disk's own rotation (engine orders)."""
+"""Torques that shake a disk: harmonic in its own rotation (engine orders), in time, or in both together (motors)."""
 
 from __future__ import annotations
 
@@ -25,11 +25,18 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.record import Record, as_tuple, listed
 from trunnion.errors import InputError
 
+AMPLITUDES = ("amplitude", "quadratic_amplitude", "amplitudes")
+"""Keys that each state an amplitude; ``equations.amplitudes`` has the law of each."""
 _LISTS = as_tuple("quantities", 'write speeds = ["600 rpm", "1800 rpm"], amplitudes = ["40 N*m", "90 N*m"], say')
 
 
 class Excitation(Record):
-    """One harmonic torque, positive in the sense of rotation: A cos(order · rotation + phase), or A cos(ωt + phase).
+    """One harmonic torque on a disk, A cos(order · rotation + frequency · time + phase), positive with the rotation.
+
+    Give ``order``, ``frequency`` or both; what is left out is 0. Alone each is positive, for a sign would only turn the
+    phase. Together each has either sign, as the torque of a motor whose field turns in time and whose rotor with the
+    disk: order = -2 and frequency = "100 Hz" is at 100 Hz at rest and at nothing at 50 turns a second. The rotation
+    counts in the disk's own sense, also behind a gear that reverses it.
 
     Several orders together are an engine-order table. A is one ``amplitude``; or grows with the square of the disk's
     speed; or stands in a table over the disk's speed or over the mean torque it drives with, A e^{i phase} linear
@@ -38,9 +45,9 @@ class Excitation(Record):
     Parameters
     ----------
     amplitude : A [N m].
-    order : cycles per turn of the disk, 0.5 for a four-stroke cylinder; or else
-    frequency : ω [rad/s].
-    phase : at zero rotation or time [rad].
+    order : cycles per turn of the disk, 0.5 for a four-stroke cylinder.
+    frequency : in time [rad/s].
+    phase : at zero rotation and time [rad].
     quadratic_amplitude : A over the square of the disk's mean speed [N m s²/rad²], as of oscillating masses.
     speeds : of the disk [rad/s], rising: where the table has its points; or else
     torques : mean torque that the disk drives with [N m], rising.
@@ -53,8 +60,8 @@ class Excitation(Record):
 
     amplitude: Maybe[Torque] = optional(default=None, description="of the torque; positive drives")
     order: Maybe[Dimensionless] = optional(default=None, description="cycles per turn of the disk")
-    frequency: Maybe[Frequency] = optional(default=None, description="in time, instead of an order")
-    phase: Angle = optional(default=0.0, description="at zero rotation or time")
+    frequency: Maybe[Frequency] = optional(default=None, description="in time, instead of an order or beside it")
+    phase: Angle = optional(default=0.0, description="at zero rotation and time")
     quadratic_amplitude: Maybe[QuadraticLoad] = optional(
         default=None, description="amplitude over the square of the disk's speed, instead"
     )
@@ -72,26 +79,28 @@ class Excitation(Record):
     )
 
     @model_validator(mode="after")
-    def _one_clock(self) -> Self:
-        if (self.order is None) == (self.frequency is None):
-            given = "stands beside order" if self.order is not None else "is missing beside amplitude"
-            remedy = 'give order = 2, say, or frequency = "50 Hz"'
-            raise InputError(given, key="frequency" if self.order is not None else "order", remedy=remedy)
-        for key in ("order", "frequency"):
+    def _one_angle(self) -> Self:
+        given = [key for key in ("order", "frequency") if getattr(self, key) is not None]
+        if not given:
+            remedy = 'give order = 2, say, or frequency = "50 Hz", or both'
+            raise InputError("is missing beside amplitude", key="order", remedy=remedy)
+        for key in given:
             value = getattr(self, key)
-            if value is not None and not value > 0:
-                raise InputError("must be positive", key=key, value=value, remedy="a constant is a load_torque")
+            if not (value > 0 or (len(given) == 2 and value < 0)):
+                problem, remedy = "must be positive", "a constant is a load_torque"
+                if len(given) == 2:
+                    problem, remedy = "must not be zero", "leave it out"
+                raise InputError(problem, key=key, value=value, remedy=remedy)
         return self
 
     @model_validator(mode="after")
     def _one_amplitude(self) -> Self:
-        given = [key for key in ("amplitude", "quadratic_amplitude") if getattr(self, key) is not None]
-        given += ["amplitudes"] if self.amplitudes else []
+        given = [key for key in AMPLITUDES if getattr(self, key) not in (None, ())]
         if not given:
             raise InputError("is missing", key="amplitude", remedy='write order = 2 and amplitude = "40 N*m"')
         if len(given) > 1:
             raise InputError(f"stands beside {given[0]}", key=given[1], remedy="leave one of the two out")
-        if self.frequency is not None and given != ["amplitude"]:
+        if self.order is None and given != ["amplitude"]:
             remedy = "write amplitude, or order instead of frequency"
             raise InputError("belongs to an order of the rotation", key=given[0], remedy=remedy)
         self._check_table()
@@ -125,12 +134,16 @@ class Excitation(Record):
         """Where its table has its points: speeds [rad/s] or torques [N m]; empty without a table."""
         return self.speeds or self.torques
 
+    @property
+    def stated_as(self) -> str:
+        """The key that states its amplitude, of ``AMPLITUDES``."""
+        return next(key for key in AMPLITUDES if getattr(self, key) not in (None, ()))
+
     @cached_property
     def largest(self) -> float:
-        """A [N m]; of a table the largest |A|; over the square of the speed [N m s²/rad²] where it grows so."""
-        if self.amplitudes:
-            return max(abs(a) for a in self.amplitudes)
-        return float(self.amplitude if self.amplitude is not None else self.quadratic_amplitude or 0.0)
+        """The number that its amplitude follows from; of a table the largest |A| [N m]."""
+        stated = getattr(self, self.stated_as)
+        return max(abs(a) for a in stated) if isinstance(stated, tuple) else float(stated)
 
     @property
     def varies(self) -> bool:

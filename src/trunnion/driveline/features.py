@@ -13,6 +13,7 @@ from typing import Any
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
@@ -52,8 +53,8 @@ def _where(kind: type[Element], key: str, test: Callable[[Any], object]) -> Find
     return lambda line: [f"{name}.{key}" for name, e in line.parts if isinstance(e, kind) and test(e)]
 
 
-def _excited(by: str) -> Finder:
-    return _where(Disk, "excitation", lambda disk: any(getattr(one, by) for one in disk.excitation))
+def _excited(test: Callable[[Excitation], object]) -> Finder:
+    return _where(Disk, "excitation", lambda disk: any(map(test, disk.excitation)))
 
 
 def _rubbing(at_one_motion: bool) -> Finder:
@@ -172,17 +173,22 @@ FEATURES = (
     Feature("drive share", ("Disk.drive_share",)),
     Feature("viscous load", ("Disk.viscous_load",)),
     Feature("quadratic load", ("Disk.quadratic_load",)),
-    Feature("excitation by order", ("Disk.excitation", "Excitation.order", "Excitation.amplitude"), _excited("order")),
+    Feature(
+        "excitation by order",
+        ("Disk.excitation", "Excitation.order", "Excitation.amplitude"),
+        _excited(lambda one: not one.frequency),
+    ),
     Feature(
         "excitation that varies with speed or load",
         (
             "Excitation.quadratic_amplitude", "Excitation.speeds", "Excitation.torques", "Excitation.amplitudes",
             "Excitation.phases",
         ),
-        _excited("varies"),
+        _excited(lambda one: one.varies),
     ),
     Feature("cylinders", ("Disk.firing_angles", "Disk.misfiring")),
-    Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited("frequency")),
+    Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited(lambda one: not one.order)),
+    Feature("excitation by order and frequency", (), _excited(lambda one: one.order and one.frequency)),
     Feature(HELD, (), lambda line: [f"{name}.excitation" for name in held_excitations(line)]),
     Feature(
         SERIES,

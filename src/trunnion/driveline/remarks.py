@@ -27,7 +27,7 @@ def held_excitations(line: Chain) -> tuple[str, ...]:
     return tuple(
         name
         for name, element, g in zip(line.names, line.elements, group, strict=True)
-        if isinstance(element, Disk) and g in fixed and any(one.amplitude for one in element.excitation)
+        if isinstance(element, Disk) and g in fixed and any(one.largest for one in element.excitation)
     )
 
 

@@ -88,5 +88,5 @@ def carries_static_torque(assembly: Assembly) -> bool:
     return not (
         assembly.topology.free
         or bent(assembly)
-        or any(disk.quadratic_load or any(one.order is not None for one in disk.excitation) for disk in disks)
+        or any(disk.quadratic_load or any(one.order for one in disk.excitation) for disk in disks)
     )

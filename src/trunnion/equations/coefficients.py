@@ -7,15 +7,15 @@ evaluates a whole row of points at once.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Ratio
-from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import disk_inertia, tube_inertia
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
@@ -28,6 +28,7 @@ from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.equations.topology import Mesh, Topology, topology
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
 MOST_KNOWN = 8
@@ -92,6 +93,16 @@ class Assembly:
     @cached_property
     def _known(self) -> dict[tuple[bytes, bool, bool, bool], LineCoefficients]:
         """Coefficients of single rows: parts of one analysis ask for the same."""
+        return {}
+
+    def derived(self, make: Callable[[Assembly], Any]) -> Any:
+        """What ``make`` makes of the line as described, made once."""
+        if make not in self._derived:
+            self._derived[make] = make(self)
+        return self._derived[make]
+
+    @cached_property
+    def _derived(self) -> dict[Callable[[Assembly], Any], Any]:
         return {}
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:
@@ -239,25 +250,6 @@ def _station_inertia(assembly: Assembly, table: Array) -> Array:
     return inertia
 
 
-def _planes_in_front(assembly: Assembly, table: Array, joint: int) -> Array:
-    """Sum of the planes of constant-velocity joints between a joint and the bend before them.
-
-    They pass rotation unchanged but turn the plane that the joint's own is measured from.
-    """
-    line, total = assembly.line, np.zeros(len(table))
-    ratio, i = 1.0, line.parents[joint]
-    while i is not None:
-        element = line.elements[i]
-        if isinstance(element, Joint) and element.orders:
-            break
-        if isinstance(element, Ratio | GearPair):
-            ratio *= element.speed_ratio
-        elif isinstance(element, Joint):
-            total += table[:, assembly.packed.column(i, "plane")] / ratio
-        i = line.parents[i]
-    return total
-
-
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
@@ -294,8 +286,10 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             forks = column(i, "fork_offset")
             shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
     for s in topo.joints:
-        i = topo.stations[s].element
-        shift[:, s] = -table[:, column(i, "plane")] - _planes_in_front(assembly, table, i)
+        station = topo.stations[s]
+        shift[:, s] = -table[:, column(station.element, "plane")]
+        for i, ratio in station.planes:
+            shift[:, s] -= table[:, column(i, "plane")] / ratio
     return LineCoefficients(
         speed=table[:, 0],
         stiffness=stiffness,
@@ -310,14 +304,25 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         joints=joint_laws(assembly, table),
         shift=shift,
         loss=loss,
-        waves=tuple(_mesh_wave(assembly, table, mesh) for mesh in topo.meshes if mesh.stiffness),
+        waves=tuple(
+            MeshWave(mesh.compliance, mesh_harmonics(assembly.packed, mesh, "stiffness_variation", table))
+            for mesh in topo.meshes
+            if mesh.stiffness
+        ),
     )
 
 
-def _mesh_wave(assembly: Assembly, table: Array, mesh: Mesh) -> MeshWave:
-    names = [f"stiffness_variation {i}" for i in range(1, len(mesh.stiffness) + 1)]
-    share, phase = (
-        np.stack([table[:, assembly.packed.column(mesh.element, f"{name} {key}")] for name in names], axis=1)
-        for key in ("share", "phase")
+def mesh_harmonics(
+    packed: PackedLine, mesh: Mesh, what: Literal["transmission_error", "stiffness_variation"], table: Array
+) -> tuple[Harmonic, ...]:
+    """Harmonics of a mesh by turns of the input, at rows of packed numbers (column,) or (case, column): of its error
+    along the line of action [m], or of its stiffness over the mean [1]."""
+    orders, size = (mesh.error, "amplitude") if what == "transmission_error" else (mesh.stiffness, "share")
+
+    def number(i: int, key: str) -> Array:
+        return np.asarray(table[..., packed.column(mesh.element, f"{what} {i} {key}")])
+
+    return tuple(
+        Harmonic(order * mesh.teeth, 0.0, number(i, size), number(i, "phase"))
+        for i, order in enumerate(orders, start=1)
     )
-    return MeshWave(mesh.compliance, np.array([float(rate) for rate in mesh.stiffness_rates]), share, phase)

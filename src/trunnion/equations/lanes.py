@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -66,15 +67,18 @@ def chain_program(
     members = _members(topo, by_speed)
     member_speed = [walk.speed[topo.reference[topo.group_of(s)]] for s in members]
     return ChainProgram(
-        parent,
-        *_split([speed for speed, _ in walk.joint_input]),
-        *_split([within for _, within in walk.joint_input]),
-        *_split(near),
-        *_split(near_speed),
-        topo.unknown_of[members].astype(np.int64),
-        *_split([walk.within[s] for s in members]),
-        *_split(member_speed),
-        *_split([(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates]),
+        parent=parent,
+        **_split("joint_speed_source joint_rate", [speed for speed, _ in walk.joint_input]),
+        **_split("joint_ratio_source joint_ratio", [within for _, within in walk.joint_input]),
+        **_split("near_source near_ratio", near),
+        **_split("near_speed_source near_speed", near_speed),
+        member_unknown=topo.unknown_of[members].astype(np.int64),
+        **_split("member_source member_ratio", [walk.within[s] for s in members]),
+        **_split("member_speed_source member_speed", member_speed),
+        **_split(
+            "wave_unknown wave_cycles",
+            [(i, float(rate)) for i, mesh in _varying(topo) for rate in mesh.stiffness_rates],
+        ),
         ripple_first=first,
         ripple_order=np.array([order for order, _ in ripples]),
         ripple_cycles=np.array([cycles for _, cycles in ripples]),
@@ -123,10 +127,7 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
     load = co.load - co.not_carried
     walk = _Walk(topo, co.shift, [law.turned for law in co.joints])
     phase = np.stack(walk.joint_phase) if walk.joint_phase else np.zeros((0, cases))
-    waves = [
-        np.concatenate([getattr(wave, key).T for wave in co.waves]) if co.waves else np.zeros((0, cases))
-        for key in ("share", "phase")
-    ]
+    waves = [one for wave in co.waves for one in wave.harmonics]
     cosine = [law.cosine if isinstance(law, CrossLaw) else np.ones((cases, 1)) for law in co.joints]
     ripples = [law for law in co.joints if isinstance(law, FourierLaw)]
     sizes, phases = ([part for law in ripples for part in getattr(law, key)] for key in ("amplitude", "phase"))
@@ -141,8 +142,8 @@ def chain_lanes(topo: Topology, coefficients: LineCoefficients, by_speed: frozen
         member_load=np.ascontiguousarray((sign * load[:, members] / inertia[:, owner] * over_speed[:, None] ** 2).T),
         member_viscous=np.ascontiguousarray((co.viscous[:, members] / inertia[:, owner] * over_speed[:, None]).T),
         member_quadratic=np.ascontiguousarray((co.quadratic[:, members] / inertia[:, owner]).T),
-        wave_share=np.ascontiguousarray(waves[0]),
-        wave_phase=np.ascontiguousarray(waves[1]),
+        wave_share=np.reshape([one.amplitude for one in waves], (len(waves), cases)),
+        wave_phase=np.reshape([one.phase for one in waves], (len(waves), cases)),
         # No lower bound: over speed ν is then exactly 1/Ω, and Z in these units stays analytic in every axis.
         ripple=_rows(sizes, cases),
         ripple_phase=_rows(phases, cases),
@@ -164,5 +165,7 @@ def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
     return sorted(members, key=lambda s: topo.unknown_of[s])
 
 
-def _split(pairs: list[tuple[int, float]]) -> tuple[Integers, Array]:
-    return np.array([p[0] for p in pairs], dtype=np.int64), np.array([p[1] for p in pairs], dtype=float)
+def _split(names: str, pairs: list[tuple[int, float]]) -> dict[str, Any]:
+    """Sources and numbers of pairs, each under a name."""
+    source, number = names.split()
+    return {source: np.array([p[0] for p in pairs], dtype=np.int64), number: np.array([p[1] for p in pairs], float)}

@@ -7,25 +7,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
 
 @dataclass(frozen=True)
 class MeshWave:
-    """A mesh's stiffness over its mean: 1 + Σ share cos(cycles τ + phase), as a factor of one compliance's.
-
-    cycles (harmonic,) per turn of the input; share and phase (case, harmonic).
-    """
+    """A mesh's stiffness over its mean, as a factor of one compliance's: 1 + its ``harmonics`` (case,), whose
+    amplitudes are shares of the mean."""
 
     compliance: int
-    cycles: Array
-    share: Array
-    phase: Array
+    harmonics: tuple[Harmonic, ...]
 
     def at(self, tau: Array) -> Array:
         """The factor (case, time) at input angles ``tau`` (time,) or (case, time) [rad]."""
-        angle = np.asarray(tau)[..., None] * self.cycles + self.phase[:, None, :]
-        return np.asarray(1 + np.sum(self.share[:, None, :] * np.cos(angle), axis=-1))
+        return np.asarray(1 + sum(one.at(np.asarray(tau)) for one in self.harmonics))
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ PER_COMPLIANCE = 11
 GUARDS, PER_GUARD, PER_WAVE = 3, 4, 3
 IMPACT = 3 + GUARDS * PER_GUARD
 PER_STAGE = IMPACT + 2
-# Per harmonic torque; order 0 means in time.
+# Per harmonic torque A cos(order · angle + frequency · t + phase): its station and these numbers.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
 PER_HARMONIC = 5
 # Per slider of a clutch: its compliance, the stiffness of its spring, the deflection at which it slips, and the stride
@@ -135,29 +135,29 @@ def mean_rotation(theta, omega, p, count, d, v):
 
 
 @njit(cache=True, nogil=True)
-def mesh_error(p, q, theta):
-    """Transmission error of compliance at p[q:] as an angle, its slope and its bend by the mean rotation."""
-    at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE
-    e, slope, bend = 0.0, 0.0, 0.0
-    for i in range(int(p[q + ERRORS])):
+def swing(p, at, count, theta):
+    """A sum of mesh harmonics at p[at:], its slope and its bend by the mean rotation."""
+    value, slope, bend = 0.0, 0.0, 0.0
+    for i in range(count):
         size, cycles, phase = p[at + 3 * i], p[at + 3 * i + 1], p[at + 3 * i + 2]
         c, s = size * math.cos(cycles * theta + phase), size * math.sin(cycles * theta + phase)
-        e += c
+        value += c
         slope -= s * cycles
         bend -= c * cycles * cycles
-    return e, slope, bend
+    return value, slope, bend
+
+
+@njit(cache=True, nogil=True)
+def mesh_error(p, q, theta):
+    """Transmission error of the compliance at p[q:] as an angle, its slope and its bend by the mean rotation."""
+    return swing(p, int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE, int(p[q + ERRORS]), theta)
 
 
 @njit(cache=True, nogil=True)
 def mesh_wave(p, q, theta):
-    """Mesh stiffness over its mean, and its slope by the mean rotation."""
+    """Stiffness of the compliance at p[q:] over its mean less 1, its slope and its bend by the mean rotation."""
     at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE + int(p[q + ERRORS]) * PER_WAVE
-    wave, slope = 1.0, 0.0
-    for i in range(int(p[q + WAVES])):
-        cycles, argument = p[at + 3 * i + 1], p[at + 3 * i + 1] * theta + p[at + 3 * i + 2]
-        wave += p[at + 3 * i] * math.cos(argument)
-        slope -= p[at + 3 * i] * cycles * math.sin(argument)
-    return wave, slope
+    return swing(p, at, int(p[q + WAVES]), theta)
 
 
 @njit(cache=True, nogil=True)
@@ -223,9 +223,8 @@ def line(t, y_, p_, k, regime, out_):
         if i < 0:
             continue
         order = p[q + ORDER]
-        argument = p[q + ANGLE] + p[q + FREQUENCY] * t
-        if order != 0.0:
-            argument = p[q + ANGLE] + order * (p[HEAD + s * PER_STATION + MEAN] * theta + d[s])
+        angle = p[HEAD + s * PER_STATION + MEAN] * theta + d[s]
+        argument = p[q + ANGLE] + p[q + FREQUENCY] * t + order * angle
         push = p[q + AMPLITUDE] * math.cos(argument)
         torque[i] += r[s] * push
         by_angle[i] += r1[s] * push - r[s] * r[s] * order * p[q + AMPLITUDE] * math.sin(argument)
@@ -238,7 +237,8 @@ def line(t, y_, p_, k, regime, out_):
         else:
             stage = int(p[q + LAW]) + (regime // int(p[q + STRIDE])) % int(p[q + STAGES]) * PER_STAGE
             error, slope, bend = mesh_error(p, q, turned)
-            wave, swell = mesh_wave(p, q, turned)
+            wave, swell, _ = mesh_wave(p, q, turned)
+            wave += 1.0
             twist, rate = d[far] - d[near] + error, v[far] - v[near] + slope * turning
             damp[e] = p[stage] + p[stage + IMPACT] * twist + p[stage + IMPACT + 1]
             shaft[e] = wave * (p[stage + 1] * twist + p[stage + 2]) + damp[e] * rate
@@ -354,7 +354,8 @@ def observe(times, states, p, twist, torque, rotation, speed, stages):
             stages[m, e] = stage_at(p, q, twist[m, e], rate)
             at = int(p[q + LAW]) + stages[m, e] * PER_STAGE
             damping = p[at] + p[at + IMPACT] * twist[m, e] + p[at + IMPACT + 1]
-            torque[m, e] = mesh_wave(p, q, turned)[0] * (p[at + 1] * twist[m, e] + p[at + 2]) + damping * rate
+            wave = 1.0 + mesh_wave(p, q, turned)[0]
+            torque[m, e] = wave * (p[at + 1] * twist[m, e] + p[at + 2]) + damping * rate
         for s in range(int(p[SLIDERS])):
             at = slider + s * PER_SLIDER
             torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]

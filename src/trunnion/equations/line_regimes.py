@@ -8,7 +8,7 @@ stages.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 from pathlib import Path
 from types import ModuleType
@@ -18,10 +18,12 @@ import numpy as np
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.stages import PiecewiseShaft
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, mesh_harmonics
+from trunnion.equations.harmonics import mesh_errors
 from trunnion.equations.sliders import beyond_capacity, sliders
-from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
+from trunnion.equations.stage_laws import StageLaw, has_stages, impact_damping, spring_damping, stage_law
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, stages_of
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.regimes import SLACK, Regimes
@@ -45,14 +47,15 @@ def guards_kernel() -> ModuleType:
 class StagedSpring:
     """One spring's numbers as ``line_kernel`` reads them.
 
-    law: its stages; error, wave (harmonics, 3): amplitude, cycles per turn of the input and phase of the mesh's.
+    law: its stages; error, wave: harmonics by turns of the input of a mesh's transmission error, as a twist [rad], and
+    of its stiffness over the mean.
     """
 
     name: str
     stride: int
     law: Stages
-    error: Array
-    wave: Array
+    error: tuple[Harmonic, ...] = ()
+    wave: tuple[Harmonic, ...] = ()
 
     @property
     def stages(self) -> int:
@@ -69,7 +72,8 @@ class StagedSpring:
         """All of them in a row."""
         guards = self.law.guards.reshape(self.stages, -1)
         table = np.concatenate([self.law.pieces, guards, self.law.impact], axis=1)
-        return np.concatenate([table.ravel(), self.error.ravel(), self.wave.ravel()])
+        harmonics = [[float(part) for part in (h.amplitude, h.order, h.phase)] for h in (*self.error, *self.wave)]
+        return np.concatenate([table.ravel(), np.ravel(harmonics)])
 
 
 def staged_springs(assembly: Assembly, row: Array) -> dict[int, StagedSpring]:
@@ -83,33 +87,25 @@ def staged_springs(assembly: Assembly, row: Array) -> dict[int, StagedSpring]:
     return found
 
 
+def staged_damping(assembly: Assembly, row: Array, place: int, law: StageLaw) -> float:
+    """Damping [N m s/rad] of the element at ``place`` where it acts: a common ratio refers to the stiffest stage."""
+    if assembly.line.damping_ratio is not None:
+        return float(assembly.common_damping(row[None], law.slopes.max(axis=1))[0])
+    return float(spring_damping(assembly.line.elements[place], place, assembly.packed.column, row[None])[0])
+
+
 def _spring(assembly: Assembly, row: Array, place: int, stride: int) -> StagedSpring:
     element, column = assembly.line.elements[place], assembly.packed.column
     law = stage_law(assembly.line, place, column, row[None])
-    if assembly.line.damping_ratio is not None:
-        # A common ratio refers to the stiffest stage.
-        damping = float(assembly.common_damping(row[None], law.slopes.max(axis=1))[0])
-    else:
-        damping = float(spring_damping(element, place, column, row[None])[0])
+    damping = staged_damping(assembly, row, place, law)
     kind = element.damping_law if law.knots.size and isinstance(element, GearPair | PiecewiseShaft) else "always"
-    error, wave = np.zeros((0, 3)), np.zeros((0, 3))
-    if isinstance(element, GearPair):
-        teeth = next((mesh.teeth for mesh in assembly.topology.meshes if mesh.element == place), 0)
-        cycles = float(teeth)
-        error = _harmonics(assembly, row, place, "transmission_error", "amplitude", cycles)
-        error[:, 0] /= element.radii[1]
-        wave = _harmonics(assembly, row, place, "stiffness_variation", "share", cycles)
     impact = float(impact_damping(element, place, column, row[None])[0])
-    return StagedSpring(assembly.line.names[place], stride, stages_of(law.first, damping, kind, impact), error, wave)
-
-
-def _harmonics(assembly: Assembly, row: Array, place: int, key: str, size: str, cycles: float) -> Array:
-    element, column = assembly.line.elements[place], assembly.packed.column
-    rows = [
-        [row[column(place, f"{key} {i} {size}")], cycles * harmonic.order, row[column(place, f"{key} {i} phase")]]
-        for i, harmonic in enumerate(getattr(element, key), start=1)
-    ]
-    return np.array(rows, dtype=float).reshape(-1, 3)
+    spring = StagedSpring(assembly.line.names[place], stride, stages_of(law.first, damping, kind, impact))
+    mesh = next((mesh for mesh in assembly.topology.meshes if mesh.element == place), None)
+    if mesh is None:
+        return spring
+    error, wave = mesh_errors(assembly, mesh, row), mesh_harmonics(assembly.packed, mesh, "stiffness_variation", row)
+    return replace(spring, error=error, wave=wave)
 
 
 @dataclass(frozen=True)
@@ -238,9 +234,9 @@ def line_regimes(assembly: Assembly) -> LineRegimes | None:
         (),
         lambda t, x, p: 0,
         from_kernel(guards_kernel, "line_jump") if any(part.along for part in parts) else None,
-        transitions,
-        directions,
-        tuple(part for part in parts if part.along),
+        transitions=transitions,
+        directions=directions,
+        sliders=tuple(part for part in parts if part.along),
     )
 
 

@@ -14,21 +14,20 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.harmonic_torques import harmonic_torque
+from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonics
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
-from trunnion.equations.topology import LONGEST_PERIOD, common_rate
 from trunnion.errors import InputError
 from trunnion.laws.fourier import FourierLaw
+from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, common_rate, periods_in_common, turning
 from trunnion.laws.hooke import CrossLaw
 from trunnion.laws.joint import JointLaw
 from trunnion.portable import Portable
@@ -56,43 +55,6 @@ class LineMotion(NamedTuple):
     twist: Array
     torque: Array
     rotation: Array
-
-
-class HarmonicTorque(NamedTuple):
-    """One harmonic torque: the station and place among the elements of its disk, its number there, the disk's name, and
-    what the description says of it."""
-
-    station: int
-    element: int
-    number: int
-    name: str
-    law: Excitation
-
-    @property
-    def key(self) -> str:
-        """What the line calls it."""
-        return f"excitation {self.number}"
-
-    def at(self, course: Course, row: Array) -> Array:
-        """The packed numbers (1, column) at the speed that it has its amplitude at."""
-        if not self.law.varies:
-            return row[None]
-        if course.acceleration:
-            self.refuse_change()
-        return np.concatenate([[course.speed], row[1:]])[None]
-
-    def refuse_change(self) -> None:
-        """Refuse an amplitude by the speed where the speed changes.
-
-        Raises
-        ------
-        InputError : so.
-        """
-        if self.law.varies:
-            raise InputError(
-                "has an amplitude that depends on the speed, which changes here", element=self.name, key="excitation",
-                remedy="give it an amplitude, or use tn.order_response",
-            )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -124,19 +86,16 @@ class LineSystem(Portable):
         return tuple(" + ".join(names[i] for i in c.shafts) for c in self.assembly.topology.compliances)
 
     @cached_property
-    def harmonics(self) -> tuple[HarmonicTorque, ...]:
+    def torques(self) -> tuple[DiskTorque, ...]:
         """The harmonic torques of all disks."""
-        return harmonic_torques(self.assembly)
+        return disk_torques(self.assembly)
 
     @cached_property
     def period_turns(self) -> Fraction | None:
-        """Period of everything that depends on the input's rotation, in turns; None where there is none."""
-        topo = self.assembly.topology
-        rates = [*topo.rates, *(rate for mesh in topo.meshes for rate in mesh.rates)]
-        for one in self.harmonics:
-            if one.law.order is not None:
-                rates.append(Fraction(str(one.law.order)) * abs(topo.speed_ratio[one.station]))
-        turns = 1 / common_rate(rates) if any(rates) else Fraction(1, 2)
+        """Period of everything that depends on the input's rotation alone, in turns; None where there is none."""
+        turning = [one.order for one in line_harmonics(self.assembly) if not one.frequency]
+        rates = [*self.assembly.topology.rates, *turning]
+        turns = 1 / common_rate(rates) if rates else Fraction(1, 2)
         return turns if turns <= LONGEST_PERIOD else None
 
     @cached_property
@@ -174,27 +133,22 @@ class LineSystem(Portable):
         """The period of everything [s]; None where the excitations have none of usable length in common."""
         if self.period_turns is None:
             return None
-        period = 2 * np.pi * float(self.period_turns) / values[SPEED]
-        in_time = [2 * np.pi / values[key] for key in self.time_harmonics]
-        if in_time and not self._turning:
-            period = in_time[0]  # nothing depends on the rotation
-        for other in in_time:
-            ratio = Fraction(period / other).limit_denominator(LONGEST_PERIOD)
-            if not ratio or abs(float(ratio) * other / period - 1) > 1e-12:
-                return None
-            period *= ratio.denominator
-        return period
+        speed, labels, topo = values[SPEED], self.assembly.packed.labels, self.assembly.topology
+        turn = 2 * np.pi / speed
+        timed = [abs(float(turning(float(one.order), values[labels[one.columns[2]]], speed))) for one in self.timed]
+        if any(0 < w < speed / LONGEST_PERIOD for w, one in zip(timed, self.timed, strict=True) if one.order):
+            return None
+        # What stands still is a constant. Without anything that turns the first of the others gives the period.
+        periods = [2 * np.pi / w for w in timed if w]
+        if topo.joints or topo.meshes or len(self.timed) < len(self.torques) or not periods:
+            periods.insert(0, turn * float(self.period_turns))
+        count = periods_in_common([1 / period for period in periods], LONGEST_PERIOD, ROUNDING)
+        return count * periods[0] if count else None
 
     @property
-    def time_harmonics(self) -> list[str]:
-        """Parameters that are frequencies of torques harmonic in time."""
-        return [f"{one.name}.{one.key} frequency" for one in self.harmonics if one.law.frequency is not None]
-
-    @property
-    def _turning(self) -> bool:
-        """Whether anything depends on the input's rotation."""
-        topo = self.assembly.topology
-        return bool(topo.joints or topo.meshes) or any(one.law.order is not None for one in self.harmonics)
+    def timed(self) -> list[DiskTorque]:
+        """The torques whose frequency does not go with the speed alone."""
+        return [one for one in self.torques if one.columns[2] >= 0]
 
     def _numbers(self, values: Mapping[str, float], drive: float = 0.0) -> Array:
         return self.numbers(np.array([values[label] for label in self.assembly.packed.labels]), drive=drive)
@@ -236,7 +190,7 @@ class LineSystem(Portable):
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
-        harmonics = [self._harmonic(one, on, row) for one in self.harmonics]
+        harmonics = [self._harmonic(one, on, row) for one in self.torques]
         strides = slider_strides(laws, len(rubbing))
         friction = [[s.compliance, s.stiffness, s.reach, step] for s, step in zip(rubbing, strides, strict=True)]
         # Behind them the laws of springs with stages and of joints that are Fourier series.
@@ -279,15 +233,15 @@ class LineSystem(Portable):
             load = load + drive_torques(topo, drive_places(topo, column, row[None]), np.array([drive]))[0]
         return load, by_speed, by_square
 
-    def _harmonic(self, one: HarmonicTorque, course: Course, row: Array) -> list[float]:
-        """What the right-hand side reads of one harmonic torque."""
-        packed, topo = self.assembly.packed, self.assembly.topology
-        torque = harmonic_torque(packed, topo, one.station, one.element, one.number, one.at(course, row))[0]
-        place, sense = packed.column(one.element, f"{one.key} frequency"), float(np.sign(topo.mean_speeds[one.station]))
-        frequency = float(row[place]) if place >= 0 else 0.0
+    def _harmonic(self, one: DiskTorque, course: Course, row: Array) -> list[float]:
+        """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course."""
+        if course.acceleration:
+            one.refuse_change()
+        at = np.concatenate([[course.speed], row[1:]])[None] if one.law.varies else row[None]
+        torque, sense = one.size(self.assembly, at)[0], float(np.sign(self.assembly.topology.mean_speeds[one.station]))
+        frequency = float(row[one.columns[2]]) if one.columns[2] >= 0 else 0.0
         return [
-            one.station, sense * float(np.abs(torque)), sense * (one.law.order or 0.0), frequency,
-            float(np.angle(torque)),
+            one.station, sense * float(np.abs(torque)), sense * one.own_order, frequency, float(np.angle(torque)),
         ]  # fmt: skip
 
     @cached_property
@@ -386,16 +340,6 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
     out[core.LINK], out[core.SIZE], out[core.COSINE] = core.FOURIER, place, len(law.orders)
     parts = [number(part) for part in (*law.amplitude, *law.phase)]
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
-
-
-def harmonic_torques(assembly: Assembly) -> tuple[HarmonicTorque, ...]:
-    """The harmonic torques of all disks of a line."""
-    names, elements = assembly.line.names, assembly.line.elements
-    return tuple(
-        HarmonicTorque(station, i, h, names[i], harmonic)
-        for station, i in assembly.topology.disks
-        for h, harmonic in enumerate(getattr(elements[i], "excitation", ()), start=1)
-    )
 
 
 def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False) -> LineSystem:

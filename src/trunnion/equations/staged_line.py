@@ -21,36 +21,28 @@ from typing import Any, Literal
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers
+from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
-from trunnion.equations.exact_oscillator import Turning, common_frequency
-from trunnion.equations.harmonic_torques import harmonic_torque
+from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.line_regimes import staged_springs
-from trunnion.equations.line_system import harmonic_torques, refuse_second_speed
+from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.steady_base import imbalance, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, periods_in_common, turning
 from trunnion.laws.stages import HELD, Stages
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
 Clock = Literal["speed", "frequency", "both", "none"]
-
-
-@dataclass(frozen=True)
-class Wave:
-    """One harmonic of all that excites the line, at ω = cycles · Ω + frequency.
-
-    force (m,): complex amplitude in q″; error (m,): of the transmission errors, e = Re(error · e^{iωt}).
-    """
-
-    cycles: float
-    frequency: float
-    force: Complex
-    error: Complex
+MOST_ORDER = 200
+"""Highest harmonic of the common frequency of all torques and errors."""
+CLOSE = 1e-9
+"""Share of a frequency within which it is a multiple of the common one."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +51,11 @@ class StagedLine:
 
     springs: names of the compliances, massless shafts in series as one; ``sliders``: names of the rows behind them, dry
     friction, and ``source`` (m,) on which row's twist each stands; ``turns`` with one more unknown at the end, the
-    rotation of the first inertia. speed [rad/s] of the input, None where nothing depends on it. pieces,
-    guards, then, counts, moves as in ``StagedFlow``; sides (m, stages): −1 below the softest stage, +1 above, 0 in it;
-    staged (m,): whether a spring has more than one stage; knots: largest breakpoint of every spring (m,) [rad], 0 of
-    linear ones.
+    rotation of the first inertia. speed [rad/s] of the input, None where nothing depends on it. harmonics: of all that
+    excites the line by turns of the input, each with its complex amplitude in q″ and that of the transmission errors
+    among the twists, ``force`` and ``error`` (harmonic, m). pieces, guards, then, counts, moves as in ``StagedFlow``;
+    sides (m, stages): −1 below the softest stage, +1 above, 0 in it; staged (m,): whether a spring has more than one
+    stage; knots: largest breakpoint of every spring (m,) [rad], 0 of linear ones.
     """
 
     assembly: Assembly
@@ -75,7 +68,9 @@ class StagedLine:
     drag: Array
     constant: Array
     constant_by_speed: Array
-    waves: tuple[Wave, ...]
+    harmonics: tuple[LineHarmonic, ...]
+    force: Complex
+    error: Complex
     pieces: Array
     guards: Array
     then: Integers
@@ -148,8 +143,12 @@ class StagedLine:
     @cached_property
     def clock(self) -> Clock:
         """What turns the excitation: the speed of the line, frequencies in time, both or nothing."""
-        turning, in_time = any(w.cycles for w in self.waves), any(w.frequency for w in self.waves)
-        return "both" if turning and in_time else "speed" if turning else "frequency" if in_time else "none"
+        if not self.harmonics:
+            return "none"
+        if not any(one.order for one in self.harmonics):
+            return "frequency"
+        first = self.harmonics[0].standstill
+        return "speed" if np.allclose([one.standstill for one in self.harmonics], first, ROUNDING, 0.0) else "both"
 
     @cached_property
     def base(self) -> float:
@@ -159,12 +158,14 @@ class StagedLine:
         ------
         InputError : nothing excites the line, or there is none of usable size.
         """
-        if not self.waves:
+        swinging = {float(abs(w)) for w in self._frequencies(self.speed or 0.0) if w}
+        if not swinging:
+            still = "stands still" if self.harmonics else "is excited by nothing"
             raise InputError(
-                "is excited by nothing, so its motion has no period", element="driveline", key="excitation",
+                f"{still}, so its motion has no period", element="driveline", key="excitation",
                 remedy="give a disk an excitation or a mesh a transmission_error; tn.exact_motion takes it as it is",
             )  # fmt: skip
-        return common_frequency(sorted({self._frequency(w) for w in self.waves}))
+        return common_frequency(sorted(swinging))
 
     @property
     def value(self) -> float:
@@ -172,33 +173,53 @@ class StagedLine:
         return float(self.speed or 0.0) if self.clock == "speed" else self.base
 
     def period(self, value: float | None = None) -> float:
-        """Common period [s] of all excitation, at another value of the clock perhaps."""
-        period = 2 * np.pi / self.base
-        return period if value is None else period * self.value / value
+        """Common period [s] of all excitation, at another value of the clock perhaps.
 
-    def _frequency(self, wave: Wave) -> float:
-        return wave.cycles * (self.speed or 0.0) + wave.frequency
+        Raises
+        ------
+        InputError : it all but stands still there.
+        """
+        period = 2 * np.pi / self.base
+        if value is None:
+            return period
+        still = self.standstill
+        if still and abs(value - still) * LONGEST_PERIOD < abs(value):
+            raise InputError(
+                "all but stands still there, so that its motion has no period of usable length", element="driveline",
+                key="excitation", remedy=f"stay away from {still * 30 / np.pi:.5g} rpm, or use tn.exact_motion",
+            )  # fmt: skip
+        return abs(period * (self.value - still) / (value - still))
+
+    @property
+    def standstill(self) -> float:
+        """Value of the clock at which all excitation that goes with it stands still; 0 but for orders that have a
+        frequency beside them."""
+        return self.harmonics[0].standstill if self.clock == "speed" else 0.0
+
+    def period_slope(self, value: float) -> float:
+        """Derivative of the period by the value of the clock, over the period."""
+        return -1 / (value - self.standstill) if self.clock in ("speed", "frequency") else 0.0
+
+    def _frequencies(self, speed: float) -> Array:
+        """Of all harmonics [rad/s], of either sign."""
+        return np.array([float(one.turning(speed)) for one in self.harmonics])
 
     def flow(self, value: float | None = None) -> StagedFlow:
         """The flow, at another value of the clock perhaps, with its derivative by that value."""
         m, speed, stretch, by_speed = self.size, self.speed or 0.0, 1.0, self.clock == "speed"
         if value is not None:
             speed, stretch = (value, 1.0) if by_speed else (speed, value / self.value)
-        waves = self.waves
-        cycles = np.array([w.cycles for w in waves])
-        in_time = np.array([w.frequency for w in waves])
-        omega = cycles * speed + in_time * stretch
-        rate = cycles if by_speed or self.clock in ("both", "none") else in_time / self.value
-        push = np.array([w.force for w in waves], dtype=complex).reshape(-1, m)
-        error = np.array([w.error for w in waves], dtype=complex).reshape(-1, m)
-        dragged = error @ self.drag.T
-        w = omega[:, None]
+        orders = np.array([float(one.order) for one in self.harmonics])
+        in_time = np.array([one.frequency for one in self.harmonics])
+        omega = turning(orders, in_time * stretch, speed)
+        rate = orders if by_speed or self.clock in ("both", "none") else in_time / self.value
+        error, dragged, w = self.error, self.error @ self.drag.T, omega[:, None]
         return StagedFlow(
             inverse=self.inverse,
             drag=self.drag,
             constant=self.constant + self.constant_by_speed * speed,
             frequencies=omega,
-            force=push - w**2 * error + 1j * w * dragged,
+            force=self.force - w**2 * error + 1j * w * dragged,
             constant_slope=self.constant_by_speed if by_speed else np.zeros(m),
             frequency_slope=np.asarray(rate),
             force_slope=(-2 * w * error + 1j * dragged) * np.reshape(rate, (-1, 1)),
@@ -212,13 +233,9 @@ class StagedLine:
 
     def errors(self, time: float) -> tuple[Array, Array]:
         """Transmission errors as angles of the output gears (m,) [rad], and their rates."""
-        e, rate = np.zeros(self.size), np.zeros(self.size)
-        for wave in self.waves:
-            omega = self._frequency(wave)
-            turned = wave.error * np.exp(1j * omega * time)
-            e += turned.real
-            rate += (1j * omega * turned).real
-        return e, rate
+        turns = 1j * self._frequencies(self.speed or 0.0)[:, None]
+        turned = self.error * np.exp(turns * time)
+        return turned.real.sum(axis=0), (turns * turned).real.sum(axis=0)
 
     def rest(self) -> Array:
         """The state (2m,) at t = 0 in which the line turns uniformly: the start of ``simulate``."""
@@ -263,7 +280,8 @@ def staged_line(line: Driveline | Assembly, speed: float | str | None = None) ->
     assembly = assemble(line)
     refuse_second_speed(assembly)
     _refuse_inexact(assembly)
-    return _Builder(assembly, Turning(assembly.line, speed)).build()
+    own = assembly.line.operation.speed if assembly.line.operation else None
+    return _Builder(assembly, own if speed is None else one_speed(speed, "speed")).build()
 
 
 def refuse_lost_speed(line: StagedLine) -> None:
@@ -319,11 +337,27 @@ def _refuse_inexact(assembly: Assembly) -> None:
             )
 
 
+def common_frequency(frequencies: Sequence[float]) -> float:
+    """The frequency [rad/s] that all, rising, are multiples of.
+
+    Raises
+    ------
+    InputError : none of usable size.
+    """
+    count = periods_in_common(frequencies, MOST_ORDER, CLOSE)
+    if not count or frequencies[-1] * count / frequencies[0] > MOST_ORDER:
+        raise InputError(
+            "have no common period of usable length", element="driveline", key="excitation",
+            value=list(frequencies), remedy="round the frequencies to a common step",
+        )  # fmt: skip
+    return frequencies[0] / count
+
+
 class _Builder:
     """The parts of a ``StagedLine``, each by its own rule."""
 
-    def __init__(self, assembly: Assembly, turning: Turning) -> None:
-        self.assembly, self.topo, self.turning = assembly, assembly.topology, turning
+    def __init__(self, assembly: Assembly, speed: float | None) -> None:
+        self.assembly, self.topo, self.speed = assembly, assembly.topology, speed
         self.row = assembly.table(1)[0]
         self.coefficients = assembly.coefficients(self.row[None], statically_twisted=False, free_play=True)
         self.laws = staged_springs(assembly, self.row)
@@ -351,42 +385,38 @@ class _Builder:
             drag[:, self.own] = (self.accelerated * self.viscous) @ np.linalg.inv(self.twisting[self.own])
         constant = -self.push @ (self.coefficients.load[0] * np.sign(topo.mean_speeds))
         by_speed = -self.push @ (self.coefficients.viscous[0] * topo.mean_speeds)
-        waves = tuple(self._torques() + self._errors())
-        needed = any(w.cycles for w in waves) or bool(by_speed.any() and not topo.free)
-        speed = self.turning.given
-        if needed:
-            speed = self.turning.speed(line)
+        every = line_harmonics(self.assembly, self.row)
+        harmonics = [one for one in every if one.acts and np.any(self._amplitudes(one))]
+        amplitudes = np.reshape([self._amplitudes(one) for one in harmonics], (len(harmonics), 2, len(self.twisting)))
+        force, error = amplitudes.astype(complex).swapaxes(0, 1)
+        needed = any(one.order for one in harmonics) or bool(by_speed.any() and not topo.free)
+        speed = self.speed
+        if needed and not (speed and 0 < speed < np.inf):
+            raise InputError(
+                "is needed by what turns with the line", key="speed", value=speed,
+                remedy="give speed=tn.rpm(1500), say",
+            )  # fmt: skip
         parts = self._parts()
         springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
-            self.assembly, springs, names, self.source, self.turns, speed, inverse, drag, constant, by_speed, waves,
-            _padded([part.pieces for part in parts], 0.0), _padded([part.guards for part in parts], 0.0),
-            _padded([part.then for part in parts], -1), np.array([len(part.pieces) for part in parts]),
-            _padded([part.side for part in parts], 0), _padded([part.moves for part in parts], 1.0),
+            assembly=self.assembly, springs=springs, sliders=names, source=self.source, turns=self.turns, speed=speed,
+            inverse=inverse, drag=drag, constant=constant, constant_by_speed=by_speed,
+            harmonics=tuple(harmonics), force=force, error=error,
+            pieces=_padded([part.pieces for part in parts], 0.0), guards=_padded([part.guards for part in parts], 0.0),
+            then=_padded([part.then for part in parts], -1), counts=np.array([len(part.pieces) for part in parts]),
+            sides=_padded([part.side for part in parts], 0), moves=_padded([part.moves for part in parts], 1.0),
         )  # fmt: skip
 
-    def _torques(self) -> list[Wave]:
-        found, packed = [], self.assembly.packed
-        for one in harmonic_torques(self.assembly):
-            mean = float(self.topo.mean_speeds[one.station])
-            torque = harmonic_torque(packed, self.topo, one.station, one.element, one.number, self.row[None])[0]
-            push = self.push[:, one.station] * float(np.sign(mean)) * torque
-            # By order at the mean rotation: the torque does not follow the deviation of its own disk.
-            order = one.law.order or 0.0
-            frequency = 0.0 if order else float(self.row[packed.column(one.element, f"{one.key} frequency")])
-            if push.any():
-                found.append(Wave(abs(mean) * order, frequency, push, np.zeros(len(push), dtype=complex)))
-        return found
-
-    def _errors(self) -> list[Wave]:
-        found = []
-        for e, law in self.laws.items():
-            for amplitude, cycles, phase in law.error:
-                error = np.zeros(len(self.twisting), dtype=complex)
-                error[e] = amplitude * np.exp(1j * phase)
-                if amplitude:
-                    found.append(Wave(float(cycles), 0.0, np.zeros(len(error), dtype=complex), error))
+    def _amplitudes(self, one: LineHarmonic) -> Complex:
+        """What a harmonic does to the twists (2, m): in q″, and as an error. A torque by order acts at the mean
+        rotation: it does not follow the deviation of its own disk."""
+        found = np.zeros((2, len(self.twisting)), dtype=complex)
+        size = one.size(self.assembly, self.row[None])[0]
+        if isinstance(one, DiskTorque):
+            found[0] = self.push[:, one.station] * float(np.sign(self.topo.mean_speeds[one.station])) * size
+        elif isinstance(one, MeshError):
+            found[1, one.mesh.compliance] = size
         return found
 
     def _parts(self) -> list[Stages]:

@@ -10,10 +10,11 @@ compliance. The root group is prescribed if the line starts with a ConstantSpeed
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
+from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
 
 
 class Link(IntEnum):
@@ -44,7 +46,9 @@ TIED = (Link.JOINT, Link.RATIO)
 class Station:
     """One rotation: ``before`` is the station in front (−1 at the root), ``element`` the link's element.
 
-    ``orders``: of the unevenness of a joint, in cycles per turn of its own shaft.
+    ``orders``: of the unevenness of a joint, in cycles per turn of its own shaft; ``planes``: constant-velocity joints
+    between it and the bend before, which turn the plane that its own is measured from, and what their shafts' speeds
+    are over its own.
     """
 
     before: int
@@ -52,6 +56,7 @@ class Station:
     element: int
     group: int
     orders: tuple[int, ...] = ()
+    planes: tuple[tuple[int, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -81,11 +86,6 @@ class Mesh:
     def stiffness_rates(self) -> list[Fraction]:
         """Cycles per turn of the input of the harmonics of the stiffness."""
         return [order * self.teeth for order in self.stiffness]
-
-    @property
-    def rates(self) -> list[Fraction]:
-        """Cycles per turn of the input of all harmonics."""
-        return [order * self.teeth for order in (*self.stiffness, *self.error)]
 
 
 @dataclass(frozen=True)
@@ -232,10 +232,6 @@ class Topology:
         return 1 / common_rate(self.rates) if self.rates else Fraction(1, 2)
 
 
-LONGEST_PERIOD = 60
-"""Turns of the input beyond which a line counts as having no common period."""
-
-
 def topology(line: Driveline) -> Topology:
     """Sort the elements of ``line`` into stations, groups and compliances.
 
@@ -244,7 +240,7 @@ def topology(line: Driveline) -> Topology:
     InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
         no inertia at all.
     """
-    return _merge_massless(line, _walk(line))
+    return _merge_massless(line, stations_of(line))
 
 
 def require_period(line: Driveline, topo: Topology) -> Fraction:
@@ -288,70 +284,77 @@ def _fixed(numbers: list[float]) -> Array:
     return found
 
 
-def common_rate(rates: Iterable[Fraction]) -> Fraction:
-    """The greatest common divisor of some rates."""
-    base = Fraction(0)
-    for rate in rates:
-        while rate:
-            base, rate = rate, base % rate
-    return base
-
-
 @dataclass
-class _Draft:
-    stations: list[Station]
-    compliances: list[Compliance]
-    reference: list[int]
-    prescribed: list[bool]
-    disks: list[tuple[int, int]]
-    tube_ends: list[tuple[int, int]]
-    speed_ratio: list[Fraction]
+class LineStations:
+    """What the elements of a line come to, in order: its stations with their exact speeds over the input's, and the one
+    ``behind`` each element; the springs between groups, the first station of each group and whether its rotation is
+    prescribed; disks and ends of tubes as (station, element)."""
 
-    def add(self, before: int, link: Link, element: int, ratio: Fraction, orders: tuple[int, ...] = ()) -> int:
+    stations: list[Station] = field(default_factory=list)
+    speed_ratio: list[Fraction] = field(default_factory=list)
+    behind: list[int] = field(default_factory=list)
+    compliances: list[Compliance] = field(default_factory=list)
+    reference: list[int] = field(default_factory=list)
+    prescribed: list[bool] = field(default_factory=list)
+    disks: list[tuple[int, int]] = field(default_factory=list)
+    tube_ends: list[tuple[int, int]] = field(default_factory=list)
+
+    def add(self, before: int, link: Link, element: int, ratio: Fraction, **joint: Any) -> int:
         if link in (Link.ROOT, Link.SHAFT):
             group = len(self.reference)
             self.reference.append(len(self.stations))
             self.prescribed.append(False)
         else:
             group = self.stations[before].group
-        self.stations.append(Station(before, link, element, group, orders))
+        self.stations.append(Station(before, link, element, group, **joint))
         self.speed_ratio.append(ratio)
         return len(self.stations) - 1
 
 
-def _walk(line: Driveline) -> _Draft:
-    draft = _Draft([], [], [], [], [], [], [])
-    behind: list[int] = []
+def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
+    """The one walk along the elements of ``line``, from the input through all branches.
+
+    ``even``: joints that pass rotation unchanged have stations too, for what turns about their axes.
+
+    Raises
+    ------
+    InputError : what is not an element of a driveline.
+    """
+    found, planes = LineStations(), list[tuple[tuple[int, float], ...]]()
     for i, element in enumerate(line.elements):
         parent = line.parents[i]
-        here = draft.add(-1, Link.ROOT, i, Fraction(1)) if parent is None else behind[parent]
-        ratio = draft.speed_ratio[here]
+        here = found.add(-1, Link.ROOT, i, Fraction(1)) if parent is None else found.behind[parent]
+        ratio, turned = found.speed_ratio[here], () if parent is None else planes[parent]
         if isinstance(element, ConstantSpeed):
-            draft.prescribed[draft.stations[here].group] = True
+            found.prescribed[found.stations[here].group] = True
         elif isinstance(element, Disk):
-            draft.disks.append((here, i))
+            found.disks.append((here, i))
         elif isinstance(element, Spring | PiecewiseShaft | GearPair):
             near = here
             if isinstance(element, GearPair):
                 # The output gear where a rigid mesh would hold it, and behind the mesh where it is.
                 ratio /= element.fraction
-                near = draft.add(here, Link.RATIO, i, ratio)
-            here = draft.add(near, Link.SHAFT, i, ratio)
-            draft.compliances.append(Compliance(near, draft.stations[here].group, (i,)))
+                near = found.add(here, Link.RATIO, i, ratio)
+                turned = tuple((joint, by * element.speed_ratio) for joint, by in turned)
+            here = found.add(near, Link.SHAFT, i, ratio)
+            found.compliances.append(Compliance(near, found.stations[here].group, (i,)))
             if isinstance(element, Spring) and element.moment_of_inertia:
-                draft.tube_ends += [(near, i), (here, i)]
+                found.tube_ends += [(near, i), (here, i)]
         elif isinstance(element, Ratio):
-            here = draft.add(here, Link.RATIO, i, ratio / element.fraction)
+            here = found.add(here, Link.RATIO, i, ratio / element.fraction)
+            turned = tuple((joint, by * element.speed_ratio) for joint, by in turned)
         elif isinstance(element, Joint):
-            if element.orders:
-                here = draft.add(here, Link.JOINT, i, ratio, element.orders)
+            if element.orders or even:
+                here = found.add(here, Link.JOINT, i, ratio, orders=element.orders, planes=turned)
+            turned = () if element.orders else (*turned, (i, 1.0))
         else:
             raise InputError("is not an element of a driveline", element=line.names[i])
-        behind.append(here)
-    return draft
+        found.behind.append(here)
+        planes.append(turned)
+    return found
 
 
-def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
+def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
     """Join massless shafts in series and number the unknowns; refuse points that nothing can accelerate."""
     heavy = {draft.stations[s].group for s, _ in draft.disks + draft.tube_ends}
     heavy |= {g for g, fixed in enumerate(draft.prescribed) if fixed}
@@ -378,21 +381,14 @@ def _merge_massless(line: Driveline, draft: _Draft) -> Topology:
         count += unknown
     names = _names(line, draft, coordinate)
     return Topology(
-        tuple(draft.stations),
-        tuple(compliances),
-        tuple(draft.reference),
-        tuple(coordinate),
-        tuple(draft.prescribed),
-        tuple(draft.disks),
-        tuple(draft.tube_ends),
-        tuple(draft.speed_ratio),
-        tuple(names),
-        tuple(_meshes(line, draft, compliances)),
-        tuple(_points(line, draft, coordinate, names)),
-    )
+        stations=tuple(draft.stations), compliances=tuple(compliances), reference=tuple(draft.reference),
+        coordinate=tuple(coordinate), prescribed=tuple(draft.prescribed), disks=tuple(draft.disks),
+        tube_ends=tuple(draft.tube_ends), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
+        meshes=tuple(_meshes(line, draft, compliances)), points=tuple(_points(line, draft, coordinate, names)),
+    )  # fmt: skip
 
 
-def _points(line: Driveline, draft: _Draft, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:
+def _points(line: Driveline, draft: LineStations, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:
     """Disks that move unevenly, held ones behind a joint among them, and the first ends of tubes without a disk."""
     found = [
         (s, line.names[i])
@@ -404,7 +400,7 @@ def _points(line: Driveline, draft: _Draft, coordinate: list[int], names: list[s
     return sorted(found, key=lambda point: point[0])
 
 
-def _meshes(line: Driveline, draft: _Draft, compliances: list[Compliance]) -> Iterable[Mesh]:
+def _meshes(line: Driveline, draft: LineStations, compliances: list[Compliance]) -> Iterable[Mesh]:
     for e, compliance in enumerate(compliances):
         i = compliance.shafts[0]
         element = line.elements[i]
@@ -426,7 +422,7 @@ def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:
             )  # fmt: skip
 
 
-def _bare(line: Driveline, draft: _Draft, group: int) -> InputError:
+def _bare(line: Driveline, draft: LineStations, group: int) -> InputError:
     """What refuses a group that nothing can accelerate."""
     tied = [s.element for s in draft.stations if s.group == group and s.link in TIED]
     element = line.names[tied[0] if tied else draft.stations[draft.reference[group]].element]
@@ -439,7 +435,7 @@ def _bare(line: Driveline, draft: _Draft, group: int) -> InputError:
     return InputError(problem, element=element, remedy=remedy)
 
 
-def _names(line: Driveline, draft: _Draft, coordinate: list[int]) -> list[str]:
+def _names(line: Driveline, draft: LineStations, coordinate: list[int]) -> list[str]:
     """A name per unknown: the first disk of its group, or the shaft end that carries it."""
     named = {draft.stations[s].group: f"end of {line.names[i]}" for s, i in reversed(draft.tube_ends)}
     named |= {draft.stations[s].group: line.names[i] for s, i in reversed(draft.disks)}

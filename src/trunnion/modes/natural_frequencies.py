@@ -3,41 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Flags
+from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import frequencies, loaded_matrices, rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import left_out
 from trunnion.modes.damped_modes import LineModes, line_modes
-from trunnion.results.declared import Held, Result, axis, fields_over, over
 from trunnion.results.drawing import Figure, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import four_figures, show_speed, speed_factor
+from trunnion.results.result import Result
+from trunnion.results.words import HERTZ, Words
 
 ALIKE = 5e-4
 """Share by which damped and undamped frequencies may differ before a sentence gives both."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class NaturalFrequencies(Result):
     """Modes of the aligned line as it is damped, beside the undamped ones, by whose frequency they are numbered.
 
-    undamped_frequency (mode,) [rad/s], ascending, 0 of the rigid body; names (rotation,); ``rigid_body`` tells that
-    mode 1 is the free rotation of the whole line. Everything else follows when it is asked for: ``eigenvalue``,
-    ``frequency``, ``damping_ratio``, ``decay_rate``, ``shape``, and ``findings``, which say what of the line is left
-    out. Eigenvalues hold to rounding, 1e-12 of the highest frequency or damping rate.
+    What is not a field follows when it is asked for. Eigenvalues hold to rounding, 1e-12 of the highest frequency or
+    damping rate.
     """
 
-    undamped_frequency: Array
-    names: tuple[str, ...]
-    rigid_body: bool
-    assembly: Assembly
+    names: tuple[str, ...] = coordinate("rotation")
+    undamped_frequency: Array = variable("mode", "rad/s", "undamped, ascending, 0 of the rigid body")
+    rigid_body: bool = internal("whether mode 1 is the free rotation of the whole line")
+    assembly: Assembly = internal("of the line")
+    unit: str = internal("that frequencies are printed in, beside Hz")
+
+    @property
+    @computed(coordinate("mode"), after="names")
+    def mode(self) -> Integers:
+        """Numbers of the modes (mode,), 1 first."""
+        return np.arange(1, len(self.undamped_frequency) + 1)
 
     @cached_property
     def eigenvalue(self) -> Complex:
@@ -45,11 +50,13 @@ class NaturalFrequencies(Result):
         return self.modes.eigenvalue
 
     @property
+    @computed(variable("mode", "rad/s", "damped"), after="names")
     def frequency(self) -> Array:
         """Damped frequency ω_d = Im λ of each mode (mode,) [rad/s]; NaN of an overdamped mode, 0 of the rigid body."""
         return np.where(self.overdamped, np.nan, self.eigenvalue[:, 0].imag)
 
     @property
+    @computed(variable("mode", "1"))
     def damping_ratio(self) -> Array:
         """ζ = −Re λ/|λ| of each mode (mode,) [1]; NaN of an overdamped mode, 0 of the rigid body."""
         first, size = self.eigenvalue[:, 0], np.abs(self.eigenvalue[:, 0])
@@ -57,6 +64,7 @@ class NaturalFrequencies(Result):
         return np.where(self.overdamped, np.nan, ratio + 0.0)
 
     @property
+    @computed(variable("mode root", "1/s", "of both eigenvalues"))
     def decay_rate(self) -> Array:
         """−Re λ (mode, root) [1/s]: motion dies out with e^(−rate · t); twice the same for a mode that oscillates."""
         return np.asarray(0.0 - self.eigenvalue.real)
@@ -74,6 +82,7 @@ class NaturalFrequencies(Result):
         return line_modes(*_matrices(self.assembly), _rigid(self.assembly) if self.rigid_body else None)
 
     @cached_property
+    @computed(variable("rotation mode", "1", "undamped mode shape"))
     def shape(self) -> Array:
         """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
         mass = self.assembly.aligned.mass[0]
@@ -96,18 +105,9 @@ class NaturalFrequencies(Result):
         """Undamped frequencies without the rigid-body mode [rad/s]."""
         return self.undamped_frequency[int(self.rigid_body) :]
 
-    def declared(self) -> Iterator[Held]:
-        """Frequencies, damping ratio and decay over the modes, mode shapes over (rotation, mode)."""
-        yield axis("mode", np.arange(1, len(self.undamped_frequency) + 1))
-        yield axis("rotation", self.names)
-        yield over("mode", "frequency", self.frequency, "rad/s", "damped")
-        yield from fields_over("mode", self, undamped_frequency="rad/s", damping_ratio="1")
-        yield over("mode root", "decay_rate", self.decay_rate, "1/s", "of both eigenvalues")
-        yield over("rotation mode", "shape", self.shape, "1", "undamped mode shape")
-
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:
         """One row per mode, frequencies in ``unit``; what dies out without oscillating and what moves most named."""
-        factor = speed_factor(unit)
+        factor = Words(unit).factor
         still = any(self.overdamped)
         return [
             {
@@ -128,18 +128,17 @@ class NaturalFrequencies(Result):
         """How an overdamped mode dies out; "" of others."""
         if not self.overdamped[mode]:
             return ""
-        slow, fast = (four_figures(rate) for rate in self.decay_rate[mode])
+        slow, fast = (self.words.number(rate) for rate in self.decay_rate[mode])
         return f"decays at {slow} and {fast} 1/s"
 
     def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
         """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
         return drawing(self, "plot")(self, unit=unit, drive=drive)
 
-    def __str__(self) -> str:
+    def _lines(self) -> Iterator[str]:
         many = len(self.undamped_frequency)
-        lines = [f"{many} natural frequencies of the aligned line (joint angles zero)"]
-        lines += [f"  mode {i + 1}: {self._said(i)}" for i in range(many)]
-        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+        yield f"{many} natural frequencies of the aligned line (joint angles zero)"
+        yield from (f"  mode {i + 1}: {self._said(i)}" for i in range(many))
 
     def _said(self, mode: int) -> str:
         if self._rigid(mode):
@@ -152,9 +151,8 @@ class NaturalFrequencies(Result):
         return f"{self._shown(frequency)}, damping ratio {ratio:.3g}{f'; undamped {undamped}' if apart else ''}"
 
     def _shown(self, frequency: float) -> str:
-        unit = speed_unit(self.assembly.line)
-        first = "" if unit == "Hz" else f"{show_speed(frequency, unit)} = "
-        return f"{first}{show_speed(frequency, 'Hz')}"
+        words = self.words
+        return f"{'' if words.unit == 'Hz' else f'{words.speed(frequency)} = '}{HERTZ.speed(frequency)}"
 
 
 def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
@@ -169,7 +167,7 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     assembly = assemble(line)
     topo = assembly.topology
     found = frequencies(assembly.aligned, free=topo.free)[0]
-    return NaturalFrequencies(found, topo.names, topo.free, assembly)
+    return NaturalFrequencies(topo.names, found, topo.free, assembly, speed_unit(assembly.line))
 
 
 def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:

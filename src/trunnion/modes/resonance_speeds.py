@@ -22,19 +22,17 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations
 
-import numpy as np
-
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.topology import common_rate
 from trunnion.errors import InputError
 from trunnion.features import left_out
+from trunnion.laws.harmonic import common_rate
 from trunnion.modes.natural_frequencies import natural_frequencies
-from trunnion.results.declared import Described, Held, axis, members_over, over, remark
+from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.result import Result
 from trunnion.results.units import figures
 
 MOST_READABLE = 4
@@ -42,23 +40,23 @@ MOST_READABLE = 4
 _SUBSCRIPT = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
-@dataclass(frozen=True)
+@labelled
 class Resonance:
-    """A resonance speed [rad/s], its kind, modes (numbered from 1), order k and exciting speed ratio |R|.
+    """A resonance speed.
 
-    A mesh excites as a Hooke's joint at half its teeth per turn of the input would, a tripod as one at 3/2 R;
-    ``mesh`` is the name of the mesh, empty for joints.
+    A mesh excites as a Hooke's joint at half its teeth per turn of the input would, a tripod as one at 3/2 R.
     What ``stability`` calls a divergence, one mode pushed aside without oscillating, has neither speed (nan) nor order.
     """
 
-    speed: float
-    kind: str
-    modes: tuple[int, ...]
-    order: int
-    rate: Fraction = Fraction(1)
-    mesh: str = ""
+    speed: float = variable("", "rad/s", "of the input")
+    kind: str = variable(words="harmonic, subharmonic, sum or difference")
+    modes: tuple[int, ...] = internal("numbered from 1")
+    order: int = variable(words="k")
+    rate: Fraction = internal("speed ratio |R| of what excites", default=Fraction(1))
+    mesh: str = variable(words="gear mesh that excites; empty for joints", default="")
 
     @property
+    @computed(variable(words="unloaded line can be unstable there"))
     def opens(self) -> bool:
         """Whether an unloaded line can be unstable there at all."""
         return self.kind != "difference"
@@ -90,18 +88,23 @@ class Resonance:
             return f"divergence of the mode at {self.formula}, which grows without oscillating"
         return f"{self.kind} resonance {self.label}"
 
-    def __str__(self) -> str:
+    @property
+    def name(self) -> str:
+        """ "sum (ω₁+ω₂)/2"."""
         return f"{self.kind} {self.label}"
 
+    def __str__(self) -> str:
+        return self.name
 
-@dataclass(frozen=True, repr=False)
-class ResonanceSpeeds(Described):
-    """Resonances by ascending speed; ``findings`` say what of the line is left out; unit: that of printed speeds."""
 
-    resonances: tuple[Resonance, ...]
-    orders: int
-    findings: tuple[Finding, ...] = ()
-    unit: str = "rad/s"
+@labelled
+class ResonanceSpeeds(Result):
+    """Resonances by ascending speed."""
+
+    resonances: tuple[Resonance, ...] = members(Resonance, "resonance", name="name")
+    orders: int = attribute("up to which they are named")
+    findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
+    unit: str = internal("of printed speeds", default="rad/s")
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         return iter(self.resonances)
@@ -109,23 +112,12 @@ class ResonanceSpeeds(Described):
     def __len__(self) -> int:
         return len(self.resonances)
 
-    def declared(self) -> Iterator[Held]:
-        """Speed, kind, order, exciting mesh of every resonance, and whether it can open."""
-        rows = self.resonances
-        yield axis("resonance", [str(r) for r in rows])
-        yield from members_over("resonance", rows, speed="rad/s", kind="", order="")
-        yield over("resonance", "mesh", [r.mesh for r in rows], about="gear mesh that excites; empty for joints")
-        opens = np.array([r.opens for r in rows], dtype=np.int8)
-        yield over("resonance", "opens", opens, about="unloaded line can be unstable there")
-        yield remark("orders", self.orders)
-
     def table(self, unit: str | None = None) -> list[dict[str, object]]:
         """One row per resonance, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        factor = speed_factor(unit)
+        words = self.in_unit(unit).words
         return [
             {
-                f"speed [{unit}]": r.speed * factor,
+                f"speed [{words.unit}]": r.speed * words.factor,
                 "kind": r.kind,
                 "formula": r.label,
                 "can open": "yes" if r.opens else "no",
@@ -137,14 +129,13 @@ class ResonanceSpeeds(Described):
         """Those between two input speeds [rad/s]."""
         return replace(self, resonances=tuple(r for r in self.resonances if low <= r.speed <= high))
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit, said = unit or self.unit, [f"  {finding}" for finding in self.findings]
+    def _lines(self) -> Iterator[str]:
         if not self.resonances:
-            none = "no parametric resonance speeds: the line has no bent joint or varying mesh, or no elastic mode"
-            return "\n".join([none, *said])
-        rows = [f"  {show_speed(r.speed, unit)}  {r}{'' if r.opens else ' (cannot open unloaded)'}" for r in self]
-        return "\n".join([f"{len(rows)} resonance speeds up to order {self.orders}", *rows, *said])
+            yield "no parametric resonance speeds: the line has no bent joint or varying mesh, or no elastic mode"
+            return
+        yield f"{len(self)} resonance speeds up to order {self.orders}"
+        for one in self:
+            yield f"  {self.words.speed(one.speed)}  {one}{'' if one.opens else ' (cannot open unloaded)'}"
 
 
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from trunnion.arrays import Array
 from trunnion.driveline.operation import Operation
 from trunnion.plots.over_speed import over_speed
 from trunnion.plots.resonance_marks import spread
 from trunnion.plots.style import FAINT, INK, SMALL, VERMILION, key_below, new_axes
-from trunnion.response.campbell_diagram import CampbellDiagram
+from trunnion.response.campbell_diagram import CampbellDiagram, ExcitationLine
 from trunnion.results.speeds import speed_factor
 
 BAND = "#dde6ee"
@@ -42,9 +43,9 @@ def draw(
         axes.fill_between(speed * x, low, high, color=BAND, lw=0, zorder=1, label=around)
         axes.plot(speed * x, w * y, color=INK, lw=1.3, zorder=3, label=None if m else "mode")
     for i, line in enumerate(result.lines):
-        ends = line.order * speed[[0, -1]] + line.frequency
+        at = _ends(result, line)
         label = None if i else "excitation"
-        axes.plot(speed[[0, -1]] * x, ends * y, color=VERMILION, lw=1.2, zorder=2, label=label)
+        axes.plot(at * x, line.at(at) * y, color=VERMILION, lw=1.2, zorder=2, label=label)
     for i, c in enumerate(result.crossings):
         if c.frequency <= top:
             size = 5 + 2.2 * min(np.log2(max(c.amplification, 1.0)), 6.0)
@@ -63,22 +64,28 @@ def draw(
 def _top(result: CampbellDiagram) -> float:
     crossed = [c.frequency for c in result.crossings]
     lowest = float(np.nanmin(result.frequency)) if np.any(np.isfinite(result.frequency)) else float(result.speed[-1])
-    reach = max((line.order * result.speed[-1] + line.frequency for line in result.lines), default=lowest)
+    reach = max((float(line.at(result.speed[-1])) for line in result.lines), default=lowest)
     return HEADROOM * max([lowest, *crossed]) if crossed else 1.06 * max(lowest, min(reach, HEADROOM * lowest))
+
+
+def _ends(result: CampbellDiagram, line: ExcitationLine) -> Array:
+    """Speeds [rad/s] between which an excitation is a straight line: the range, and where it stands still within it."""
+    low, high = result.speed[[0, -1]]
+    return np.array([low, line.standstill, high] if low < line.standstill < high else [low, high])
 
 
 def _name_lines(axes: Axes, result: CampbellDiagram, top: float, x: float, y: float) -> None:
     """Each line's name near where it leaves the picture, lines of one slope together."""
     for line in result.lines:
-        end = float(result.speed[-1])
-        if line.order and line.order * end + line.frequency > top:
-            end = (top - line.frequency) / line.order
-        if end <= result.speed[0]:
+        begin, end = map(float, _ends(result, line)[-2:])
+        if line.order and line.at(end) > top:
+            end = line.standstill + top / abs(line.order)
+        at = begin + 0.93 * (end - begin)
+        if end <= begin or (line.order and line.at(at) > top):
             continue
-        at = result.speed[0] + 0.93 * (end - result.speed[0])
         text = line.name.removeprefix("order ") if not line.frequency else line.name
         axes.annotate(
-            text, (at * x, (line.order * at + line.frequency) * y), fontsize=SMALL, color=VERMILION, ha="center",
+            text, (at * x, float(line.at(at)) * y), fontsize=SMALL, color=VERMILION, ha="center",
             va="center", bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0}, zorder=6,
         )  # fmt: skip
 

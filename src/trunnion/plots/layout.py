@@ -22,7 +22,7 @@ from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.laws.hooke import QUARTER_TURN
 from trunnion.plots.style import COLOURS, FAINT, INK, SMALL, TEXT, head, new_figure, through
-from trunnion.response.kinetostatics.chain import Chain, Link, chain
+from trunnion.response.kinetostatics.chain import Chain, chain
 from trunnion.response.kinetostatics.frames import member_frames, turned_about_axis
 from trunnion.response.kinetostatics.motion import drive_jet, walk
 
@@ -166,7 +166,7 @@ def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array
         e, u, v = turned_about_axis(frames[train.steps[step.parent].member], step.plane)
         e2, u2, v2 = frames[step.member]
         arms = None
-        if step.link is Link.HOOKE:
+        if step.cross:
             chi, behind = motion.chi[j][0][0], motion.passed[j][0][0] + QUARTER_TURN
             arms = (np.cos(chi) * u + np.sin(chi) * v, np.cos(behind) * u2 + np.sin(behind) * v2)
         drawn.append(_Joint(step.name, centre, e, e2, v, arms, step.angle))

@@ -15,8 +15,8 @@ from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.errors import InputError
 from trunnion.plots.over_speed import hatched, over_speed
 from trunnion.plots.style import INK, PATTERNS, TEXT, curve_style, key_below, new_axes, printed
-from trunnion.response.orders.result import OrderResponse, order_name
-from trunnion.results.speeds import speed_factor
+from trunnion.response.orders.result import OrderResponse
+from trunnion.results.speeds import order_name, speed_factor
 from trunnion.results.units import angle_words
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 

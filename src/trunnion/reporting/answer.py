@@ -42,6 +42,7 @@ from trunnion.reporting.overview_findings import (
 from trunnion.reporting.ranges import speed_range
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, time_is_up
 
 NEARLY = 0.1
@@ -111,7 +112,7 @@ def judged(of: Asked) -> Judged:
 
 def answer(of: Judged) -> Answer:
     """What an engineer asks next: what lies just beyond the range, which resonances stand in it, what else binds."""
-    line, assembly, unit, speed, (low, high) = of.line, of.assembly, of.unit, of.speed, of.speed_range
+    line, assembly, words, speed, (low, high) = of.line, of.assembly, Words(of.unit), of.speed, of.speed_range
     every = resonance_speeds(assembly)
     here = every.within(low, high)
     along = _along(of.subject.cases[0])
@@ -120,12 +121,12 @@ def answer(of: Judged) -> Answer:
         *check_findings(of.assessment),
         *of.assessment.findings,
         *beyond_findings(of.subject, of.assessment),
-        *(along_findings(assembly, along, unit) if along else ()),
+        *(along_findings(assembly, along, words) if along else ()),
         *line_findings(line, speed),
-        *resonance_findings(here, (low, high), speed, unit),
-        *(() if lossy(assembly) else response_findings(assembly, every, (low, high), unit)),
-        *(slow_findings(high, slowest, unit) if joints and high <= slowest else ()),
-        *(free_findings(assembly, along, unit) if joints and assembly.topology.free and not lossy(assembly) else ()),
+        *resonance_findings(here, (low, high), speed, words),
+        *(() if lossy(assembly) else response_findings(assembly, every, (low, high), words)),
+        *(slow_findings(high, slowest, words) if joints and high <= slowest else ()),
+        *(free_findings(assembly, along, words) if joints and assembly.topology.free and not lossy(assembly) else ()),
         *remark_findings(line),
     ]
     return Answer(

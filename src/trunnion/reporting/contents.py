@@ -26,7 +26,7 @@ from trunnion.response.kinetostatics import kinetostatics
 from trunnion.response.kinetostatics.result import Kinetostatics
 from trunnion.response.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import rounded_speed
+from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, time_kept
 
 Found = TypeVar("Found")
@@ -147,7 +147,7 @@ def _limit_findings(limit: StableLimit, seen: Overview) -> Iterator[Finding]:
     at = limit.critical_speed
     if at is None:
         return
-    where = rounded_speed(at, seen.unit)
+    where = Words(seen.unit).rounded(at)
     if np.any(limit.kind == LimitKind.AT_ONCE):
         start = f"{np.rad2deg(limit.low):.3g}°"
         yield Finding(Gravity.DANGER, f"Even at {start} in all joints the line is unstable, at {where}.")
@@ -166,7 +166,7 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> Iterator[Finding]:
         return
     trusted = np.where(sweep.linear[:, None], sweep.torque_amplitude, np.nan)
     i, j = np.unravel_index(int(np.nanargmax(trusted)), trusted.shape)
-    at, most = rounded_speed(float(sweep.speed[i]), seen.unit), float(f"{trusted[i, j]:.3g}")
+    at, most = Words(seen.unit).rounded(float(sweep.speed[i])), float(f"{trusted[i, j]:.3g}")
     yield Finding(
         Gravity.NOTE,
         f"Where linear theory holds, torques swing by up to ±{most:.10g} N*m, in {sweep.shafts[j]} at {at}.",

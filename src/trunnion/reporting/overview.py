@@ -26,6 +26,7 @@ from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.chart import StabilityChart
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime
 
 ALL_ANGLES = "HookeJoint *.angle"
@@ -125,7 +126,7 @@ def charted(
     except OutOfTime as error:
         left = Finding(Gravity.NOTE, f"The stability chart was not computed: {error.why}; ask stability-chart for it.")
         return replace(seen, findings=by_gravity([*seen.findings, left]))
-    return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, seen.unit)]))
+    return replace(seen, chart=chart, findings=by_gravity([*seen.findings, *chart_findings(chart, Words(seen.unit))]))
 
 
 def _has_borders(seen: Overview) -> bool:

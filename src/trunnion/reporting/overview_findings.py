@@ -12,15 +12,15 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import quiet
+from trunnion.equations.harmonics import unexcited
 from trunnion.equations.steady_base import bent
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.along import StabilityAlong
 from trunnion.modes.resonance_speeds import ResonanceSpeeds
 from trunnion.response.speed_sweep import speed_sweep
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import about_speed, rounded_span, rounded_speed, speed_factor
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime
 
 if TYPE_CHECKING:
@@ -34,13 +34,12 @@ RAISED = 2.0
 """Times the usual torque of the range from which a resonance is grave enough to be named."""
 
 
-def slow_findings(high: float, slowest: float, unit: str) -> Iterator[Finding]:
+def slow_findings(high: float, slowest: float, words: Words) -> Iterator[Finding]:
     """Why no chart is drawn for a line that turns far below its natural frequencies."""
-    factor = speed_factor(unit)
     yield Finding(
         Gravity.NOTE,
-        f"The line runs at no more than {high * factor:.4g} {unit} and follows its joints statically there: below "
-        f"{slowest * factor:.4g} {unit} a turn spans hundreds of cycles of its highest mode, resonances of such "
+        f"The line runs at no more than {words.rounded(high)} and follows its joints statically there: below "
+        f"{words.rounded(slowest)} a turn spans hundreds of cycles of its highest mode, resonances of such "
         "high order stay closed, and no chart is drawn.",
     )
 
@@ -69,9 +68,9 @@ def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
         yield Finding(Gravity.NOTE, f"The line has no Hooke's joint, {why}.")
 
 
-def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iterator[Finding]:
+def along_findings(assembly: Assembly, found: StabilityAlong, words: Words) -> Iterator[Finding]:
     """Stability over the range at the design angles: each unstable band with the resonance it belongs to."""
-    whole = f"from {rounded_span(found.speed[0], found.speed[-1], unit)}"
+    whole = f"from {words.span(found.speed[0], found.speed[-1])}"
     checked = f"{len(found.speed)} speeds, the named resonance speeds among them"
     bands = runs(found.verdict == Verdict.UNSTABLE)
     for first, last in bands:
@@ -81,10 +80,10 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
 
         there = stability(assembly, float(found.speed[worst]))
         cause = f" ({there.resonance.in_words})" if there.resonance else ""
-        edges = f"from {rounded_span(found.speed[first], found.speed[last], unit)}"
-        at = f"worst at {rounded_speed(there.speed, unit)}, where"
+        edges = f"from {words.span(found.speed[first], found.speed[last])}"
+        at = f"worst at {words.rounded(there.speed)}, where"
         if first == last:
-            edges, at = f"at {rounded_speed(there.speed, unit)}", "there"
+            edges, at = f"at {words.rounded(there.speed)}", "there"
         yield Finding(
             Gravity.DANGER,
             f"At its own joint angles the line is unstable {edges}{cause}; {at} a disturbance doubles "
@@ -95,7 +94,7 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
         yield Finding(
             Gravity.NOTE,
             f"At its own joint angles the line is stable {whole} ({checked}; disturbances decay slowest at "
-            f"{rounded_speed(float(found.speed[worst]), unit)}, by {-found.growth_rate[worst]:.3g} 1/s).",
+            f"{words.rounded(float(found.speed[worst]))}, by {-found.growth_rate[worst]:.3g} 1/s).",
         )
     elif not bands and np.all(found.verdict == Verdict.MARGINAL):
         yield Finding(Gravity.NOTE, f"The line has no damping; no disturbance grows {whole} ({checked}).")
@@ -103,7 +102,7 @@ def along_findings(assembly: Assembly, found: StabilityAlong, unit: str) -> Iter
 
 
 def resonance_findings(
-    here: ResonanceSpeeds, limits: tuple[float, float], speed: float | None, unit: str
+    here: ResonanceSpeeds, limits: tuple[float, float], speed: float | None, words: Words
 ) -> Iterator[Finding]:
     """How many resonances lie in the range and how near the operating speed is to one that can open."""
     able = [r for r in here if r.opens]
@@ -111,7 +110,7 @@ def resonance_findings(
         return
     many, one = ("s", "") if len(able) > 1 else ("", "s")
     count = f"{len(able)} resonance speed{many} that can open (up to order {here.orders})"
-    within = f"between {rounded_span(*limits, unit, 'and')}"
+    within = f"between {words.span(*limits, 'and')}"
     if speed is None:
         yield Finding(Gravity.NOTE, f"{count} lie{one} {within}.")
         return
@@ -121,12 +120,12 @@ def resonance_findings(
     yield Finding(
         Gravity.CAUTION if abs(distance) < NEAR else Gravity.NOTE,
         f"{count} lie{one} {within}; nearest to the operating speed is the {nearest.in_words} at "
-        f"{rounded_speed(nearest.speed, unit)}, {100 * abs(distance):.2g} % {side} it.",
+        f"{words.rounded(nearest.speed)}, {100 * abs(distance):.2g} % {side} it.",
     )
 
 
 def response_findings(
-    assembly: Assembly, named: ResonanceSpeeds, limits: tuple[float, float], unit: str
+    assembly: Assembly, named: ResonanceSpeeds, limits: tuple[float, float], words: Words
 ) -> Iterator[Finding]:
     """The resonance of the joints' own forcing, 2|R|Ω = ω, that raises a torque most within the range.
 
@@ -140,7 +139,7 @@ def response_findings(
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
     try:
-        sweep = speed_sweep(quiet(assembly.line), np.concatenate([places, usual]))
+        sweep = speed_sweep(unexcited(assembly.line), np.concatenate([places, usual]))
     except (InputError, ComputationError, OutOfTime):  # without a linear response, which the checks say
         return
     torque = sweep.torque_amplitude[: len(places)]
@@ -152,18 +151,18 @@ def response_findings(
     r, at = forced[which], float(places[which])
     outside = max(r.speed / high, low / r.speed) - 1
     side = f", {100 * outside:.2g} % {'above' if r.speed > high else 'below'} the range" if outside > 0 else ""
-    said = f"Joints force {r.formula} at {rounded_speed(r.speed, unit)}{side}"
+    said = f"Joints force {r.formula} at {words.rounded(r.speed)}{side}"
     if not sweep.linear[which]:
-        words = f"{said}. Resonance at {about_speed(at, unit)}; do not use this amplitude: it is beyond linear theory."
+        said = f"{said}. Resonance at {words.about(at)}; do not use this amplitude: it is beyond linear theory."
     else:
-        words = (
+        said = (
             f"{said}: the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
-            f"{rounded_speed(at, unit)}, {raised[which, shaft]:.2g} times its median over the range."
+            f"{words.rounded(at)}, {raised[which, shaft]:.2g} times its median over the range."
         )
-    yield Finding(Gravity.CAUTION, words)
+    yield Finding(Gravity.CAUTION, said)
 
 
-def free_findings(assembly: Assembly, along: StabilityAlong | None, unit: str) -> Iterator[Finding]:
+def free_findings(assembly: Assembly, along: StabilityAlong | None, words: Words) -> Iterator[Finding]:
     """Why a bent line that starts free has no chart."""
     if bent(assembly):
         how = "" if along else ", found speed by speed"
@@ -179,7 +178,7 @@ def remark_findings(line: Driveline) -> Iterator[Finding]:
         yield Finding(Gravity.CAUTION, sentence)
 
 
-def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
+def chart_findings(chart: StabilityChart, words: Words) -> Iterator[Finding]:
     """The smallest common joint angle at which anything in the range is unstable."""
     rows = np.flatnonzero(np.any(chart.verdict == Verdict.UNSTABLE, axis=1))
     top = np.rad2deg(chart.y[-1])
@@ -190,7 +189,7 @@ def chart_findings(chart: StabilityChart, unit: str) -> Iterator[Finding]:
         yield Finding(
             Gravity.CAUTION,
             "With all joints at one angle, the first unstable point of the chart is at "
-            f"{np.rad2deg(chart.y[row]):.3g}° and {rounded_speed(float(chart.x[column]), unit)}; "
+            f"{np.rad2deg(chart.y[row]):.3g}° and {words.rounded(float(chart.x[column]))}; "
             f"{100 * chart.unstable_share:.2g} % of the chart is unstable.",
         )
     else:

@@ -23,7 +23,8 @@ from trunnion.reporting.pictures import Picture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
 from trunnion.results.speeds import frequency_unit as reading_of_frequencies
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.speeds import speed_factor
+from trunnion.results.words import Words
 from trunnion.waiting import to_the_end
 from trunnion.writing import written_whole
 
@@ -133,7 +134,7 @@ def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None)
         "contacts": tables.contacts(contents),
         "bending": tables.bending(contents, unit),
         "stability": _verdict(seen),
-        "at_speed": show_speed(seen.stability.speed, unit) if seen.stability else "",
+        "at_speed": Words(unit).speed(seen.stability.speed) if seen.stability else "",
         "limit": contents.limit,
         "provenance": provenance(contents, source, made),
         "pictures": shown,

@@ -16,8 +16,8 @@ from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, ST
 from trunnion.driveline.shafts import Shaft
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
-from trunnion.results.speeds import four_figures, speed_factor
-from trunnion.results.units import signs
+from trunnion.results.units import figures, signs
+from trunnion.results.words import Words
 
 MOST_RESONANCES = 30
 MOST_CROSSINGS = 30
@@ -57,7 +57,7 @@ def _is_number(text: str) -> bool:
 
 def four(value: float) -> str:
     """Four figures with a true minus sign."""
-    return four_figures(value).replace("-", "−") if np.isfinite(value) else "–"
+    return figures(value).replace("-", "−") if np.isfinite(value) else "–"
 
 
 def elements(line: Driveline) -> Table:
@@ -159,11 +159,11 @@ def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table
     found = contents.campbell.crossings if contents.campbell else ()
     return Table.of(
         {
-            f"input speed [{speed_unit}]": c.speed * speed_factor(speed_unit),
+            f"input speed [{speed_unit}]": c.speed * Words(speed_unit).factor,
             "excitation": c.line.name,
             "by": ", ".join(c.line.causes),
             "mode": c.mode,
-            f"frequency [{frequency_unit}]": c.frequency * speed_factor(frequency_unit),
+            f"frequency [{frequency_unit}]": c.frequency * Words(frequency_unit).factor,
             "amplification": c.amplification,
         }
         for c in found[:MOST_CROSSINGS]
@@ -200,7 +200,7 @@ def resonances(contents: Contents, unit: str) -> Table:
     """Parametric resonance speeds in the range that can open."""
     able = [r for r in contents.overview.resonance_speeds if r.opens]
     return Table.of(
-        {f"input speed [{unit}]": r.speed * speed_factor(unit), "kind": r.kind, "formula": r.label}
+        {f"input speed [{unit}]": r.speed * Words(unit).factor, "kind": r.kind, "formula": r.label}
         for r in able[:MOST_RESONANCES]
     )
 
@@ -226,7 +226,7 @@ def torques(contents: Contents, unit: str) -> Table | None:
             "mean, operating [N·m]": mean,
             "amplitude, operating [N·m]": amplitude,
             "largest amplitude [N·m]": trusted[most, j] if known else np.nan,
-            f"at [{unit}]": sweep.speed[most] * speed_factor(unit) if known else np.nan,
+            f"at [{unit}]": sweep.speed[most] * Words(unit).factor if known else np.nan,
         }
         rows.append(row)
     return Table.of(rows)
@@ -277,8 +277,8 @@ def bending(contents: Contents, unit: str) -> Table:
     return Table.of(
         {
             "tube": b.shaft,
-            f"critical speed of the tube [{unit}]": b.critical_speed * speed_factor(unit),
-            f"of the input [{unit}]": b.input_speed * speed_factor(unit),
+            f"critical speed of the tube [{unit}]": b.critical_speed * Words(unit).factor,
+            f"of the input [{unit}]": b.input_speed * Words(unit).factor,
             "top of the range over it [%]": 100 * high / b.input_speed,
             "E": shown(b.young_modulus, PRESSURE, digits=4)
             + (" (from the shear modulus)" if b.assumed_modulus else ""),
@@ -289,7 +289,7 @@ def bending(contents: Contents, unit: str) -> Table:
 
 def operation(contents: Contents, unit: str) -> Table:
     """Where the line runs."""
-    seen, factor = contents.overview, speed_factor(unit)
+    seen, factor = contents.overview, Words(unit).factor
     low, high = seen.speed_range
     rows = [("speed range", f"{four(low * factor)} to {four(high * factor)} {unit}")]
     if seen.operation.speed:

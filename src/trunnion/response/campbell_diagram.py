@@ -10,7 +10,8 @@ mode jumps, and an order in the gap meets it nowhere.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,21 +20,21 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
-from trunnion.equations.exciters import Exciter, exciters, size
-from trunnion.equations.harmonic_torques import cylinders
+from trunnion.equations.harmonics import DiskTorque, line_harmonics
 from trunnion.equations.steady_base import bent
 from trunnion.errors import InputError
 from trunnion.features import left_out
+from trunnion.laws.harmonic import forward, turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Judged, axis, over, remark
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed
-from trunnion.results.units import amplification_words, order_words
+from trunnion.results.result import Result
+from trunnion.results.speeds import order_name
+from trunnion.results.units import amplification_words
 from trunnion.steady.orders.forced_response import shaft_names
 
 if TYPE_CHECKING:
@@ -43,80 +44,93 @@ MULTIPLES = (1, 2)
 """Of a joint's own orders; the second is weaker by the square of the angle."""
 MARGIN = 0.10
 CANCELLED = 1e-9
-"""Share of what all cylinders would give in step below which an order is cancelled by their firing."""
+"""What all cylinders give together, over one of them, below which an order is cancelled by their firing."""
 CLOSE = 1e-9
 """Share of the speed within which a crossing of a mode that moves is found."""
 
 
-@dataclass(frozen=True)
+@labelled
 class ExcitationLine:
-    """Frequency = order · Ω + frequency [rad/s], and what excites with it.
+    """Frequency = |order · Ω + frequency|, and what excites with it.
 
-    torque [N m]: largest amplitude, over the speeds, of the disks' torques of that order, added up; NaN where none acts
-    (joints, meshes, transmission errors) or a table does not reach all speeds.
+    torque: NaN where none acts (joints, meshes, transmission errors) or a table does not reach all speeds.
     """
 
-    order: float
-    frequency: float
-    causes: tuple[str, ...]
-    torque: float = np.nan
+    order: float = variable("", "1")
+    frequency: float = variable("", "rad/s", name="fixed_frequency")
+    causes: tuple[str, ...] = internal("elements that excite")
+    torque: float = variable("", "N*m", "of disks, the largest", default=np.nan)
+
+    @property
+    @computed(variable("", "1", "elements that excite"))
+    def sources(self) -> int:
+        """How many elements excite."""
+        return len(self.causes)
 
     @property
     def name(self) -> str:
-        """ "order 2", or the frequency of an excitation fixed in time."""
-        return show_speed(self.frequency, "Hz") if self.frequency else order_words(self.order)
+        """ "order 2", "77.7 Hz" of an excitation fixed in time, "77.7 Hz -2 per turn" of one by both."""
+        return order_name(self.order, self.frequency)
 
-
-@dataclass(frozen=True)
-class Crossing:
-    """Where an excitation line meets a mode: input speed and frequency [rad/s], mode by its number, ζ, 1/(2ζ)."""
-
-    speed: float
-    frequency: float
-    mode: int
-    line: ExcitationLine
-    damping_ratio: float
+    def at(self, speed: ArrayLike) -> Array:
+        """Its frequency [rad/s] at input speeds [rad/s]."""
+        return np.abs(turning(self.order, self.frequency, np.asarray(speed)))
 
     @property
+    def standstill(self) -> float:
+        """Input speed [rad/s] at which it turns back up from zero; infinite where no speed moves it."""
+        return -self.frequency / self.order if self.order else np.inf
+
+    def __str__(self) -> str:
+        return self.name
+
+
+@labelled
+class Crossing:
+    """Where an excitation line meets a mode."""
+
+    speed: float = variable("", "rad/s", name="crossing_speed")
+    frequency: float = variable("", "rad/s", name="crossing_frequency")
+    mode: int = variable(name="crossing_mode")
+    line: ExcitationLine = variable(name="crossing_line")
+    damping_ratio: float = internal("ζ", "1")
+
+    @property
+    @computed(variable("", "1", "1/(2ζ)"))
     def amplification(self) -> float:
         """1/(2ζ); infinite without damping."""
         return 1 / (2 * self.damping_ratio) if self.damping_ratio > 0 else np.inf
 
 
-@dataclass(frozen=True, repr=False)
-class CampbellDiagram(Judged):
-    """Modes over speed and what crosses them.
+@labelled
+class CampbellDiagram(Result):
+    """Modes over speed and what crosses them; the first is mode 2 where the line can turn as a whole."""
 
-    speed (speed,) [rad/s]; mode (mode,) numbers, 2 first where the line can turn as a whole; frequency (speed, mode)
-    damped [rad/s] and damping_ratio (speed, mode) [1], NaN where a mode does not oscillate; kinetic (rotation, mode)
-    and potential (spring, mode): shares of the energy at the middle speed; lines: excitations; crossings: by speed;
-    margin: half width of the band about the modes [1]; jumps: speeds [rad/s] at which a mode jumps over an excitation,
-    with its number and that excitation; bent: whether modes are those of joints made straight; remarks: what is left
-    out.
-    """
+    speed: Array = coordinate("speed", "rad/s")
+    mode: Integers = coordinate("mode")
+    frequency: Array = variable("speed mode", "rad/s", "damped")
+    damping_ratio: Array = variable("speed mode", "1", "NaN where a mode does not oscillate")
+    rotations: tuple[str, ...] = coordinate("rotation")
+    springs: tuple[str, ...] = coordinate("spring")
+    kinetic: Array = variable("rotation mode", "1", "share of the kinetic energy, at the middle speed")
+    potential: Array = variable("spring mode", "1", "share of the elastic energy, at the middle speed")
+    lines: tuple[ExcitationLine, ...] = members(
+        ExcitationLine, "excitation_line", name="name", only="order torque sources frequency"
+    )
+    crossings: tuple[Crossing, ...] = members(Crossing, "crossing", "by speed")
+    margin: float = attribute("half width of the band about the modes")
+    jumps: tuple[tuple[float, int, ExcitationLine], ...] = internal("speed [rad/s], mode and excitation it jumps over")
+    bent: bool = internal("whether modes are those of joints made straight")
+    remarks: tuple[Finding, ...] = internal("what is left out")
+    unit: str = internal("of speeds in print")
 
-    speed: Array
-    mode: Integers
-    frequency: Array
-    damping_ratio: Array
-    kinetic: Array
-    potential: Array
-    rotations: tuple[str, ...]
-    springs: tuple[str, ...]
-    lines: tuple[ExcitationLine, ...]
-    crossings: tuple[Crossing, ...]
-    margin: float
-    jumps: tuple[tuple[float, int, ExcitationLine], ...]
-    bent: bool
-    remarks: tuple[Finding, ...]
-    unit: str
-
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``."""
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
         jumps = [
             Finding(
                 Gravity.NOTE,
-                f"Mode {mode} jumps over {line.name} at {show_speed(float(f'{speed:.5g}'), unit)}, where a spring "
+                f"Mode {mode} jumps over {line.name} at {self.words.speed(float(f'{speed:.5g}'))}, where a spring "
                 "changes its stage: on either side of that speed the order is not at resonance.",
             )
             for speed, mode, line in self.jumps
@@ -141,57 +155,30 @@ class CampbellDiagram(Judged):
         for m, number in enumerate(self.mode):
             here = float(np.interp(speed, self.speed, self.frequency[:, m]))
             for line in self.lines:
-                off = (line.order * speed + line.frequency) / here - 1
+                off = float(line.at(speed)) / here - 1
                 if abs(off) <= self.margin:
                     found.append((off, int(number), line))
         return tuple(sorted(found, key=lambda one: abs(one[0])))
 
-    def declared(self) -> Iterator[Held]:
-        """Modes over speed, shares of energy, crossings."""
-        yield axis("speed", self.speed, "rad/s")
-        yield axis("mode", self.mode)
-        yield axis("rotation", self.rotations)
-        yield axis("spring", self.springs)
-        yield axis("excitation_line", [line.name for line in self.lines])
-        yield over("speed mode", "frequency", self.frequency, "rad/s", "damped")
-        yield over("speed mode", "damping_ratio", self.damping_ratio, "1")
-        yield over("rotation mode", "kinetic", self.kinetic, "1", "share of the kinetic energy")
-        yield over("spring mode", "potential", self.potential, "1", "share of the elastic energy")
-        yield over("excitation_line", "order", [line.order for line in self.lines], "1")
-        yield over("excitation_line", "torque", [line.torque for line in self.lines], "N*m", "of disks, the largest")
-        yield over("excitation_line", "sources", [len(line.causes) for line in self.lines], "1", "elements that excite")
-        yield over("excitation_line", "fixed_frequency", [line.frequency for line in self.lines], "rad/s")
-        yield over("crossing", "crossing_speed", [c.speed for c in self.crossings], "rad/s")
-        yield over("crossing", "crossing_frequency", [c.frequency for c in self.crossings], "rad/s")
-        yield over("crossing", "crossing_mode", [c.mode for c in self.crossings])
-        yield over("crossing", "crossing_line", [c.line.name for c in self.crossings])
-        yield over("crossing", "amplification", [c.amplification for c in self.crossings], "1", "1/(2ζ)")
-        yield remark("margin", self.margin)
-
-    def describe(self, unit: str | None = None) -> str:
-        """The modes by what moves, and the crossings, speeds in ``unit``."""
-        unit = unit or self.unit
-        span = f"{show_speed(self.speed[0], unit)} to {show_speed(self.speed[-1], unit)}"
+    def _lines(self) -> Iterator[str]:
         straight = ", joints made straight" if self.bent else ""
         modes, times = counted(len(self.mode), "mode"), counted(len(self.crossings), "time")
-        rows = [f"{modes} from {span}{straight}, crossed {times}"]
+        yield f"{modes} from {self.words.ends(self.speed[0], self.speed[-1])}{straight}, crossed {times}"
         for m, number in enumerate(self.mode):
             hertz = self.frequency[:, m] / (2 * np.pi)
             low, high = np.nanmin(hertz, initial=np.inf), np.nanmax(hertz, initial=-np.inf)
             if not low <= high:
-                rows.append(f"  mode {number}: overdamped, does not oscillate")
+                yield f"  mode {number}: overdamped, does not oscillate"
                 continue
             size = f"{low:.4g} Hz" if high - low <= 5e-4 * high else f"{low:.4g} to {high:.4g} Hz"
-            rows.append(f"  mode {number}: {size}, {self.named(int(number))}")
+            yield f"  mode {number}: {size}, {self.named(int(number))}"
         for c in self.crossings:
-            rows.append(
-                f"  {show_speed(float(f'{c.speed:.5g}'), unit)}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
+            yield (
+                f"  {self.words.speed(float(f'{c.speed:.5g}'))}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
                 f"{c.mode} ({c.frequency / (2 * np.pi):.4g} Hz), amplification {amplification_words(c.amplification)}"
             )
         if not self.lines:
-            rows.append("  Nothing excites this line.")
-        rows += [f"  {finding}" for finding in self.findings_in(unit)]
-        return "\n".join(rows)
+            yield "  Nothing excites this line."
 
     def plot(
         self,
@@ -250,34 +237,37 @@ def campbell_diagram(
     lines = excitation_lines(assembly, speed)
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
     met, jumps = [], []
-    for one in lines:
-        for m in range(len(mode)):
-            for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], one):
+    for one, m in product(lines, range(len(mode))):
+        # Where it turns forward, and where it turns the other way beyond its standstill.
+        ways = [one, replace(one, order=-one.order, frequency=-one.frequency)]
+        for way in ways if 0 < one.standstill < speed[-1] else ways[:1]:
+            for at, here, zeta in _crossings(assembly, speed, frequency[:, m], ratio[:, m], way):
                 if zeta is None:
                     jumps.append((at, int(mode[m]), one))
                 else:
                     met.append(Crossing(at, here, int(mode[m]), one, zeta))
     return CampbellDiagram(
-        speed, mode, frequency, ratio, kinetic, potential, assembly.topology.names, shaft_names(assembly), lines,
-        tuple(sorted(met, key=lambda c: c.speed)), margin, tuple(sorted(jumps, key=lambda jump: jump[0])),
-        bent(assembly), left_out("campbell_diagram", assembly.line), speed_unit(assembly.line),
+        speed=speed, mode=mode, frequency=frequency, damping_ratio=ratio, rotations=assembly.topology.names,
+        springs=shaft_names(assembly), kinetic=kinetic, potential=potential, lines=lines,
+        crossings=tuple(sorted(met, key=lambda c: c.speed)), margin=margin,
+        jumps=tuple(sorted(jumps, key=lambda jump: jump[0])), bent=bent(assembly),
+        remarks=left_out("campbell_diagram", assembly.line), unit=speed_unit(assembly.line),
     )  # fmt: skip
 
 
 def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine, ...]:
     """Everything that excites at ``speeds`` [rad/s], equal lines together, ascending."""
-    topo, row, names = assembly.topology, assembly.packed.values, assembly.line.names
+    topo, names = assembly.topology, assembly.line.names
     found: dict[tuple[float, float], dict[str, None]] = {}
     torques: dict[tuple[float, float], float] = {}
-    for e in exciters(assembly):
-        if e.held or not row[e.amplitude]:
+    for one in line_harmonics(assembly):
+        largest = _largest(assembly, one, speeds) if isinstance(one, DiskTorque) else np.nan
+        if not one.acts or largest == 0:
             continue
-        largest = _largest(assembly, e, speeds) if e.station >= 0 else np.nan
-        if largest == 0:
-            continue
-        key = (0.0 if e.in_time else float(e.order), float(row[e.frequency]) if e.in_time else 0.0)
-        found.setdefault(key, {})[e.element] = None
-        if e.station >= 0:
+        sense = forward(one.order, one.frequency)
+        key = float(sense * one.order), sense * one.frequency
+        found.setdefault(key, {})[one.name] = None
+        if isinstance(one, DiskTorque):
             torques[key] = torques.get(key, 0.0) + largest
     for j, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
         if law.uneven:
@@ -291,16 +281,13 @@ def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine,
     )
 
 
-def _largest(assembly: Assembly, exciter: Exciter, speeds: Array) -> float:
-    """Largest torque of a disk's harmonic over the speeds [N m]: 0 where its cylinders cancel it, NaN where a table
-    does not reach."""
-    disk = assembly.line.elements[assembly.line.index(exciter.element)]
-    assert isinstance(disk, Disk)
-    fired = len(disk.firing_angles or ())
-    if fired and abs(cylinders(disk, disk.excitation[exciter.number - 1])) <= CANCELLED * fired:
+def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
+    """Largest of a harmonic torque over the speeds [N m]: 0 where its cylinders cancel it, NaN where a table does not
+    reach."""
+    if abs(torque.cylinders) <= CANCELLED:
         return 0.0
     try:
-        return float(np.abs(size(assembly, exciter, assembly.table(len(speeds), speeds))).max())
+        return float(np.abs(torque.size(assembly, assembly.table(len(speeds), speeds))).max())
     except InputError:
         return np.nan
 
@@ -316,7 +303,8 @@ def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
 def _crossings(
     assembly: Assembly, speed: Array, mode: Array, ratio: Array, line: ExcitationLine
 ) -> Iterator[tuple[float, float, float | None]]:
-    """Speed, frequency and damping ratio where a line meets a mode; without a ratio where the mode jumps over it."""
+    """Speed, frequency and damping ratio where a line that turns forward meets a mode; without a ratio where the mode
+    jumps over it."""
     off = line.order * speed + line.frequency - mode
     for i in range(len(speed)):
         if off[i] == 0:
@@ -348,4 +336,4 @@ def _closed_in(
         off, frequency, ratio = here(middle)
         low, high = (middle, high) if (off < 0) == below else (low, middle)
     off, frequency, ratio = here(high)
-    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(line.order, 1.0) else None
+    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(abs(line.order), 1.0) else None

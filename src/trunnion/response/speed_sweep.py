@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -21,11 +20,12 @@ from trunnion.numerics.memory import require_memory
 from trunnion.response.orders.response import has_rating, order_response, response_about
 from trunnion.response.ranges.largest import Quantity, first_speeds, search
 from trunnion.results.counts import counted
-from trunnion.results.declared import Described, Held, axis, fields_over, over, remark
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, by_gravity
-from trunnion.results.speeds import show_speed
-from trunnion.results.units import angle_words
+from trunnion.results.result import Result
+from trunnion.results.stretches import largest_over
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
 if TYPE_CHECKING:
@@ -37,29 +37,21 @@ FEW = 65
 """Speeds of the even grid from which the largest torques are looked for."""
 
 
-@dataclass(frozen=True, repr=False)
-class SpeedSweep(Described):
-    """Linear forced response over speed.
+@labelled
+class SpeedSweep(Result):
+    """Linear forced response over speed; mean torque is negative where power flows from input to output."""
 
-    speed (speed,) of the input [rad/s]; twist_amplitude (speed, shaft) [rad] and torque_amplitude (speed,
-    shaft) [N m], half peak to peak; torque_mean (speed, shaft) [N m], negative where power flows from input
-    to output; joint_rotation (speed,): largest deviation at any joint's input [rad], and ``linear`` whether it
-    stays within the range in which the linear response can be trusted; cut_off (speed,): size of the
-    outermost harmonics kept, of the largest torque; ``findings`` say what of the line is left out.
-    ``judged`` gives the stability of the motion at every speed.
-    """
-
-    speed: Array
-    twist_amplitude: Array
-    torque_amplitude: Array
-    torque_mean: Array
-    joint_rotation: Array
-    cut_off: Array
-    shafts: tuple[str, ...]
-    findings: tuple[Finding, ...]
-    unit: str
-    judged: Callable[[], Codes]
-    lossy: bool
+    speed: Array = coordinate("speed", "rad/s")
+    shafts: tuple[str, ...] = coordinate("shaft")
+    twist_amplitude: Array = variable("speed shaft", "rad", "half peak to peak")
+    torque_amplitude: Array = variable("speed shaft", "N*m", "half peak to peak")
+    torque_mean: Array = variable("speed shaft", "N*m")
+    joint_rotation: Array = variable("speed", "rad", "largest deviation at any joint's input")
+    cut_off: Array = variable("speed", "1", "size of the outermost harmonics kept, of the largest torque")
+    remarks: tuple[Finding, ...] = internal("what of the line is left out")
+    unit: str = internal("of speeds in print")
+    judged: Callable[[], Codes] = internal("computes the verdict")
+    lossy: bool = internal("whether a loss factor holds at all frequencies")
 
     @cached_property
     def verdict(self) -> Codes:
@@ -67,53 +59,39 @@ class SpeedSweep(Described):
         return self.judged()
 
     @property
+    @computed(variable("speed"), after="joint_rotation")
     def linear(self) -> Flags:
         """Where the amplitudes can be trusted (speed,)."""
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
 
     def peak(self, shaft: str) -> tuple[float, float]:
         """Largest torque amplitude of a shaft [N m] and the speed it stands at [rad/s]; NaN without a steady state."""
-        column = self.torque_amplitude[:, self.shafts.index(shaft)]
-        if not np.any(np.isfinite(column)):
-            return np.nan, np.nan
-        at = int(np.nanargmax(column))
-        return float(column[at]), float(self.speed[at])
+        return largest_over(self.speed, self.torque_amplitude[:, self.shafts.index(shaft)])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Amplitudes over (speed, shaft)."""
-        yield axis("speed", self.speed, "rad/s")
-        yield axis("shaft", list(self.shafts))
-        yield from fields_over("speed shaft", self, twist_amplitude="rad", torque_amplitude="N*m", torque_mean="N*m")
-        yield over("speed", "joint_rotation", self.joint_rotation, "rad")
-        yield over("speed", "linear", self.linear.astype(np.int8))
-        yield over("speed", "cut_off", self.cut_off, "1")
-        yield remark("linear_range", LINEAR_RANGE)
+        yield from super().declared()
+        yield from attributes(linear_range=LINEAR_RANGE)
 
     def plot(self, axes: Axes | None = None, *, unit: str = "", operating: Operation | None = None) -> Axes:
         """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
         return drawing(self, "plot")(self, axes, unit=unit, operating=operating)
 
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``: where the motion is unstable, what is left out."""
-        return by_gravity([*where_unstable(self.speed, self.verdict, unit, lossy=self.lossy), *self.findings])
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first: where the motion is unstable, what of the line is left out."""
+        return by_gravity([*where_unstable(self.speed, self.verdict, self.words, lossy=self.lossy), *self.remarks])
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        rows = [f"linear forced response at {counted(len(self.speed), 'speed')}"]
+    def _lines(self) -> Iterator[str]:
+        yield f"linear forced response at {counted(len(self.speed), 'speed')}"
         for shaft in self.shafts:
             torque, at = self.peak(shaft)
-            if np.isnan(torque):
-                rows.append(f"  {shaft}: no steady state at any speed")
-                continue
-            rows.append(f"  {shaft}: torque amplitude up to {torque:.4g} N m at {show_speed(at, unit)}")
+            known = f"torque amplitude up to {torque:.4g} N m at {self.words.speed(at)}"
+            yield f"  {shaft}: {'no steady state at any speed' if np.isnan(torque) else known}"
         beyond = int(np.count_nonzero(~self.linear))
         if beyond:
-            rows.append(
-                f"  at {counted(beyond, 'speed')} a joint's input deviates by more than {angle_words(LINEAR_RANGE)}: "
-                "indication only"
-            )
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings_in(unit))])
+            where, by = f"at {counted(beyond, 'speed')}", self.words.angle(LINEAR_RANGE)
+            yield f"  {where} a joint's input deviates by more than {by}: indication only"
 
 
 def speed_sweep(
@@ -131,18 +109,11 @@ def speed_sweep(
     """
     found = order_response(line, speeds, statically_twisted=statically_twisted, progress=progress)
     return SpeedSweep(
-        found.speed,
-        found.vibratory_twist,
-        found.vibratory_torque,
-        found.mean_torque,
-        found.joint_rotation,
-        found.cut_off,
-        found.springs,
-        found.remarks,
-        found.unit,
-        found.judged,
-        bool(found.spectrum.loss.any()),
-    )
+        speed=found.speed, shafts=found.springs, twist_amplitude=found.vibratory_twist,
+        torque_amplitude=found.vibratory_torque, torque_mean=found.mean_torque, joint_rotation=found.joint_rotation,
+        cut_off=found.cut_off, remarks=found.remarks, unit=found.unit, judged=found.judged,
+        lossy=bool(found.spectrum.loss.any()),
+    )  # fmt: skip
 
 
 def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: int = 241) -> Array:

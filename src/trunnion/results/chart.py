@@ -6,7 +6,7 @@ import csv
 import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,12 +22,14 @@ from trunnion.errors import InputError
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.results.chart_contents import what_is_wrong
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.files import read_dataset, save_numbers
-from trunnion.results.quantity_axes import parameter_axis
+from trunnion.results.result import Result
 from trunnion.results.units import with_error
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.results.verdict import Verdict, flag_attributes
+from trunnion.results.words import Words
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -37,6 +39,7 @@ Resample = Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]
 FORMAT = "trunnion stability chart 4"
 
 
+WAYS = 'how it was built in the end: "patches", "smaller patches", "whole periods" or "pixel by pixel"'
 BYTES_A_PIXEL = 64
 """Radius, error, multiplier and verdict of a pixel, and what is held beside them while it is filled."""
 
@@ -66,37 +69,32 @@ class SpotCheck:
     worst_difference: float
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class StabilityChart(Result):
-    """Stability over two parameters; arrays have shape (y, x), axes in SI units.
+    """Stability over two parameters, axes in SI units; a failed point keeps its place as NaN."""
 
-    ``verdict`` holds the int8 codes of ``Verdict``; a failed point keeps its place as NaN. ``speed`` [rad/s]
-    is the fixed input speed where no axis is the speed; ``period`` [rad] of input angle; ``remarks`` say what
-    was clipped or built anew; ``function`` are the patches behind the pixels; ``way`` is how the chart was built in
-    the end: "patches", or after a failed check "smaller patches", "whole periods" or "pixel by pixel".
-    """
-
-    x: Array
-    y: Array
-    x_parameter: str | Parameter
-    y_parameter: str | Parameter
-    x_unit: str
-    y_unit: str
-    spectral_radius: Array
-    error_estimate: Array
-    critical_multiplier: Complex
-    verdict: Codes
-    speed: float | None
-    period: float
-    tolerance: float
-    statically_twisted: bool
-    remarks: tuple[str, ...]
-    line: Driveline | None
-    function: PatchedFunction = field(repr=False)
-    evaluate_point: Callable[[float, float], ChartPoint] | None = field(default=None, repr=False, compare=False)
-    resample: Resample | None = field(default=None, repr=False, compare=False)
-    spot_check: SpotCheck | None = None
-    way: str = "patches"
+    x: Array = coordinate("x", "{self.x_unit}", "{self.x_label}")
+    y: Array = coordinate("y", "{self.y_unit}", "{self.y_label}")
+    x_parameter: str | Parameter = internal("along x")
+    y_parameter: str | Parameter = internal("along y")
+    x_unit: str = internal("of the parameter along x")
+    y_unit: str = internal("of the parameter along y")
+    spectral_radius: Array = variable("y x", "1")
+    error_estimate: Array = variable("y x", "1")
+    critical_multiplier: Complex = internal("of largest modulus", "1", "y x")
+    verdict: Codes = variable("y x", words="codes of Verdict", more=flag_attributes())
+    speed: float | None = internal("fixed input speed where no axis is the speed", "rad/s")
+    period: float = attribute("of input angle", "rad")
+    tolerance: float = attribute("error asked of the multipliers")
+    statically_twisted: bool = attribute("whether the line is twisted by its loads")
+    remarks: tuple[str, ...] = internal("what was clipped or built anew")
+    line: Driveline | None = internal("that was charted; None of a family of one's own")
+    function: PatchedFunction = internal("the patches behind the pixels")
+    evaluate_point: Callable[[float, float], ChartPoint] | None = internal("at any point", default=None, compare=False)
+    resample: Resample | None = internal("on other pixels", default=None, compare=False)
+    spot_check: SpotCheck | None = internal("direct integration at random pixels", default=None)
+    way: str = attribute(WAYS, default="patches")
+    unit: str = internal("of speeds in print", default="rad/s")
 
     @property
     def x_label(self) -> str:
@@ -157,26 +155,19 @@ class StabilityChart(Result):
         """Share of unstable points."""
         return self.count(Verdict.UNSTABLE) / self.verdict.size
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Radius, error, critical multiplier and verdict over both parameters; settings, driveline and remarks."""
-        yield axis("x", self.x, self.x_unit, self.x_label)
-        yield axis("y", self.y, self.y_unit, self.y_label)
-        yield from fields_over("y x", self, spectral_radius="1", error_estimate="1")
-        yield over("y x", "critical_multiplier_real", self.critical_multiplier.real, "1")
-        yield over("y x", "critical_multiplier_imaginary", self.critical_multiplier.imag, "1")
-        yield over("y x", "verdict", self.verdict, **flag_attributes())
-        yield from remarks(
+        yield from super().declared()
+        yield Variable("critical_multiplier_real", self.critical_multiplier.real, "y x", "1")
+        yield Variable("critical_multiplier_imaginary", self.critical_multiplier.imag, "y x", "1")
+        yield from attributes(
             format=FORMAT,
             version=__version__,
-            period=self.period,
-            tolerance=self.tolerance,
-            statically_twisted=int(self.statically_twisted),
             remarks=json.dumps(list(self.remarks)),
             driveline="" if self.line is None else dumps(self.line),
             x_parameter=_parameter_text(self.x_parameter),
             y_parameter=_parameter_text(self.y_parameter),
             speed=float("nan") if self.speed is None else self.speed,
-            way=self.way,
             spot_check=json.dumps(asdict(self.spot_check) if self.spot_check else None),
         )
 
@@ -214,33 +205,26 @@ class StabilityChart(Result):
         """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
         return drawing(self, "plot")(self, axes, unit=unit, resonances=resonances, operating=operating, tongues=tongues)
 
-    @property
-    def unit(self) -> str:
-        """What its speeds read in: the unit of the line's description."""
-        return speed_unit(self.line) if self.line else "rad/s"
-
-    def __str__(self) -> str:
-        across = parameter_axis(self.x_label, self.x_unit, self.unit if self.line else None)
-        up = parameter_axis(self.y_label, self.y_unit, self.unit if self.line else None)
+    def _lines(self) -> Iterator[str]:
+        words = self.words if self.line else Words(None)
+        across, up = words.parameter(self.x_label, self.x_unit), words.parameter(self.y_label, self.y_unit)
         counts = ", ".join(f"{n} {v}" for v in Verdict if (n := self.count(v)))
-        lines = [f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"]
+        yield f"stability chart, {self.x_label} × {self.y_label}, {len(self.x)} × {len(self.y)} points: {counts}"
         if np.isfinite(self.spectral_radius).any():
             worst = np.unravel_index(np.nanargmax(self.spectral_radius), self.spectral_radius.shape)
-            lines.append(
+            yield (
                 f"  largest spectral radius {self.spectral_radius[worst]:.6g} ± {self.error_estimate[worst]:.1e} at "
                 f"{self.x_label} = {across.number(float(self.x[worst[1]]))}, "
                 f"{self.y_label} = {up.number(float(self.y[worst[0]]))}"
             )
             middle = np.nanmedian(self.error_estimate)
-            lines.append(f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)")
-        if self.function.patches:
-            count, from_ = len(self.function.patches), self.function.evaluations
-            lines.append(
-                f"  {count} patch{'es' if count > 1 else ''}" + (f" from {from_} integrations" if from_ else "")
-            )
+            yield f"  error estimate {middle:.1e} (median), {np.nanmax(self.error_estimate):.1e} (worst)"
+        if count := len(self.function.patches):
+            evaluated = f" from {self.function.evaluations} integrations" if self.function.evaluations else ""
+            yield f"  {count} patch{'es' if count > 1 else ''}{evaluated}"
         if (checked := self.check_sentence) is not None:
-            lines.append(f"  {checked}")
-        return "\n".join([*lines, *(f"  note: {r}" for r in self.remarks)])
+            yield f"  {checked}"
+        yield from (f"  note: {remark}" for remark in self.remarks)
 
     @property
     def check_sentence(self) -> str | None:
@@ -284,7 +268,7 @@ def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
 def _chart_of(data: xr.Dataset) -> StabilityChart:
     check = json.loads(data.attrs["spot_check"])
     speed = float(data.attrs["speed"])
-    text = data.attrs["driveline"]
+    line = loads(text) if (text := data.attrs["driveline"]) else None
     return StabilityChart(
         x=data["x"].values,
         y=data["y"].values,
@@ -301,7 +285,8 @@ def _chart_of(data: xr.Dataset) -> StabilityChart:
         tolerance=float(data.attrs["tolerance"]),
         statically_twisted=bool(data.attrs["statically_twisted"]),
         remarks=tuple(json.loads(data.attrs["remarks"])),
-        line=loads(text) if text else None,
+        line=line,
+        unit=speed_unit(line) if line else "rad/s",
         function=_function_of(data),
         spot_check=SpotCheck(**check) if check else None,
         way=str(data.attrs["way"]),
@@ -317,13 +302,13 @@ def _function_of(data: xr.Dataset) -> PatchedFunction:
     return PatchedFunction(tuple(Patch(*part) for part in parts), direct)
 
 
-def _declared_patches(function: PatchedFunction) -> Iterator[Held]:
+def _declared_patches(function: PatchedFunction) -> Iterator[Variable]:
     """What a chart read from a file is evaluated by; not part of its dataset."""
-    yield over("patch edge", "patch_box", _edges([p.box for p in function.patches]))
-    yield over("direct edge", "direct_box", _edges(list(function.direct)))
+    yield Variable("patch_box", _edges([p.box for p in function.patches]), "patch edge")
+    yield Variable("direct_box", _edges(list(function.direct)), "direct edge")
     if function.patches:
-        yield over("patch quantity degree_v degree_u", "patch_coefficients", _stacked(function.patches))
-        yield over("patch quantity block_v block_u", "patch_error", np.stack([p.error for p in function.patches]))
+        yield Variable("patch_coefficients", _stacked(function.patches), "patch quantity degree_v degree_u")
+        yield Variable("patch_error", np.stack([p.error for p in function.patches]), "patch quantity block_v block_u")
 
 
 def _stacked(patches: tuple[Patch, ...]) -> Array:

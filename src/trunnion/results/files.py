@@ -19,12 +19,11 @@ from trunnion._version import __version__
 from trunnion.errors import InputError, short
 from trunnion.numerics.memory import MOST, size_text
 from trunnion.reading import regular_bytes
+from trunnion.results.variables import Attribute, Variable
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from trunnion.results.declared import Held
 
 FORMAT_VERSION = 1
 """Of what all files have in common; the attribute ``format`` tells kinds of results apart."""
@@ -59,8 +58,8 @@ def dataset_bytes(data: xr.Dataset) -> bytes:
     return _signed(stream.getvalue())
 
 
-def save_numbers(held: Iterable[Held], path: str | os.PathLike[str]) -> None:
-    """Write arrays of numbers and remarks as ``save_dataset`` would write their dataset; errors as there.
+def save_numbers(declared: Iterable[Variable | Attribute], path: str | os.PathLike[str]) -> None:
+    """Write arrays of numbers and attributes as ``save_dataset`` would write their dataset; errors as there.
 
     It does without xarray, whose import takes longer than most charts.
     """
@@ -68,17 +67,17 @@ def save_numbers(held: Iterable[Held], path: str | os.PathLike[str]) -> None:
 
     stream = io.BytesIO()
     with h5netcdf.File(stream, "w") as file:
-        for one in held:
-            if one.axes is None:
+        for one in declared:
+            if isinstance(one, Attribute):
                 if one.values is not None:
                     file.attrs[one.name] = _attribute(one.values)
                 continue
             values = np.asarray(one.values)
-            for axis, length in zip(one.axes, values.shape, strict=True):
+            for axis, length in zip(one.dims, values.shape, strict=True):
                 if axis not in file.dimensions:
                     file.dimensions[axis] = length
             filled = np.nan if values.dtype.kind == "f" else None
-            variable = file.create_variable(one.name, one.axes, values.dtype, fillvalue=filled)
+            variable = file.create_variable(one.name, one.dims, values.dtype, fillvalue=filled)
             variable[...] = values
             for name, value in one.attributes.items():
                 variable.attrs[name] = _attribute(value)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
+from typing import TYPE_CHECKING
 
 from trunnion.arrays import Array
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.units import signs
-from trunnion.systems.system import System
+
+if TYPE_CHECKING:  # which loads the compiler
+    from trunnion.systems.system import System
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import pi
 
 from trunnion.errors import InputError
+from trunnion.results.units import figures, order_words
 
 PER_RADIAN_PER_SECOND = {"rad/s": 1.0, "rpm": 60 / (2 * pi), "Hz": 1 / (2 * pi)}
 
@@ -29,14 +30,16 @@ def show_speed(speed: float, unit: str = "rad/s") -> str:
     return f"{speed * speed_factor(unit):.6g} {unit}"
 
 
-def four_figures(value: float) -> str:
-    """``1234`` or ``0.01235``, as points of a grid deserve; powers of ten from 1e10 on."""
-    return f"{float(f'{value:.4g}'):.10g}"
+def order_name(order: float, frequency: float) -> str:
+    """A harmonic by turns or in time, "order 2", "77.7 Hz", or by both, "77.7 Hz -2 per turn"."""
+    if not frequency:
+        return order_words(order)
+    return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
 
 
 def rounded_speed(speed: float, unit: str) -> str:
     """``1234 rpm``: four figures."""
-    return f"{four_figures(speed * speed_factor(unit))} {unit}"
+    return f"{figures(speed * speed_factor(unit))} {unit}"
 
 
 def about_speed(speed: float, unit: str) -> str:
@@ -52,12 +55,12 @@ def about_span(low: float, high: float, unit: str) -> str:
 
 def show_acceleration(acceleration: float, unit: str) -> str:
     """``100 rpm/s`` or ``5 rad/s²``: four figures."""
-    return f"{four_figures(acceleration * speed_factor(unit))} {_per_second(unit)}"
+    return f"{figures(acceleration * speed_factor(unit))} {_per_second(unit)}"
 
 
 def acceleration_span(low: float, high: float, unit: str) -> str:
     """``5 to 100 rpm/s``: four figures each, one of two that read alike."""
-    ends = dict.fromkeys(four_figures(one * speed_factor(unit)) for one in (low, high))
+    ends = dict.fromkeys(figures(one * speed_factor(unit)) for one in (low, high))
     return f"{' to '.join(ends)} {_per_second(unit)}"
 
 
@@ -67,4 +70,4 @@ def _per_second(unit: str) -> str:
 
 def rounded_span(low: float, high: float, unit: str, between: str = "to") -> str:
     """``300 to 2400 rpm``: four figures each."""
-    return f"{four_figures(low * speed_factor(unit))} {between} {rounded_speed(high, unit)}"
+    return f"{figures(low * speed_factor(unit))} {between} {rounded_speed(high, unit)}"

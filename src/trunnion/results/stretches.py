@@ -29,6 +29,14 @@ def stretches_above(speed: Array, value: Array, limit: float, *, between: bool =
     return found
 
 
+def largest_over(speed: Array, value: Array) -> tuple[float, float]:
+    """Largest of ``value`` (speed,) and the ``speed`` [rad/s] where it is; NaN where none is known."""
+    if not np.any(np.isfinite(value)):
+        return np.nan, np.nan
+    at = int(np.nanargmax(value))
+    return float(value[at]), float(speed[at])
+
+
 def ranges_in_words(ranges: Sequence[tuple[float, float]], unit: str, digits: int = 6) -> str:
     """ "300 to 400 rpm, 500 rpm and 2 more stretches"."""
     factor = speed_factor(unit)

@@ -75,8 +75,8 @@ def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
     verdict, barred = verdict_of(checks, subject.speed)
     findings = _findings(subject.cases, subject.unit)
     return Assessment(
-        verdict, checks, barred, subject.low, subject.high, subject.speed, subject.unit, findings,
-        subject.line.operation or Operation(),
+        verdict=verdict, checks=checks, barred=barred, low=subject.low, high=subject.high, speed=subject.speed,
+        unit=subject.unit, findings=findings, operation=subject.line.operation or Operation(),
     )  # fmt: skip
 
 

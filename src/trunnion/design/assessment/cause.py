@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import nan, pi
 
-from trunnion.results.speeds import show_speed
-from trunnion.results.units import order_words
+from trunnion.laws.harmonic import forward
+from trunnion.results.speeds import order_name
 
 CLOSE, FAR = 5e-4, 0.5
 """Distance from a mode, as a share of its frequency, within which one is on it, and beyond which it says nothing."""
@@ -16,8 +16,8 @@ CLOSE, FAR = 5e-4, 0.5
 class Cause:
     """The order that leads, and the mode that it is nearest to.
 
-    order [cycles per turn of the input] and frequency [rad/s] to add to it; mode: its number, 0 where there is none;
-    natural [rad/s] of the mode; off: what meets it over that, less 1.
+    order [cycles per turn of the input] and frequency [rad/s] to add to it, with the signs that turn forward; mode: its
+    number, 0 where there is none; natural [rad/s] of the mode; off: what meets it over that, less 1.
     """
 
     order: float
@@ -28,8 +28,10 @@ class Cause:
 
     @property
     def name(self) -> str:
-        """ "order 2", "the excitation at 25 Hz"."""
-        return f"the excitation at {show_speed(self.frequency, 'Hz')}" if self.frequency else order_words(self.order)
+        """ "order 2", "the excitation at 25 Hz", "the excitation at 100 Hz -4 per turn"."""
+        sense = forward(self.order, self.frequency)
+        name = order_name(sense * self.order, sense * self.frequency)
+        return f"the excitation at {name}" if self.frequency else name
 
     @property
     def critical(self) -> float:

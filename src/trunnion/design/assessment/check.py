@@ -6,13 +6,14 @@ The margin is the distance of the value to its limit over the limit: 0.2 keeps 2
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from math import inf, isfinite, isnan, nan
 
 from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.course import Course
 from trunnion.driveline.rules import RULES
+from trunnion.results.fields import computed, internal, labelled, variable
 
 
 class Status(Enum):
@@ -48,40 +49,40 @@ class Rule:
     certainty: str
     name: str
 
+    def __str__(self) -> str:
+        return self.name
 
-@dataclass(frozen=True)
+
+@labelled
 class Check:
-    """One check.
+    """One check; its margins are NaN where nothing is judged, its error where nothing was searched."""
 
-    margin and required_margin [1], NaN where nothing is judged; value and limit in ``unit`` (SI); speed: of the input
-    where it binds [rad/s]; because: one sentence; inputs: the numbers that went in; load_case: "" for the line as
-    stated; barred: speed ranges [rad/s] to pass quickly; decides: whether the verdict rests on it, see
-    ``deciding.weighed``; cause: the order that leads there and the mode that it is nearest to; course: value and limit
-    at all speeds judged; error: what the largest value may be low by, in ``unit``, NaN where nothing was searched;
-    covered: the speed ranges [rad/s] that it was judged over; ended: what ended its search before it was done, as a
-    clause: "the time limit of 30 s ended the search".
-    """
+    name: str = internal()
+    status: Status = variable()
+    rule: Rule = variable()
+    because: str = variable(words="one sentence")
+    margin: float = variable("", "1", "distance to the limit over the limit", default=nan)
+    required_margin: float = variable("", "1", default=0.0)
+    value: float = variable(words="in the unit of its check", default=nan)
+    limit: float = variable(words="in the unit of its check", default=nan)
+    unit: str = variable(words="of value and limit", name="check_unit", default="")
+    speed: float = variable("", "rad/s", "input speed where it binds", default=nan)
+    inputs: str = variable(words="numbers that went in", default="")
+    load_case: str = variable(words="empty for the line as stated", default="")
+    barred: tuple[tuple[float, float], ...] = internal("speed ranges to pass quickly", "rad/s", default=())
+    decides: bool = variable(words="whether the verdict rests on it", default=True)
+    element: str = internal("that is judged", default="")
+    cause: Cause | None = internal("the order that leads there and the mode that it is nearest to", default=None)
+    course: Course | None = internal("value and limit at all speeds judged", default=None, repr=False, compare=False)
+    error: float = variable(words="what the value may be low by, in the unit of its check", default=nan)
+    covered: tuple[tuple[float, float], ...] = internal("speed ranges that it was judged over", "rad/s", default=())
+    ended: str = internal("what ended its search before it was done, as a clause", default="")
 
-    name: str
-    status: Status
-    rule: Rule
-    because: str
-    margin: float = nan
-    required_margin: float = 0.0
-    value: float = nan
-    limit: float = nan
-    unit: str = ""
-    speed: float = nan
-    inputs: str = ""
-    load_case: str = ""
-    barred: tuple[tuple[float, float], ...] = ()
-    decides: bool = True
-    element: str = ""
-    cause: Cause | None = None
-    course: Course | None = field(default=None, repr=False, compare=False)
-    error: float = nan
-    covered: tuple[tuple[float, float], ...] = ()
-    ended: str = ""
+    @property
+    @computed(variable(words="input speeds [rad/s] that it was judged over", name="covered"))
+    def covered_in_words(self) -> str:
+        """ "10 to 100, 120 to 200", in rad/s."""
+        return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in self.covered)
 
     @property
     def judged(self) -> bool:

@@ -76,9 +76,9 @@ def at_largest(
     if known and status is Status.SATISFIED and judged(below(value + found.error, limit), required) is Status.EXCEEDED:
         status, because = Status.NOT_JUDGED, f"{because}; the search did not settle closely enough to tell"
     return Check(
-        name, status, rule, because, margin, required, value, limit, kind.unit, speed,
-        "; ".join(one for one in (inputs, looked_at(subject, case)) if one), case.name, barred, element=element,
-        cause=cause, course=course, error=found.error, covered=((case.low, case.high),),
+        name, status, rule, because, margin=margin, required_margin=required, value=value, limit=limit, unit=kind.unit,
+        speed=speed, inputs="; ".join(one for one in (inputs, looked_at(subject, case)) if one), load_case=case.name,
+        barred=barred, element=element, cause=cause, course=course, error=found.error, covered=((case.low, case.high),),
     )  # fmt: skip
 
 
@@ -121,6 +121,6 @@ def guideline(
     value, limit, unit = compared
     margin = below(value, limit)
     return Check(
-        name, judged(margin), rule, f"{numbers}, {percent(margin, binding=False)}", margin, 0.0, value, limit, unit,
-        speed, inputs, element=element,
+        name, judged(margin), rule, f"{numbers}, {percent(margin, binding=False)}", margin=margin, value=value,
+        limit=limit, unit=unit, speed=speed, inputs=inputs, element=element,
     )  # fmt: skip

@@ -50,5 +50,11 @@ def course(
     over = {name: np.broadcast_to(np.asarray(limit, dtype=float), speed.shape) for name, limit in limits.items()}
     if by_order is None:
         nothing = np.zeros(0)
-        return Course(quantity, kind, says, speed, value, over, nothing, nothing, np.zeros((len(speed), 0)))
-    return Course(quantity, kind, says, speed, value, over, response.order, response.frequency, by_order)
+        return Course(
+            quantity=quantity, kind=kind, says=says, speed=speed, value=value, limits=over, order=nothing,
+            frequency=nothing, by_order=np.zeros((len(speed), 0)),
+        )  # fmt: skip
+    return Course(
+        quantity=quantity, kind=kind, says=says, speed=speed, value=value, limits=over, order=response.order,
+        frequency=response.frequency, by_order=by_order,
+    )  # fmt: skip

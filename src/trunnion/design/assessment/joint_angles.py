@@ -79,8 +79,10 @@ def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | Non
 def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Check]:
     said = f"{angle / DEGREE:.4g} deg"
     margin = above(angle, SMALLEST)
-    yield Check(f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin, 0.0, angle,
-                SMALLEST, "rad", element=name)  # fmt: skip
+    yield Check(
+        f"smallest angle of {name}", judged(margin), LEAST, f"{said} against 0.5 deg", margin=margin, value=angle,
+        limit=SMALLEST, unit="rad", element=name,
+    )  # fmt: skip
     limit = allowed_angle(speed)
     title, at = f"angle of {name}", f"at {subject.shown(speed)} of its shaft"
     if angle > limit and speed < TABLE_SPEED[0]:

@@ -158,8 +158,8 @@ def _of_disk(limit: OneLimit) -> tuple[Values, Parts]:
         return np.asarray(found[:, column(response)])
 
     def parts(response: OrderResponse) -> Complex:
-        turning = np.abs(response.order * response.speed[:, None] + response.frequency) ** rates
-        return np.asarray(response.rotation[:, :, column(response)] * turning)
+        turns = np.abs(response.angular_frequency) ** rates
+        return np.asarray(response.rotation[:, :, column(response)] * turns)
 
     return values, parts
 

@@ -119,7 +119,8 @@ def _judged(
 ) -> Check:
     growth, speed, inputs = worst
     return Check(
-        NAME, status, RULE, because, margin, 0.0, growth, 0.0, "1/s", speed, inputs, case.name, barred, covered=covered
+        NAME, status, RULE, because, margin=margin, value=growth, limit=0.0, unit="1/s", speed=speed, inputs=inputs,
+        load_case=case.name, barred=barred, covered=covered,
     )  # fmt: skip
 
 

@@ -3,41 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-
-import numpy as np
 
 from trunnion.design.assessment.check import Check, Status, merged
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.rules import APPLICATIONS, RULES, SwitchedOff, Weight
 from trunnion.results.counts import few
-from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
+from trunnion.results.fields import attribute, computed, internal, labelled, members
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.result import Result
 
 SEPARATION = "separation"
+COLUMNS = (
+    "status rule decides margin required_margin value limit error unit speed because "
+    "rule.formula rule.source rule.certainty inputs load_case covered_in_words"
+)
+"""What datasets hold of each check."""
 STATE_APPLICATION = 'state application in [operation], as "road", to let those decide that fit the machine'
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Assessment(Result):
-    """A line judged over its running range.
+    """A line judged over its running range; not judged where a limit is missing that alone could judge."""
 
-    verdict: exceeded, satisfied, or not judged where a limit is missing that alone could judge; checks: the binding
-    one first, then by margin; barred: speed ranges [rad/s] that the line may only pass quickly; low, high: the running
-    range, speed: the operating one [rad/s] or None; unit: of speeds in print; findings: what was said on the way;
-    operation: of the line, which states its application and the rules that are switched off.
-    """
+    verdict: Status = attribute("exceeded, satisfied or not judged")
+    checks: tuple[Check, ...] = members(
+        Check, "check", "the binding one first, then by margin", name="name", only=COLUMNS
+    )
+    barred: tuple[tuple[float, float], ...] = internal("speed ranges that it may only pass quickly", "rad/s")
+    low: float = internal("end of the running range", "rad/s")
+    high: float = internal("end of the running range", "rad/s")
+    speed: float | None = internal("operating speed, if there is one", "rad/s")
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = attribute("what was said on the way", default=())
+    operation: Operation = internal("what the line states of itself", default=Operation())
 
-    verdict: Status
-    checks: tuple[Check, ...]
-    barred: tuple[tuple[float, float], ...]
-    low: float
-    high: float
-    speed: float | None
-    unit: str
-    findings: tuple[Finding, ...] = ()
-    operation: Operation = Operation()
+    @property
+    @computed(attribute(name="barred_rad_per_s"))
+    def _barred(self) -> list[float]:
+        return [float(end) for pair in self.barred for end in pair]
 
     @property
     def application(self) -> str | None:
@@ -45,6 +48,12 @@ class Assessment(Result):
         return self.operation.application
 
     @property
+    @computed(attribute(name="application"))
+    def _applied(self) -> str:
+        return self.application or ""
+
+    @property
+    @computed(attribute())
     def switched_off(self) -> tuple[SwitchedOff, ...]:
         """Rules that the description switches off, with their reasons."""
         return self.operation.switched_off
@@ -77,6 +86,7 @@ class Assessment(Result):
         return f"Application {self.application} ({about}): {guidelines} beside limits, ratings and physical checks."
 
     @property
+    @computed(attribute())
     def sentence(self) -> str:
         """The verdict in one sentence; of a line without application also which guidelines it is beyond."""
         verdict = self._of_verdict()
@@ -97,7 +107,7 @@ class Assessment(Result):
             open_end = f"{names} could not be judged" if names else "no limit is stated"
             return f"not judged: nothing that is judged is exceeded, but {open_end}"
         if self.barred:
-            ranges = " and ".join(f"{show_speed(a, self.unit)} to {show_speed(b, self.unit)}" for a, b in self.barred)
+            ranges = " and ".join(self.words.ends(*pair) for pair in self.barred)
             return f"satisfied where {ranges} is barred and passed quickly: there only transient limits hold"
         assert bind is not None
         return f"satisfied: {bind.name} binds, {bind.because}"
@@ -115,8 +125,8 @@ class Assessment(Result):
             if check.exceeded and passable(check, self.checks, None):
                 for low, high in check.barred:
                     if self.speed is not None and low <= self.speed <= high:
-                        ends = f"{show_speed(low, self.unit)} to {show_speed(high, self.unit)}"
-                        return f"; it runs at {show_speed(self.speed, self.unit)}, within {ends} that it may only pass"
+                        here, ends = self.words.speed(self.speed), self.words.ends(low, high)
+                        return f"; it runs at {here}, within {ends} that it may only pass"
         return ""
 
     def check(self, name: str) -> Check:
@@ -126,58 +136,29 @@ class Assessment(Result):
                 return one
         raise KeyError(name)
 
-    def declared(self) -> Iterator[Held]:
-        """Status, margin, value and limit over the checks."""
-        yield axis("check", [c.name for c in self.checks])
-        yield over("check", "status", [str(c.status) for c in self.checks])
-        yield over("check", "rule", [c.rule.name for c in self.checks])
-        yield over("check", "decides", np.array([c.decides for c in self.checks], dtype=np.int8))
-        yield over("check", "margin", [c.margin for c in self.checks], "1", "distance to the limit over the limit")
-        yield from members_over("check", self.checks, required_margin="1")
-        yield from members_over("check", self.checks, "in the unit of its check", value="", limit="")
-        about = "what the value may be low by, in the unit of its check"
-        yield from members_over("check", self.checks, about, error="")
-        yield over("check", "check_unit", [c.unit for c in self.checks])
-        yield from members_over("check", self.checks, "input speed where it binds", speed="rad/s")
-        yield from members_over("check", self.checks, because="")
-        yield from members_over("check", [c.rule for c in self.checks], formula="", source="", certainty="")
-        yield from members_over("check", self.checks, inputs="", load_case="")
-        covered = [", ".join(f"{low:.6g} to {high:.6g}" for low, high in c.covered) for c in self.checks]
-        yield over("check", "covered", covered, about="input speeds [rad/s] that it was judged over")
-        yield from remarks(
-            verdict=str(self.verdict),
-            sentence=self.sentence,
-            application=self.application or "",
-            switched_off=[str(one) for one in self.switched_off],
-            findings=[str(f) for f in self.findings],
-            barred_rad_per_s=[float(x) for pair in self.barred for x in pair],
-        )
-
     def table(self, unit: str | None = None) -> list[dict[str, object]]:
         """One row a check, speeds in ``unit``."""
-        unit = unit or self.unit
+        words = self.in_unit(unit).words
         return [
             {
                 "check": c.name,
                 "status": c.word,
                 "margin": c.margin_word,
-                f"speed [{unit}]": f"{c.speed * speed_factor(unit):.5g}" if c.speed == c.speed else "",
+                f"speed [{words.unit}]": f"{c.speed * words.factor:.5g}" if c.speed == c.speed else "",
                 "because": c.because,
             }
             for c in self.checks
         ]
 
-    def __str__(self) -> str:
-        span = f"{show_speed(self.low, self.unit)} to {show_speed(self.high, self.unit)}"
-        rows = [f"assessment from {span}: {self.sentence}"]
+    def _lines(self) -> Iterator[str]:
+        yield f"assessment from {self.words.ends(self.low, self.high)}: {self.sentence}"
         for c in self.checks:
-            rows.append(f"  {c.word}: {c.name}: {c.because}")
+            yield f"  {c.word}: {c.name}: {c.because}"
             if c.judged:
                 details = [c.rule.formula, f"{c.rule.source} ({c.rule.certainty})", c.inputs]
-                rows.append(f"      {'; '.join(d for d in details if d)}")
-        rows.append(f"  {self.rests_on}")
-        rows += [f"  switched off: {one}" for one in self.switched_off]
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+                yield f"      {'; '.join(d for d in details if d)}"
+        yield f"  {self.rests_on}"
+        yield from (f"  switched off: {one}" for one in self.switched_off)
 
 
 def passable(check: Check, checks: tuple[Check, ...], speed: float | None) -> bool:

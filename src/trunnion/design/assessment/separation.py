@@ -2,10 +2,11 @@
 
     |kΩ/ω − 1| ≥ 10 %   for every order k that shakes the line and every mode ω, over the running range
 
-(API 617/684, typical.) A mode that an order comes nearer to is no fault by itself: the standard then asks that it be
-moved, or for a check of torque or stress there, which limits of the description give; who takes that for an answer
-switches the rule off with this reason. Orders below 1 % of the largest torque by one order are left
-out. ω is the damped frequency of the loaded line, all joints straight.
+(API 617/684, typical); of a frequency ν in time, or beside an order, |kΩ + ν| stands for kΩ. A mode that an order
+comes nearer to is no fault by itself: the standard then asks that it be moved, or for a check of torque or stress
+there, which limits of the description give; who takes that for an answer switches the rule off with this reason. Orders
+below 1 % of the largest torque by one order are left out. ω is the damped frequency of the loaded line, all joints
+straight.
 """
 
 from __future__ import annotations
@@ -19,8 +20,10 @@ from trunnion.design.assessment.check import Check, Rule, Status, above
 from trunnion.design.assessment.compared import unanswered
 from trunnion.design.assessment.own_limits import unlimited
 from trunnion.design.assessment.subject import Case, Subject
+from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted, few
-from trunnion.results.units import amplification_words, order_words
+from trunnion.results.speeds import order_name
+from trunnion.results.units import amplification_words
 
 REQUIRED = 0.10
 WORTH = 0.01
@@ -50,7 +53,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
         shown = f"at {subject.shown(case.speeds[at])}"
         if near >= REQUIRED:
-            said = f"{order_words(order)} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
+            said = f"{order_name(*order)} comes no nearer than {100 * near:.3g} % to {hertz}, {shown}"
             clear.append((near, said, float(case.speeds[at])))
             continue
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
@@ -58,7 +61,7 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         gain = abs(here) / max(-2 * here.real, 1e-300)
         without = few(unlimited(case.assembly))
         needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
-        said = f"{order_words(order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
+        said = f"{order_name(*order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
         yield _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))
     if clear:
         nearest, said, speed = min(clear)
@@ -67,28 +70,28 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
 
 def _near(case: Case, name: str, status: Status, said: str, near: float, speed: float, inputs: str = "") -> Check:
     return Check(
-        name, status, RULE, said + case.suffix, above(near, REQUIRED), 0.0, near, REQUIRED, "1", speed, inputs,
-        case.name,
+        name, status, RULE, said + case.suffix, margin=above(near, REQUIRED), value=near, limit=REQUIRED, unit="1",
+        speed=speed, inputs=inputs, load_case=case.name,
     )  # fmt: skip
 
 
 def shaking_orders(case: Case) -> Array:
-    """Orders that make up 1 % of any spring's torque at least."""
+    """Orders and frequencies beside them [rad/s], (order, 2), that make up 1 % of any spring's torque at least."""
     response = case.answered
     if not len(response.order):
-        return np.zeros(0)
+        return np.zeros((0, 2))
     size = np.nan_to_num(np.abs(response.torque)).max(axis=0)
     worth = np.any(size >= WORTH * np.maximum(size.max(axis=0), 1e-300), axis=1)
-    return np.unique(response.order[worth & (response.frequency == 0) & (response.order > 0)])
+    return np.unique(np.stack([response.order[worth], response.frequency[worth]], axis=1), axis=0)
 
 
-def _nearest(speeds: Array, frequency: Array, orders: Array) -> tuple[float, float, int, bool]:
+def _nearest(speeds: Array, frequency: Array, orders: Array) -> tuple[float, tuple[float, float], int, bool]:
     """Smallest |kΩ/ω − 1| over orders and speeds, with the order and the speed's number; 0 where they meet between."""
-    off = np.multiply.outer(orders, speeds) / frequency - 1
+    off = np.abs(turning(orders[:, :1], orders[:, 1:], speeds)) / frequency - 1
     if not np.any(np.isfinite(off)):
-        return np.inf, 0.0, 0, False
+        return np.inf, (0.0, 0.0), 0, False
     size = np.where(np.isfinite(off), np.abs(off), np.inf)
     crossed = np.any(off[:, 1:] * off[:, :-1] <= 0, axis=1)
     size[crossed] = np.where(size[crossed] == size[crossed].min(axis=1, keepdims=True), 0.0, size[crossed])
     k, at = np.unravel_index(int(size.argmin()), size.shape)
-    return float(size[k, at]), float(orders[k]), int(at), bool(crossed[k])
+    return float(size[k, at]), (float(orders[k, 0]), float(orders[k, 1])), int(at), bool(crossed[k])

@@ -22,12 +22,13 @@ from trunnion.floquet.ranges.span import Gap, Piece, Span
 from trunnion.floquet.ranges.straight import straight_ranges
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.along import StabilityAlong, stability_along
+from trunnion.laws.harmonic import turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import own_motions_of, response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import Largest, first_speeds, search, sharpened, thinned
-from trunnion.results.speeds import show_speed, speed_factor
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.steady.orders.spectrum import order_spectrum
 from trunnion.waiting import OutOfTime
 
@@ -76,7 +77,7 @@ class Subject:
 
     def shown(self, speed: float) -> str:
         """A speed in the unit of the description."""
-        return show_speed(float(f"{speed * speed_factor(self.unit):.5g}") / speed_factor(self.unit), self.unit)
+        return Words(self.unit).speed(speed, 5)
 
     def ranges(self, ends: Iterable[tuple[float, float]]) -> str:
         """ "300 rpm to 400 rpm and 500 rpm"."""
@@ -438,9 +439,11 @@ def cause(case: Case, at: int, size: Array) -> Cause | None:
         return None
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])
-    frequency = order * case.speeds[at] + extra
+    frequency = float(turning(order, extra, case.speeds[at]))
+    if frequency < 0:
+        order, extra, frequency = -order, -extra, -frequency
     modes = case.modes[at].imag
-    if not np.any(np.isfinite(modes)):
+    if not np.any(np.isfinite(modes)) or not frequency:
         return Cause(order, extra)
     m = int(np.nanargmin(np.abs(np.log(modes / frequency))))
     return Cause(order, extra, m + case.first, float(modes[m]), float(frequency / modes[m] - 1))

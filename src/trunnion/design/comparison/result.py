@@ -3,36 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import isfinite, isnan, nan
 
 from trunnion.design.assessment.check import Check, Status, percent
 from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.changes import Change
 from trunnion.results.counts import any_of
-from trunnion.results.declared import Held, Result, axis, members_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
 from trunnion.results.units import in_words, with_unit
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
+from trunnion.results.words import HERTZ
 
+QUANTITIES = "frequencies, damping ratios, the largest growth rate and torques of springs, margins of checks"
 ALIKE, LITTLE = 1e-9, 1e-3
 """Relative differences below which two values count as the same, and are left out of print."""
 
 
-@dataclass(frozen=True)
+@labelled
 class Difference:
-    """One quantity of both lines: its kind ("frequency", "damping ratio", "growth rate", "torque", "margin"), values
-    in ``unit`` (SI; NaN where a line has none) and the input speeds [rad/s] at which they stand (NaN where there is
-    none)."""
+    """One quantity of both lines, in SI units; NaN where a line has none."""
 
-    name: str
-    kind: str
-    before: float
-    after: float
-    unit: str
-    speed_before: float = nan
-    speed_after: float = nan
+    name: str = internal()
+    kind: str = variable(words='"frequency", "damping ratio", "growth rate", "torque" or "margin"')
+    before: float = variable(words="in the unit of the quantity")
+    after: float = variable(words="in the unit of the quantity")
+    unit: str = variable(name="quantity_unit")
+    speed_before: float = variable("", "rad/s", "input speed where it stands", default=nan)
+    speed_after: float = variable("", "rad/s", "input speed where it stands", default=nan)
 
     @property
     def change(self) -> float:
@@ -58,20 +58,20 @@ class Difference:
         return not abs(self.change) <= LITTLE * size
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Comparison(Result):
-    """Two lines, ``names``: what changed, in the order of the description, and what it did.
+    """Two lines: what changed, in the order of the description, and what it did."""
 
-    differences: frequencies, damping ratios, largest growth rate, largest torque of every spring, margins of checks;
-    assessments: of both, None where a line has no speeds to be judged at; unit: of speeds in print.
-    """
-
-    names: tuple[str, str]
-    changes: tuple[Change, ...]
-    differences: tuple[Difference, ...]
-    assessments: tuple[Assessment | None, Assessment | None]
-    unit: str
-    findings: tuple[Finding, ...] = ()
+    names: tuple[str, str] = attribute("of the lines")
+    changes: tuple[Change, ...] = internal("in the order of the description")
+    differences: tuple[Difference, ...] = members(
+        Difference, "quantity", QUANTITIES, name="name", only="kind unit before speed_before after speed_after"
+    )
+    assessments: tuple[Assessment | None, Assessment | None] = internal(
+        "None where a line has no speeds to be judged at"
+    )
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = attribute(default=())
 
     @property
     def verdicts(self) -> tuple[Status | None, Status | None]:
@@ -97,6 +97,7 @@ class Comparison(Result):
         return tuple(one for one in self.differences if one.kind == kind)
 
     @property
+    @computed(attribute())
     def sentence(self) -> str:
         """What changed and what it did to the verdict, in one sentence."""
         if not self.changes:
@@ -108,24 +109,15 @@ class Comparison(Result):
         first, second = self.verdicts
         return f"{many}: {first}{before} before, {second}{after} after"
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Changes along their own axis, quantities with both values along theirs."""
-        yield axis("change", [one.place for one in self.changes])
-        yield over("change", "value_before", [one.before for one in self.changes])
-        yield over("change", "value_after", [one.after for one in self.changes])
-        yield axis("quantity", [one.name for one in self.differences])
-        yield from members_over("quantity", self.differences, kind="")
-        yield over("quantity", "quantity_unit", [one.unit for one in self.differences])
-        for name in ("before", "after"):
-            speed = {f"speed_{name}": "rad/s"}
-            yield from members_over("quantity", self.differences, "in the unit of the quantity", **{name: ""})
-            yield from members_over("quantity", self.differences, "input speed where it stands", **speed)
-        yield from remarks(
-            names=list(self.names),
-            verdicts=["" if v is None else str(v) for v in self.verdicts],
-            binding=["" if c is None else c.name for c in self.binding],
-            sentence=self.sentence,
-            findings=[str(f) for f in self.findings],
+        yield Coordinate("change", [one.place for one in self.changes], "change")
+        yield Variable("value_before", [one.before for one in self.changes], "change")
+        yield Variable("value_after", [one.after for one in self.changes], "change")
+        yield from super().declared()
+        yield from attributes(
+            verdicts=["" if one is None else str(one) for one in self.verdicts],
+            binding=["" if one is None else one.name for one in self.binding],
         )
 
     def table(self) -> list[dict[str, object]]:
@@ -140,17 +132,17 @@ class Comparison(Result):
         """Margins of checks before and after, or else frequencies; see ``plots.comparison.draw``."""
         return drawing(self, "plot")(self, axes, most=most)
 
-    def __str__(self) -> str:
-        rows = [f"{self.names[0]} → {self.names[1]}: {self.sentence}"]
-        rows += [f"  {one}" for one in self.changes]
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.names[0]} → {self.names[1]}: {self.sentence}"
+        yield from (f"  {one}" for one in self.changes)
         told = [one for one in self.differences if one.differs]
         shown = [one for one in told if one.matters]
-        rows += [f"  {one.name}: {self._value(one, 0)} → {self._value(one, 1)}{_in_brackets(one)}" for one in shown]
+        for one in shown:
+            yield f"  {one.name}: {self._value(one, 0)} → {self._value(one, 1)}{_in_brackets(one)}"
         if len(told) > len(shown):
-            rows.append(f"  {len(told) - len(shown)} more move by less than {100 * LITTLE:g} %")
+            yield f"  {len(told) - len(shown)} more move by less than {100 * LITTLE:g} %"
         if self.changes and not told:
-            rows.append(f"  {self._unmoved}")
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+            yield f"  {self._unmoved}"
 
     @property
     def _unmoved(self) -> str:
@@ -171,7 +163,7 @@ class Comparison(Result):
         if not isfinite(value):
             still = one.kind in ("frequency", "damping ratio")
             return ("no oscillation" if still else "none") if isnan(value) else "without bound"
-        at = f" at {show_speed(float(f'{speed:.6g}'), self.unit)}" if isfinite(speed) else ""
+        at = f" at {self.words.speed(float(f'{speed:.6g}'))}" if isfinite(speed) else ""
         return f"{value_words(value, one)}{at}"
 
 
@@ -180,7 +172,7 @@ def value_words(value: float, one: Difference) -> str:
     if one.kind == "margin":
         return f"{float(f'{100 * value:.4g}'):g} %"
     if one.kind == "frequency":
-        return show_speed(value, "Hz")
+        return HERTZ.speed(value)
     return in_words(value, one.unit)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import IntEnum
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -12,16 +12,19 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Integers
 from trunnion.floquet.tongues.windows import StableWindows
-from trunnion.results.declared import Described, Held, axis, over, remark, remarks, remarks_of
+from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.finding import Finding
-from trunnion.results.quantity_axes import QuantityAxis, quantity_axis
-from trunnion.results.speeds import show_speed, speed_factor
+from trunnion.results.quantity_axes import QuantityAxis
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
 
 STABILITY = "stability"
+WHOLE = "the same for every speed between; None of a single speed, and where the listed ones alone were asked for"
 UNSEARCHED = "; what lies between these speeds was not searched"
 """Regions of instability may be narrower than the steps of the speed."""
 
@@ -35,51 +38,47 @@ class LimitKind(IntEnum):
     UNKNOWN = 3
 
 
-@dataclass(frozen=True)
+KINDS = {
+    "flag_values": np.array([int(k) for k in LimitKind], dtype=np.int8),
+    "flag_meanings": " ".join(k.name.lower() for k in LimitKind),
+}
+
+
+@labelled
 class OtherLimit:
-    """A limit of the description, and the value (speed,) of the parameter at which it is reached first.
+    """A limit of the description, and the value of the parameter at which it is reached first."""
 
-    ``allowed`` [unit], the margin that the description requires taken off; ``reached`` is infinite where it is not
-    reached up to the end of the range.
-    """
-
-    name: str
-    allowed: float
-    unit: str
-    reached: Array
+    name: str = internal()
+    allowed: float = variable(words="the margin that the description requires taken off")
+    unit: str = variable(name="allowed_unit")
+    reached: Array = internal("infinite where it is not reached up to the end of the range", axes="speed")
 
 
-@dataclass(frozen=True, repr=False)
-class StableLimit(Described):
-    """Largest stable value of ``parameter`` at each speed, the stable ranges above it, and the other limits.
+@labelled
+class StableLimit(Result):
+    """Largest stable value of a parameter at each speed, the stable ranges above it, and the other limits."""
 
-    speed (speed,) [rad/s]; limit (speed,) in SI units: the value below which nothing is unstable; kind (speed,): codes
-    of ``LimitKind``; unstable: of each speed its unstable ranges (ranges, 2), rising; low, high: the range searched;
-    complete: whether every zero of the boundary functions was found, which ``search`` puts in words; others: limits of
-    the description, and ``others_search`` how they were looked for; whole: the same for every speed between the
-    lowest and the highest, None of a single speed and where the listed ones alone were asked for; ended: what ended the
-    search before it was done, as a clause, "" where it was done; ``findings`` say what
-    of the line is left out; speed_unit: that speeds are printed in.
-    """
+    SPEEDS_IN = "speed_unit"
 
-    parameter: str
-    unit: str
-    speed: Array
-    limit: Array
-    kind: Codes
-    unstable: tuple[Array, ...]
-    low: float
-    high: float
-    complete: bool
-    search: str
-    others: tuple[OtherLimit, ...] = ()
-    others_search: str = ""
-    whole: StableWindows | None = None
-    findings: tuple[Finding, ...] = ()
-    speed_unit: str = "rad/s"
-    ended: str = ""
+    parameter: str = attribute("what is raised")
+    unit: str = internal("of the parameter")
+    speed: Array = coordinate("speed", "rad/s")
+    limit: Array = variable("speed", "{self.unit}", "largest stable {self.parameter}")
+    kind: Codes = variable("speed", words="codes of LimitKind", more=KINDS)
+    unstable: tuple[Array, ...] = internal("of each speed its unstable ranges (ranges, 2), rising", axes="speed")
+    low: float = attribute("end of the range searched")
+    high: float = attribute("end of the range searched")
+    complete: bool = attribute("whether every zero of the boundary functions was found")
+    search: str = attribute("the same in words")
+    others: tuple[OtherLimit, ...] = members(OtherLimit, "other_limit", name="name", default=())
+    others_search: str = internal("how other limits were looked for", default="")
+    whole: StableWindows | None = internal(WHOLE, default=None)
+    findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
+    speed_unit: str = internal("that speeds are printed in", default="rad/s")
+    ended: str = attribute("what ended the search before it was done, as a clause", default="")
 
     @property
+    @computed(variable("speed", "1", "separate unstable ranges"))
     def intervals(self) -> Integers:
         """How many separate unstable ranges each speed has."""
         return np.array([len(ranges) for ranges in self.unstable], dtype=np.int64)
@@ -115,11 +114,13 @@ class StableLimit(Described):
         return float(self.speed[int(np.nanargmin(self.limit))])
 
     @cached_property
+    @computed(variable("speed", "{self.unit}", "up to which no limit is reached"))
     def usable(self) -> Array:
         """The value (speed,) up to which neither stability nor any other limit is reached."""
         return np.asarray(np.min([self.limit, *(o.reached for o in self.others)], axis=0))
 
     @cached_property
+    @computed(variable("speed"))
     def binding(self) -> tuple[str, ...]:
         """What ends ``usable`` at each speed: "stability", the name of another limit, or "" up to the end."""
         names = [STABILITY, *(o.name for o in self.others)]
@@ -131,63 +132,61 @@ class StableLimit(Described):
         return tuple(names[w] if known[w, i] <= self.high else "" for i, w in enumerate(which.tolist()))
 
     @property
+    @computed(attribute())
     def sentence(self) -> str:
-        """The answer for all speeds in a sentence; speeds in the unit of the line's description."""
-        return self.sentence_in(self.speed_unit)
-
-    def sentence_in(self, unit: str) -> str:
         """The answer for all speeds in a sentence, and before it the one for every speed between where it is known."""
         if self.ended:
-            return self._ended_in_words(unit)
-        shown, factor = quantity_axis(self.parameter, self.unit, unit), speed_factor(unit)
-        low, high = (float(end) * factor for end in (self.speed.min(), self.speed.max()))
-        span = f"all {len(self.speed)} speeds from {low:.6g} to {high:.6g} {unit}"
+            return self._ended_in_words()
+        words, shown = self.words, self._shown
+        low, high = (float(end) * words.factor for end in (self.speed.min(), self.speed.max()))
+        span = f"all {len(self.speed)} speeds from {low:.6g} to {high:.6g} {words.unit}"
         if self.whole is not None:
             span = f"the {len(self.speed)} speeds that were asked for"
-        span = span if len(self.speed) > 1 else f"{high:.6g} {unit}"
+        span = span if len(self.speed) > 1 else f"{high:.6g} {words.unit}"
         at = self.critical_speed
         if np.any(self.kind == LimitKind.UNKNOWN):
-            failed = show_speed(float(self.speed[self.kind == LimitKind.UNKNOWN][0]), unit)
+            failed = words.speed(float(self.speed[self.kind == LimitKind.UNKNOWN][0]))
             said = (
                 f"At {failed} it is not known over the whole range of the {shown.quantity} whether the line is stable"
             )
         elif at is None:
             said = f"Stable at {span} up to {shown.value(self.high)}, the end of the range"
         elif np.any(self.kind == LimitKind.AT_ONCE):
-            said = f"Unstable from {shown.value(self.low)} on, at {show_speed(at, unit)}"
+            said = f"Unstable from {shown.value(self.low)} on, at {words.speed(at)}"
         else:
-            said = f"Stable at {span} up to {shown.value(self.smallest)}, set at {show_speed(at, unit)}"
-        answer = f"{said}{self._other_in_words(shown, unit)}{self._again_in_words(shown)}"
+            said = f"Stable at {span} up to {shown.value(self.smallest)}, set at {words.speed(at)}"
+        answer = f"{said}{self._other_in_words(shown)}{self._again_in_words(shown)}"
         if self.whole is not None:
-            return f"{self.whole.sentence_in(unit)} {answer}."
+            return f"{self.whole.in_unit(self.speed_unit).sentence} {answer}."
         return f"{answer}{UNSEARCHED if len(self.speed) > 1 else ''}."
+
+    @property
+    def _shown(self) -> QuantityAxis:
+        return self.words.parameter(self.parameter, self.unit)
+
+    def _at(self, places: Integers, whole: StableWindows | None) -> StableLimit:
+        """The same at some of the speeds."""
+        return replace(
+            self, speed=self.speed[places], limit=self.limit[places], kind=self.kind[places], whole=whole, ended="",
+            unstable=tuple(self.unstable[k] for k in places),
+            others=tuple(replace(other, reached=other.reached[places]) for other in self.others),
+        )  # fmt: skip
 
     def sentence_at(self, speed: float, unit: str | None = None) -> str:
         """The answer at the speed of the result that is nearest to ``speed`` [rad/s], in a sentence."""
-        i, unit = int(np.abs(self.speed - speed).argmin()), unit or self.speed_unit
-        others = tuple(replace(other, reached=other.reached[i : i + 1]) for other in self.others)
-        ranges = self.unstable[i : i + 1]
-        return replace(
-            self, speed=self.speed[i : i + 1], limit=self.limit[i : i + 1], kind=self.kind[i : i + 1],
-            unstable=ranges, others=others, whole=None, ended="",
-        ).sentence_in(unit)  # fmt: skip
+        nearest = int(np.abs(self.speed - speed).argmin())
+        return self.in_unit(unit)._at(np.array([nearest]), None).sentence
 
-    def _ended_in_words(self, unit: str) -> str:
+    def _ended_in_words(self) -> str:
         """The answer at the speeds that were searched before a time limit ended the search."""
         known = self.kind != LimitKind.UNKNOWN
         ended = f"{self.ended[0].upper()}{self.ended[1:]}: {int(known.sum())} of {len(known)} speeds were searched"
         left = ", and nothing between them." if self.whole is None and len(known) > 1 else "."
         if not np.any(known):
             return f"{ended}{left}"
-        there = np.flatnonzero(known)
-        part = replace(
-            self, speed=self.speed[there], limit=self.limit[there], kind=self.kind[there],
-            unstable=tuple(self.unstable[k] for k in there), ended="",
-            others=tuple(replace(other, reached=other.reached[there]) for other in self.others),
-        )  # fmt: skip
-        return f"{part.sentence_in(unit)} {ended}{left}"
+        return f"{self._at(np.flatnonzero(known), self.whole).sentence} {ended}{left}"
 
-    def _other_in_words(self, shown: QuantityAxis, unit: str) -> str:
+    def _other_in_words(self, shown: QuantityAxis) -> str:
         """ "; above 28° the vibratory torque of Shaft 2 binds, at 1850 rpm", where another limit ends before."""
         if not self.others:
             return ""
@@ -196,7 +195,7 @@ class StableLimit(Described):
         first, name = float(reached[which, at]), self.others[which].name
         if not first <= self.high or first >= self.smallest:
             return ""
-        where = f", at {show_speed(float(self.speed[at]), unit)}" if len(self.speed) > 1 else ""
+        where = f", at {self.words.speed(float(self.speed[at]))}" if len(self.speed) > 1 else ""
         if first <= self.low:
             return f"; the {name} is exceeded at the start of the range already{where}"
         return f"; above {shown.number(first)} the {name} binds{where}"
@@ -211,37 +210,22 @@ class StableLimit(Described):
             f"{shown.number(a)} to {shown.number(b)}" for a, b in above
         )
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """The limit, its kind, every unstable range, and the other limits, over speed."""
-        meanings = " ".join(k.name.lower() for k in LimitKind)
-        codes = np.array([int(k) for k in LimitKind], dtype=np.int8)
-        yield axis("speed", self.speed, "rad/s")
-        yield over("speed", "limit", self.limit, self.unit, f"largest stable {self.parameter}")
-        yield over("speed", "kind", self.kind, flag_values=codes, flag_meanings=meanings)
-        yield over("speed", "intervals", self.intervals, "1", "separate unstable ranges")
-        yield over("speed", "usable", self.usable, self.unit, "up to which no limit is reached")
-        yield over("speed", "binding", list(self.binding))
+        yield from super().declared()
         every = np.concatenate([*self.unstable, np.zeros((0, 2))])
-        yield axis("range", np.arange(len(every)))
-        yield over("range", "range_speed", np.repeat(self.speed, self.intervals), "rad/s", "speed of an unstable range")
-        yield over("range", "range_from", every[:, 0], self.unit)
-        yield over("range", "range_to", every[:, 1], self.unit)
-        yield axis("other_limit", [o.name for o in self.others])
+        owners = np.repeat(self.speed, self.intervals)
+        yield Coordinate("range", np.arange(len(every)), "range")
+        yield Variable("range_speed", owners, "range", "rad/s", "speed of an unstable range")
+        yield Variable("range_from", every[:, 0], "range", self.unit)
+        yield Variable("range_to", every[:, 1], "range", self.unit)
         reached = np.array([o.reached for o in self.others]).reshape(len(self.others), len(self.speed)).T
-        yield over("speed other_limit", "reached", np.where(reached <= self.high, reached, np.nan), self.unit,
-                   f"{self.parameter} at which a limit is reached first; NaN: not in the range")  # fmt: skip
-        yield over("other_limit", "allowed", np.array([o.allowed for o in self.others], dtype=float))
-        yield over("other_limit", "allowed_unit", [o.unit for o in self.others])
-        yield from remarks_of(self, "parameter", "low", "high")
-        yield from remarks(
-            complete=int(self.complete),
-            search=self.search,
-            others_search=self.others_search or None,
-            sentence=self.sentence,
-            ended=self.ended,
-        )
+        reached = np.where(reached <= self.high, reached, np.nan)
+        first = f"{self.parameter} at which a limit is reached first; NaN: not in the range"
+        yield Variable("reached", reached, "speed other_limit", self.unit, first)
+        yield from attributes(others_search=self.others_search or None)
         if self.whole is not None:
-            yield remark("whole_range", self.whole.sentence)
+            yield from attributes(whole_range=self.whole.in_unit(self.speed_unit).sentence)
 
     def plot(
         self,
@@ -254,30 +238,20 @@ class StableLimit(Described):
         """Limits over speed; see ``plots.stable_limit.draw``."""
         return drawing(self, "plot")(self, axes, unit=unit, operating=operating, values=values)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.speed_unit
-        lines = [self.sentence_in(unit), f"  {self.search}"]
+    def _lines(self) -> Iterator[str]:
+        yield self.sentence
+        yield f"  {self.search}"
         several = int(np.count_nonzero(self.intervals > 1))
         if several:
-            many = "1 speed" if several == 1 else f"{several} speeds"
-            lines.append(f"  at {many} the line is stable again above the limit, and unstable once more")
-        lines += [f"  {text}" for text in self._others_in_lines(unit)]
-        if self.whole is not None:
-            lines.append(f"  between these speeds: {self.whole.search}")
-        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
-
-    def _others_in_lines(self, unit: str) -> Iterator[str]:
-        shown = quantity_axis(self.parameter, self.unit, unit)
+            yield f"  at {counted(several, 'speed')} the line is stable again above the limit, and unstable once more"
         for o in self.others:
-            at = int(o.reached.argmin())
-            first = float(o.reached[at])
-            if first <= self.high:
-                yield f"{o.name}: reached at {shown.number(first)}, at {show_speed(float(self.speed[at]), unit)}"
-            else:
-                yield f"{o.name}: not reached in the range"
+            at, first = int(o.reached.argmin()), float(o.reached.min())
+            where = f"reached at {self._shown.number(first)}, at {self.words.speed(float(self.speed[at]))}"
+            yield f"  {o.name}: {where if first <= self.high else 'not reached in the range'}"
         if self.others_search:
-            yield self.others_search
+            yield f"  {self.others_search}"
+        if self.whole is not None:
+            yield f"  between these speeds: {self.whole.search}"
 
 
 def _between(ranges: Array, low: float, high: float) -> Array:

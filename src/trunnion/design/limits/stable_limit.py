@@ -211,9 +211,10 @@ def _result(
     known = {finding.sentence for finding in said}
     notes = tuple(Finding(Gravity.NOTE, f"{r[0].upper()}{r[1:]}") for r in task.remarks if r not in known)
     return StableLimit(
-        task.x.label, task.x.unit, speed, limit, kind, unstable, low, high,
-        region.by_coefficients and not region.uncovered, _search_words(region),
-        *others, whole, (*said, *notes), speed_unit(assembly.line),
+        parameter=task.x.label, unit=task.x.unit, speed=speed, limit=limit, kind=kind, unstable=unstable, low=low,
+        high=high, complete=region.by_coefficients and not region.uncovered, search=_search_words(region),
+        others=others[0], others_search=others[1], whole=whole, findings=(*said, *notes),
+        speed_unit=speed_unit(assembly.line),
     )  # fmt: skip
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,63 +11,59 @@ from trunnion.design.assessment.check import Status
 from trunnion.design.assessment.result import Assessment
 from trunnion.design.sensitivity.variables import STEPS, DesignVariable
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Result, axis, over, remark, remarks_of
+from trunnion.results.fields import attribute, coordinate, internal, labelled, members
+from trunnion.results.fields import variable as stated
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable, attributes
 
+SIZE = "|Δ ln p| of a factor, an angle over 30 deg of a joint and 257 deg of a phase"
 STRONGEST = 3
 """Sensitivities printed of each check."""
 LEAST, SHARE = 1e-5, 0.01
 """Changes of a value that no reader can see, and shares of the strongest, below which sensitivities are not printed."""
 
 
-@dataclass(frozen=True)
+@labelled
 class Remedy:
-    """One change that satisfies ``check`` and breaks no other.
+    """One change that satisfies a check and breaks no other."""
 
-    variable: path of what changes, from ``before`` to ``after`` in ``unit``; size: |Δ ln p| of a factor, an angle over
-    30 deg of a joint and 257 deg of a phase; value, margin and required_margin: of the check after the change;
-    verdict: of the whole line after it.
-    """
+    check: str = stated(name="remedy_check")
+    variable: str = stated(words="path of what changes", name="remedy_variable")
+    before: float = stated(name="remedy_before")
+    after: float = stated(name="remedy_after")
+    unit: str = stated(words="of the variable", name="remedy_unit")
+    size: float = stated(words=SIZE, name="remedy_size")
+    value: float = stated(words="of the check after the change", name="remedy_value")
+    margin: float = stated(words="of the check after the change", name="remedy_margin")
+    required_margin: float = stated(words="of the check", name="remedy_required_margin")
+    verdict: Status = stated(words="of the whole line after it", name="remedy_verdict")
+    sentence: str = stated()
 
-    check: str
-    variable: str
-    before: float
-    after: float
-    unit: str
-    size: float
-    value: float
-    margin: float
-    required_margin: float
-    verdict: Status
-    sentence: str
+    @property
+    def title(self) -> str:
+        """The check and what changes."""
+        return f"{self.check}: {self.variable}"
 
     def __str__(self) -> str:
         return self.sentence
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Remedies(Result):
     """Smallest single changes for every check that is exceeded or has little margin, and what each check is
-    sensitive to.
+    sensitive to."""
 
-    checks: names of those checks; remedies: smallest change first for each of them; sensitivity (check, variable):
-    d ln(value)/d ln p, of angles d ln(value)/dφ [1/rad], with sensitivity_error; sensitivity_speed (check,) [rad/s]:
-    where it was taken; closest: for checks without a remedy the smallest change that would satisfy them, and what it
-    breaks; assessment: of the line as it is; lines: how many were judged; verified: which checks of the
-    changed lines were judged anew, and where; ended: what ended the search before it was done, as a clause, "" where it
-    was done.
-    """
-
-    assessment: Assessment
-    checks: tuple[str, ...]
-    variables: tuple[DesignVariable, ...]
-    sensitivity: Array
-    sensitivity_error: Array
-    sensitivity_speed: Array
-    remedies: tuple[Remedy, ...]
-    closest: dict[str, str]
-    lines: int
-    verified: str
-    ended: str = ""
+    assessment: Assessment = internal("of the line as it is")
+    checks: tuple[str, ...] = coordinate("check", words="those that are exceeded or have little margin")
+    variables: tuple[DesignVariable, ...] = members(DesignVariable, "variable", name="path")
+    sensitivity: Array = stated("check variable", words="d ln(value)/d ln(variable), of angles per radian")
+    sensitivity_error: Array = stated("check variable")
+    sensitivity_speed: Array = stated("check", "rad/s", "input speed where it was taken")
+    remedies: tuple[Remedy, ...] = members(Remedy, "remedy", "smallest change first for each check", name="title")
+    closest: dict[str, str] = internal("the smallest change for checks without a remedy, and what it breaks")
+    lines: int = attribute("how many were judged")
+    verified: str = attribute("which checks of the changed lines were judged anew, and where")
+    ended: str = attribute("what ended the search before it was done, as a clause", default="")
 
     def of(self, check: str) -> tuple[Remedy, ...]:
         """What helps one check, smallest change first."""
@@ -108,35 +103,21 @@ class Remedies(Result):
                 found.append(f"{check}: {self.ended}, so that other changes may help too")
         return tuple(found)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Sensitivities over (check, variable), remedies along their own axis."""
-        yield axis("check", list(self.checks))
-        yield axis("variable", [v.path for v in self.variables])
-        yield over("variable", "present", [v.value for v in self.variables], about="in the unit of the variable")
-        yield over("variable", "variable_unit", [v.unit for v in self.variables])
-        about = "d ln(value)/d ln(variable), of angles per radian"
-        yield over("check variable", "sensitivity", self.sensitivity, about=about)
-        yield over("check variable", "sensitivity_error", self.sensitivity_error)
-        yield over("check", "sensitivity_speed", self.sensitivity_speed, "rad/s", "input speed where it was taken")
-        yield over("check", "closest", [self.closest.get(check, "") for check in self.checks])
-        yield axis("remedy", [f"{r.check}: {r.variable}" for r in self.remedies])
-        for key in ("check", "variable", "before", "after", "unit", "size", "value", "margin", "required_margin"):
-            yield over("remedy", f"remedy_{key}", [getattr(r, key) for r in self.remedies])
-        yield over("remedy", "remedy_verdict", [str(r.verdict) for r in self.remedies])
-        yield over("remedy", "sentence", [r.sentence for r in self.remedies])
-        yield remark("verdict", str(self.assessment.verdict))
-        yield from remarks_of(self, "lines", "verified", "ended")
+        yield from super().declared()
+        yield Variable("closest", [self.closest.get(check, "") for check in self.checks], "check")
+        yield from attributes(verdict=self.assessment.verdict)
 
-    def __str__(self) -> str:
-        rows = [
+    def _lines(self) -> Iterator[str]:
+        yield (
             f"remedies: {counted(len(self.remedies), 'single change')} for {counted(len(self.checks), 'check')}, "
             f"{counted(self.lines, 'line')} judged"
-        ]
-        rows += [f"  each verified by judging the changed line: {self.verified}"] if self.remedies else []
-        rows += [f"  {sentence}" for sentence in self.sentences]
-        for check in self.checks:
-            rows += [f"  {sentence}" for sentence in self.sensitivity_sentences(check)]
-        return "\n".join(rows)
+        )
+        if self.remedies:
+            yield f"  each verified by judging the changed line: {self.verified}"
+        yield from (f"  {sentence}" for sentence in self.sentences)
+        yield from (f"  {sentence}" for check in self.checks for sentence in self.sensitivity_sentences(check))
 
     def sensitivity_sentences(self, check: str) -> list[str]:
         """What the value of a check follows most, in one sentence; none where it has no value."""

@@ -178,7 +178,7 @@ def _speed_by_speed(subject: Subject, case: Case, speeds: Array) -> Iterator[tup
     for i, speed in enumerate(speeds.tolist()):
         one = at_speed(subject, case, speed)
         if not isinstance(answer, str):
-            known = response_of_spectrum(case.assembly, answer.spectrum.at(i))
+            known = response_of_spectrum(case.assembly, answer.spectrum.take(slice(i, i + 1)))
             one = replace(one, cases=(replace(one.cases[0], known=known),))
         yield speed, one
 

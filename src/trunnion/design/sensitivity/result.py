@@ -12,11 +12,12 @@ from trunnion.arrays import Array
 from trunnion.design.sensitivity.variables import STEPS, Scale, scale_of
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.results.declared import Held, Result, axis, members_over, over, remark
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed
-from trunnion.results.units import in_words, with_unit
+from trunnion.results.result import Result
+from trunnion.results.units import with_unit
+from trunnion.results.words import HERTZ
 
 STRONGEST = 3
 """Parameters printed of each quantity."""
@@ -27,23 +28,22 @@ NEGLIGIBLE = 1e-12
 EXACT, DIFFERENCES, IMPLICIT = "exact", "differences", "implicit"
 KINDS_OF_QUANTITY = ("check", "margin", "growth rate", "spectral radius", "torque", "tip", "frequency", "damping ratio")
 FLAT = "follows none of these parameters"
+PER = "unit of the quantity per unit of the parameter"
 CROSSES_ZERO = ("growth rate", "spectral radius")
 """Kinds whose changes are printed as they are: a share of what may be zero tells nothing."""
 
 
-@dataclass(frozen=True)
+@labelled
 class Quantity:
-    """What follows the parameters: name, kind (one of ``KINDS_OF_QUANTITY``), value in ``unit`` (SI), the input speed
-    [rad/s] where it was taken (NaN where there is none), method ("exact", "differences", "implicit"); refused: why it
-    has no derivatives, "" where it has."""
+    """What follows the parameters."""
 
-    name: str
-    kind: str
-    value: float
-    unit: str
-    method: str
-    speed: float = nan
-    refused: str = ""
+    name: str = internal()
+    kind: str = variable(words="one of KINDS_OF_QUANTITY")
+    value: float = variable(words="in the unit of the quantity")
+    unit: str = variable(name="quantity_unit")
+    method: str = variable(words='"exact", "differences" or "implicit"')
+    speed: float = variable("", "rad/s", "input speed where it was taken", default=nan)
+    refused: str = variable(words="why it has no derivatives, if it has none", default="")
 
 
 @dataclass(frozen=True)
@@ -70,23 +70,23 @@ class Effect:
     step_words: str
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Sensitivities(Result):
-    """Derivatives of quantities by the parameters of a description.
+    """Derivatives of quantities by the parameters of a description, in SI units, NaN where there is none.
 
-    quantities: what follows; parameters: names, with value and unit; derivative (quantity, parameter) in SI units,
-    error likewise, NaN where there is none; at a kink the derivative alone is NaN and the error half of what the slopes
-    on its two sides differ by; findings: what was left out; unit: of speeds in print.
+    At a kink the derivative alone is NaN and the error half of what the slopes on its two sides differ by.
     """
 
-    quantities: tuple[Quantity, ...]
-    parameters: tuple[str, ...]
-    parameter_value: Array
-    parameter_unit: tuple[str, ...]
-    derivative: Array
-    error: Array
-    unit: str
-    findings: tuple[Finding, ...] = ()
+    quantities: tuple[Quantity, ...] = members(
+        Quantity, "quantity", "what follows", name="name", only="value unit kind method refused speed"
+    )
+    parameters: tuple[str, ...] = coordinate("parameter")
+    parameter_value: Array = variable("parameter", words="in the unit of the parameter")
+    parameter_unit: tuple[str, ...] = variable("parameter")
+    derivative: Array = variable("quantity parameter", words=PER)
+    error: Array = variable("quantity parameter", words=PER, name="derivative_error")
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = attribute("what was left out", default=())
 
     @property
     def value(self) -> Array:
@@ -94,6 +94,7 @@ class Sensitivities(Result):
         return np.array([q.value for q in self.quantities])
 
     @property
+    @computed(variable("quantity parameter", "1", "d ln(quantity)/d ln(parameter)"))
     def logarithmic(self) -> Array:
         """d ln q/d ln p (quantity, parameter) [1]; NaN where a quantity or a parameter is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -102,12 +103,14 @@ class Sensitivities(Result):
         return np.where(usable, found, np.nan)
 
     @property
+    @computed(variable("parameter", words="usual step, in the unit of the parameter"), after="parameter_unit")
     def step(self) -> Array:
         """Usual steps (parameter,) in the units of the parameters: 1 %, 1 deg of a joint, 10 deg of a phase; NaN where
         1 % is nothing."""
         return np.array([_step(p, v)[0] for p, v in zip(self.parameters, self.parameter_value, strict=True)])
 
     @property
+    @computed(variable("quantity parameter", words="by the usual step, in the unit of the quantity"))
     def change(self) -> Array:
         """Change of every quantity (quantity, parameter), in its unit, that the usual step of a parameter makes."""
         return self.derivative * self.step
@@ -173,32 +176,14 @@ class Sensitivities(Result):
             parts.append(f"no derivative by {', '.join(kinks)}, where it has a kink")
         return f"{head}: {', '.join(parts) if parts else FLAT}"
 
-    def declared(self) -> Iterator[Held]:
-        """Derivatives over (quantity, parameter)."""
-        yield axis("quantity", [q.name for q in self.quantities])
-        yield axis("parameter", list(self.parameters))
-        yield over("quantity", "value", self.value, about="in the unit of the quantity")
-        yield over("quantity", "quantity_unit", [q.unit for q in self.quantities])
-        yield from members_over("quantity", self.quantities, kind="", method="", refused="")
-        yield over("quantity", "speed", [q.speed for q in self.quantities], "rad/s", "input speed where it was taken")
-        yield over("parameter", "parameter_value", self.parameter_value, about="in the unit of the parameter")
-        yield over("parameter", "parameter_unit", list(self.parameter_unit))
-        yield over("parameter", "step", self.step, about="usual step, in the unit of the parameter")
-        about = "unit of the quantity per unit of the parameter"
-        yield over("quantity parameter", "derivative", self.derivative, about=about)
-        yield over("quantity parameter", "derivative_error", self.error, about=about)
-        yield over("quantity parameter", "logarithmic", self.logarithmic, "1", "d ln(quantity)/d ln(parameter)")
-        yield over("quantity parameter", "change", self.change, about="by the usual step, in the unit of the quantity")
-        yield remark("findings", [str(f) for f in self.findings])
-
     def plot(self, quantity: str | None = None, axes: Axes | None = None, *, most: int = 10) -> Axes:
         """Bars of what one quantity follows most, by default the first check, torque or growth rate there is; see
         ``plots.sensitivity.draw``."""
         return drawing(self, "plot")(self, quantity, axes, most=most)
 
-    def __str__(self) -> str:
+    def _lines(self) -> Iterator[str]:
         many = "quantity" if len(self.quantities) == 1 else "quantities"
-        rows = [f"sensitivity of {len(self.quantities)} {many} to {len(self.parameters)} parameters"]
+        yield f"sensitivity of {len(self.quantities)} {many} to {len(self.parameters)} parameters"
         for kind in KINDS_OF_QUANTITY:
             if kind == "spectral radius":  # the growth rate in other words
                 continue
@@ -206,22 +191,21 @@ class Sensitivities(Result):
             if kind == "margin":  # where it moves though the value does not
                 flat = {q.name for q in self.quantities if q.kind == "check" and not self.ranked(q.name)}
                 own = [q for q in own if q.name.removeprefix("margin of ") in flat and self.ranked(q.name)]
-            rows += [f"  {self.sentence(q)}" for q in own[:PRINTED]]
+            yield from (f"  {self.sentence(q)}" for q in own[:PRINTED])
             if len(own) > PRINTED:
-                rows.append(f"  … and {len(own) - PRINTED} more of this kind: .ranked(name)")
-        return "\n".join([*rows, *(f"  {finding}" for finding in self.findings)])
+                yield f"  … and {len(own) - PRINTED} more of this kind: .ranked(name)"
 
     def shown(self, quantity: Quantity) -> str:
         """The value of a quantity in an engineer's unit."""
         if quantity.unit == "rad/s":
             if quantity.kind == "frequency":
-                return show_speed(quantity.value, "Hz")
-            return show_speed(float(f"{quantity.value:.6g}"), self.unit)
+                return HERTZ.speed(quantity.value)
+            return self.words.speed(float(f"{quantity.value:.6g}"))
         if quantity.kind == "margin":
             return f"{100 * quantity.value:.3g} %"
         if quantity.kind in CROSSES_ZERO:
             return with_unit(f"{quantity.value:.4g}", quantity.unit)
-        return in_words(quantity.value, quantity.unit)
+        return self.words.value(quantity.value, quantity.unit)
 
     def _place(self, name: str) -> int:
         names = [q.name for q in self.quantities]

@@ -36,7 +36,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.tongues.result import Tongues
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed
+from trunnion.results.words import Words
 from trunnion.steady.orders.forced_response import shaft_names
 
 KINDS = ("frequencies", "growth", "torques", "checks")
@@ -145,7 +145,7 @@ class _Question:
         self.near, self.lines = Neighbourhood(self.assembly), Neighbours(self.assembly)
 
     def shown(self, speed: float) -> str:
-        return show_speed(float(f"{speed:.12g}"), self.unit)
+        return Words(self.unit).speed(float(f"{speed:.12g}"))
 
 
 def _tell_part(progress: Callable[[float], None] | None, part: int, parts: int, share: float) -> None:

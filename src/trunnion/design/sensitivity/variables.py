@@ -8,7 +8,6 @@ phase.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
 from math import ceil, exp, floor, isfinite, log, log10, pi
@@ -16,6 +15,7 @@ from math import ceil, exp, floor, isfinite, log, log10, pi
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.quantities import DEGREE
+from trunnion.results.fields import internal, labelled, variable
 from trunnion.results.units import in_words
 
 BEND, TURN = 30 * DEGREE, pi / 0.7
@@ -49,15 +49,15 @@ STEPS = {
 """Steps in which sensitivities are printed."""
 
 
-@dataclass(frozen=True)
+@labelled
 class DesignVariable:
-    """One number of a line that may be changed: its path as ``pack`` names it, and how changes are measured."""
+    """One number of a line that may be changed."""
 
-    path: str
-    column: int
-    value: float
-    unit: str
-    scale: Scale
+    path: str = internal("as ``pack`` names it")
+    column: int = internal("of the packed numbers")
+    value: float = variable(words="in the unit of the variable", name="present")
+    unit: str = variable(words="of the value", name="variable_unit")
+    scale: Scale = internal("how changes are measured")
 
     def at(self, size: float) -> float:
         """The value after a change of signed ``size``."""

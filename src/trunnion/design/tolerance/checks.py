@@ -20,7 +20,9 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.floquet.tolerance.spread import Spread, numbers_at, tables, values_in_words
-from trunnion.results.declared import Held, Result, axis, over, remarks
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.waiting import OutOfTime, time_is_up, to_the_end
 
 SECONDS = 30.0
@@ -40,74 +42,54 @@ class WorstLine:
     because: str
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class CheckStudy(Result):
-    """Probability that the checks of ``assess`` hold within tolerances.
+    """Probability that the checks of ``assess`` hold within tolerances; lines that could not be computed exceed."""
 
-    check: names; probability (check,) and interval (check, 2) of ``confidence`` that each is not exceeded; judged
-    (check,): share of lines in which it could be judged; decides (check,): whether the verdict rests on it; together
-    and together_interval: that none of these is exceeded; lines: how many were judged, in ``seconds`` each;
-    failed: how many could not be computed, which count as exceeding; worst: see ``WorstLine``; ranking: parameters by
-    the share of the scatter of the worst check's margin that a linear fit gives to each; ended: what ended the study
-    before it was done, as a clause, "" where it was done.
-    """
+    check: tuple[str, ...] = coordinate("check")
+    probability: Array = variable("check", "1", "that it is not exceeded")
+    interval: Array = internal("of the probability", "1", "check end")
+    judged: Array = variable("check", "1", "share of lines in which the check could be judged")
+    decides: Flags = variable("check", words="whether the verdict rests on it")
+    together: float = attribute("probability that no check is exceeded on which it rests", name="checks_together")
+    together_interval: tuple[float, float] = attribute(name="checks_together_interval")
+    confidence: float = internal("of the intervals", "1")
+    lines: int = attribute("judged", name="checks_lines")
+    failed: int = attribute("that could not be computed", name="checks_failed")
+    chosen_by_cost: bool = internal("whether as many lines were judged as the time allowed")
+    seconds: float = internal("that each line took")
+    worst: WorstLine | None = internal("with the least margin to spare that was judged")
+    ranking: tuple[tuple[str, float], ...] = internal("parameters by the share of the scatter of the worst margin")
+    ended: str = internal("what ended the study before it was done, as a clause", default="")
 
-    check: tuple[str, ...]
-    probability: Array
-    interval: Array
-    judged: Array
-    decides: Flags
-    together: float
-    together_interval: tuple[float, float]
-    confidence: float
-    lines: int
-    failed: int
-    chosen_by_cost: bool
-    seconds: float
-    worst: WorstLine | None
-    ranking: tuple[tuple[str, float], ...]
-    ended: str = ""
-
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Probabilities by check, the worst line."""
-        yield axis("check", list(self.check))
-        yield over("check", "probability", self.probability, "1")
-        yield over("check", "probability_low", self.interval[:, 0], "1")
-        yield over("check", "probability_high", self.interval[:, 1], "1")
-        yield over("check", "judged", self.judged, "1", "share of lines in which the check could be judged")
-        yield over("check", "decides", self.decides.astype(np.int8))
-        yield axis("check_parameter", [name for name, _ in self.ranking])
-        yield over("check_parameter", "explained_of_check", np.array([share for _, share in self.ranking]), "1")
-        yield from remarks(
-            checks_together=self.together,
-            checks_together_interval=list(self.together_interval),
-            checks_lines=self.lines,
-            checks_failed=self.failed,
-        )
+        yield from super().declared()
+        yield Variable("probability_low", self.interval[:, 0], "check", "1")
+        yield Variable("probability_high", self.interval[:, 1], "check", "1")
+        yield Coordinate("check_parameter", [name for name, _ in self.ranking], "check_parameter")
+        yield Variable("explained_of_check", np.array([share for _, share in self.ranking]), "check_parameter", "1")
         if self.worst is not None:
-            yield from remarks(checks_worst=self.worst.check, checks_worst_spare=self.worst.spare)
+            yield from attributes(checks_worst=self.worst.check, checks_worst_spare=self.worst.spare)
 
-    def __str__(self) -> str:
+    def _lines(self) -> Iterator[str]:
         low, high = self.together_interval
         why = f", as many as {SECONDS:g} s allow at {self.seconds:.2g} s each" if self.chosen_by_cost else ""
-        rows = [
+        yield (
             f"every check holds with probability {self.together:.4g}, {100 * self.confidence:g} % interval "
             f"[{low:.4g}, {high:.4g}], from {self.lines} lines judged over the whole range{why}"
-        ]
+        )
         for k in np.argsort(self.probability, kind="stable").tolist():
             if self.probability[k] < 1:
                 aside = "" if self.decides[k] else " (a guideline shown only, left aside)"
-                rows.append(
-                    f"  {self.check[k]}: {self.probability[k]:.4g} [{self.interval[k, 0]:.4g}, "
-                    f"{self.interval[k, 1]:.4g}]{aside}"
-                )
+                low, high = self.interval[k]
+                yield f"  {self.check[k]}: {self.probability[k]:.4g} [{low:.4g}, {high:.4g}]{aside}"
         if self.failed:
-            rows.append(f"  {self.failed} lines could not be computed and count as exceeding")
+            yield f"  {self.failed} lines could not be computed and count as exceeding"
         if self.worst is not None:
             values = values_in_words(self.worst.values)
-            rows.append(f"  worst line judged: {self.worst.check}, {self.worst.because}, with {values}")
-            rows.append("  what moves it: " + ", ".join(f"{n} {100 * s:.0f} %" for n, s in self.ranking[:5]))
-        return "\n".join(rows)
+            yield f"  worst line judged: {self.worst.check}, {self.worst.because}, with {values}"
+            yield "  what moves it: " + ", ".join(f"{n} {100 * s:.0f} %" for n, s in self.ranking[:5])
 
 
 def study_checks(
@@ -165,22 +147,13 @@ def study_checks(
     worst, ranking = _worst(judge, shares, spare[:, decides], np.array(names)[decides].tolist())
     grid = (len(shares) // each, each)
     return CheckStudy(
-        names,
-        holds.mean(axis=0),
-        np.array([interval(column.reshape(grid), confidence) for column in holds.T]).reshape(-1, 2),
-        judged.mean(axis=0),
-        decides,
-        float(together.mean()),
-        interval(together.reshape(grid), confidence),
-        confidence,
-        len(shares),
-        int(np.count_nonzero(~computed)),
-        lines is None,
-        seconds,
-        worst,
-        ranking,
-        ended,
-    )
+        check=names, probability=holds.mean(axis=0),
+        interval=np.array([interval(column.reshape(grid), confidence) for column in holds.T]).reshape(-1, 2),
+        judged=judged.mean(axis=0), decides=decides, together=float(together.mean()),
+        together_interval=interval(together.reshape(grid), confidence), confidence=confidence, lines=len(shares),
+        failed=int(np.count_nonzero(~computed)), chosen_by_cost=lines is None, seconds=seconds, worst=worst,
+        ranking=ranking, ended=ended,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -35,15 +35,18 @@ from trunnion.floquet.tolerance.spread import (
     values_in_words,
 )
 from trunnion.results.chart import require_pixels
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks, remarks_of
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import OutOfTime, keeps_time, limited, time_is_up, to_the_end
 
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
+GROWTH = "of every sample; where the radius is smaller than its error that of the error; NaN where it is not known"
+RANKING = "parameters by the share of the scatter of the growth rate, where it is fastest, that each explains alone"
 CLIMBS = 6
 """Steps of the search for the worst corner."""
 STEP = 1e-4
@@ -62,55 +65,38 @@ class Worst:
     verdict: Verdict
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ToleranceStudy(Result):
-    """Probability that a line within its tolerances is stable at all of ``speeds`` [rad/s].
+    """Probability that a line within its tolerances is stable at all speeds; undecided lines count as unstable."""
 
-    probability, interval: the share of stable lines and its interval of ``confidence``; undecided: share of lines whose
-    radius is 1 to within its error, which count as unstable in ``probability``; stable_share (speeds,) at each speed;
-    growth_rate (speeds, samples) of every sample [1/s], where the radius is smaller than its error that of the error,
-    NaN where nothing is known of it; worst: by gradient from the fastest sample; ranking: parameters by the share of
-    the scatter of the growth rate, at the speed where it is fastest, that each explains alone; checks: the same for the
-    checks of ``assess``, where they were asked for; ended: what ended the study before it was done, as a clause, ""
-    where it was done.
-    """
+    parameters: tuple[str, ...] = coordinate("parameter")
+    low: Array = variable("parameter")
+    high: Array = variable("parameter")
+    speeds: Array = coordinate("speed", "rad/s")
+    samples: int = attribute("lines in all")
+    probability: float = attribute("share of stable lines")
+    interval: tuple[float, float] = attribute("of the probability")
+    confidence: float = attribute("of the interval")
+    undecided: float = attribute("share of lines whose radius is 1 to within its error")
+    stable_share: Array = variable("speed", "1")
+    growth_rate: Array = internal(GROWTH, "1/s", "speed sample")
+    worst: Worst = internal("by gradient from the fastest sample")
+    ranking: tuple[tuple[str, float], ...] = internal(RANKING)
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = internal("what was left out", default=())
+    checks: CheckStudy | None = internal("the same for the checks of ``assess``, if asked for", default=None)
+    ended: str = attribute("what ended the study before it was done, as a clause", default="")
 
-    parameters: tuple[str, ...]
-    low: Array
-    high: Array
-    speeds: Array
-    samples: int
-    probability: float
-    interval: tuple[float, float]
-    confidence: float
-    undecided: float
-    stable_share: Array
-    growth_rate: Array
-    worst: Worst
-    ranking: tuple[tuple[str, float], ...]
-    unit: str
-    findings: tuple[Finding, ...] = ()
-    checks: CheckStudy | None = None
-    ended: str = ""
-
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Tolerances with their ranking, shares over speed, the worst line."""
-        rank = dict(self.ranking)
-        yield axis("parameter", list(self.parameters))
-        yield from fields_over("parameter", self, low="", high="")
-        yield over("parameter", "explained", np.array([rank[p] for p in self.parameters]), "1")
-        yield over("parameter", "worst", np.array([self.worst.values[p] for p in self.parameters]))
-        yield axis("speed", self.speeds, "rad/s")
-        yield over("speed", "stable_share", self.stable_share, "1")
-        yield axis("quantile", np.array(QUANTILES), "1")
-        yield over("speed quantile", "growth_rate", np.nanquantile(self.growth_rate, QUANTILES, axis=1).T, "1/s")
-        yield from remarks(probability=self.probability, interval=list(self.interval))
-        yield from remarks_of(self, "confidence", "undecided", "samples", "ended")
-        yield from remarks(
-            worst_speed=self.worst.speed,
-            worst_growth_rate=self.worst.growth_rate,
-            worst_verdict=str(self.worst.verdict),
-        )
+        yield from super().declared()
+        rank, worst = dict(self.ranking), self.worst
+        yield Variable("explained", np.array([rank[p] for p in self.parameters]), "parameter", "1")
+        yield Variable("worst", np.array([worst.values[p] for p in self.parameters]), "parameter")
+        yield Coordinate("quantile", np.array(QUANTILES), "quantile", "1")
+        growth = np.nanquantile(self.growth_rate, QUANTILES, axis=1).T
+        yield Variable("growth_rate", growth, "speed quantile", "1/s")
+        yield from attributes(worst_speed=worst.speed, worst_growth_rate=worst.growth_rate, worst_verdict=worst.verdict)
         if self.checks is not None:
             yield from self.checks.declared()
 
@@ -118,29 +104,28 @@ class ToleranceStudy(Result):
         """The growth rate's distribution, and the parameters by rank; see ``plots.tolerance.draw``."""
         return drawing(self, "plot")(self, axes)
 
-    def __str__(self) -> str:
+    def _lines(self) -> Iterator[str]:
         low, high = self.interval
-        where = (
-            f"at {len(self.speeds)} speeds"
-            if len(self.speeds) > 1
-            else f"at {show_speed(float(self.speeds[0]), self.unit)}"
-        )
-        lines = [
-            f"stable {where} with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
+        several = f"at {len(self.speeds)} speeds"
+        yield (
+            f"stable {several if len(self.speeds) > 1 else f'at {self.words.speed(float(self.speeds[0]))}'} "
+            f"with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
             f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances"
-            f"{f'; {self.ended}, which left out the rest' if self.ended else ''}",
+            f"{f'; {self.ended}, which left out the rest' if self.ended else ''}"
+        )
+        yield (
             f"  worst line found: {self.worst.verdict}, "
             f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
-            f"{show_speed(self.worst.speed, self.unit)}, with {values_in_words(self.worst.values)}",
-            "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5]),
-        ]
+            f"{self.words.speed(self.worst.speed)}, with {values_in_words(self.worst.values)}"
+        )
+        yield "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5])
         if self.undecided:
-            lines.append(
+            yield (
                 f"  {100 * self.undecided:.3g} % of the lines are undecided, within their error of the boundary, and "
                 "count as not stable"
             )
-        lines += [str(self.checks)] if self.checks is not None else []
-        return "\n".join([*lines, *(f"  {finding}" for finding in self.findings)])
+        if self.checks is not None:
+            yield str(self.checks)
 
 
 QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
@@ -213,24 +198,14 @@ def tolerance_study(
     probability = float(stable.mean())
     fastest = int(np.nanmax(growth, axis=1).argmax())
     return ToleranceStudy(
-        tuple(s.label for s in spreads),
-        np.array([s.low for s in spreads]),
-        np.array([s.high for s in spreads]),
-        at,
-        len(shares),
-        probability,
-        interval(stable.reshape(-1, each), confidence),
-        confidence,
-        float(undecided.mean()),
-        at_each,
-        growth,
-        _worst(lines, spreads, shares, growth, at),
-        _ranking(spreads, shares, growth[fastest]),
-        speed_unit(assembly.line),
-        (*taken, *left_out("tolerance_study", assembly.line)),
-        judged,
-        ended,
-    )
+        parameters=tuple(s.label for s in spreads), low=np.array([s.low for s in spreads]),
+        high=np.array([s.high for s in spreads]), speeds=at, samples=len(shares), probability=probability,
+        interval=interval(stable.reshape(-1, each), confidence), confidence=confidence,
+        undecided=float(undecided.mean()), stable_share=at_each, growth_rate=growth,
+        worst=_worst(lines, spreads, shares, growth, at), ranking=_ranking(spreads, shares, growth[fastest]),
+        unit=speed_unit(assembly.line), findings=(*taken, *left_out("tolerance_study", assembly.line)), checks=judged,
+        ended=ended,
+    )  # fmt: skip
 
 
 def _read(

@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import require_period
@@ -126,6 +126,7 @@ def _chart(
         statically_twisted=twisted,
         remarks=tuple(remarks),
         line=task.line,
+        unit=speed_unit(task.line) if task.line else "rad/s",
         function=built.function,
         evaluate_point=_pointwise(built.family, built.function, built.tolerance),
         resample=_resampler(built.family, built.function, built.tolerance, workers),

@@ -1,8 +1,8 @@
 """Where modes meet what excites them: the speeds about which a response changes fast, and how fast.
 
-An order K (cycles per turn of the input), a frequency ω₀ fixed in time, or both together, meet mode m where
+A harmonic of order K (cycles per turn of the input) and frequency ν meets mode m where
 
-    |KΩ + ω₀| = Im λ_m(Ω),     half-width |Re λ_m|/|K|.
+    |KΩ + ν| = Im λ_m(Ω),     half-width |Re λ_m|/|K|.
 
 Orders are those of disks and transmission errors; of joints and meshes whose stiffness varies; and the side orders
 that these make of all. λ_m is an eigenvalue of the loaded straight line, behind bent joints the Floquet exponent that
@@ -18,11 +18,12 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import exciters
+from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.steady_base import bent
 from trunnion.equations.topology import require_period
 from trunnion.floquet.ranges.exponents import SideOrders, floquet_exponents
 from trunnion.floquet.ranges.span import Span
+from trunnion.laws.harmonic import forward
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.steady.orders.groups import offsets
 
@@ -38,7 +39,7 @@ GRID = 65
 @dataclass(frozen=True)
 class Resonances:
     """speed (resonance,) [rad/s], half-width in it (resonance,) [rad/s]; the order and frequency [rad/s] that meet
-    there, and the mode, from 0."""
+    there, KΩ + ν > 0, and the mode, from 0."""
 
     speed: Array
     width: Array
@@ -75,18 +76,14 @@ def varies(assembly: Assembly) -> bool:
 
 
 def orders_acting(assembly: Assembly) -> tuple[Array, Array]:
-    """Orders (pair,) and the frequencies fixed in time (pair,) [rad/s] beside them, of all that can shake the line."""
-    row = assembly.table(1)[0]
-    pairs = {
-        (e.order, float(row[e.frequency]) if e.in_time else 0.0)
-        for e in exciters(assembly)
-        if not e.held and row[e.amplitude] != 0
-    }
+    """Orders (pair,) and frequencies beside them (pair,) [rad/s] of all that can shake the line and goes with its
+    speed."""
+    pairs = {(one.order, one.frequency) for one in line_harmonics(assembly) if one.acts}
     if varies(assembly):
         turns = require_period(assembly.line, assembly.topology)
         steps = offsets({int(rate * turns) for rate in assembly.topology.rates}, LAYERS)
         pairs = {(order + step / turns, at) for order, at in {*pairs, (Fraction(0), 0.0)} for step in steps}
-    kept = sorted({(abs(order) if not at else order, at) for order, at in pairs if order})
+    kept = sorted({(forward(order, at) * order, forward(order, at) * at) for order, at in pairs if order})
     found = np.array([(float(order), at) for order, at in kept]).reshape(-1, 2)
     return found[:, 0], found[:, 1]
 
@@ -100,7 +97,9 @@ def resonances(span: Span) -> Resonances:
     """
     order, frequency = orders_acting(span.assembly)
     modes = Modes.of(span)
-    met = np.abs(np.multiply.outer(order, modes.speed) + frequency[:, None])[:, :, None]  # (pair, speed, 1)
+    # Of either sign: one that stands still on the way meets each mode before and behind.
+    order, frequency = (np.concatenate([part, -part]) for part in (order, frequency))
+    met = (np.multiply.outer(order, modes.speed) + frequency[:, None])[:, :, None]  # (pair, speed, 1)
     with np.errstate(invalid="ignore"):
         off = met - modes.value.imag
         pair, place, mode = np.nonzero((off[:, :-1] <= 0) != (off[:, 1:] <= 0))
@@ -126,11 +125,10 @@ def _shifted(
     sides = SideOrders.of(span.assembly)
     start, shape = modes.at(speed, mode)
     value, left = start.copy(), np.arange(len(speed))
-    upwards = np.sign(order * speed + frequency)
     for _ in range(ROUNDS):
         found = floquet_exponents(span.assembly, sides, span.table(speed[left]), start[left], shape[left])
         value[left] = np.where(np.isfinite(found), found, value[left])
-        again = (upwards[left] * value[left].imag - frequency[left]) / order[left]
+        again = (value[left].imag - frequency[left]) / order[left]
         near = _near(again, speed[left])
         moved = np.abs(again - speed[left]) > 0.05 * np.abs(value[left].real / order[left])
         speed[left[near]] = again[near]

@@ -14,10 +14,10 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.excitation import Excitation
+from trunnion.equations.amplitudes import beyond
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import exciters
-from trunnion.equations.harmonic_torques import BEYOND
+from trunnion.equations.harmonics import disk_torques
 from trunnion.equations.loads import mean_loads, static_torque
 from trunnion.equations.mean_clutch import states_a_motion
 from trunnion.equations.stage_laws import has_stages, stage_law
@@ -164,30 +164,19 @@ class Span:
                 law = stage_law(line, place, column, table)
                 stage = np.where(own == 0, law.stage(np.zeros(len(speed))), law.stage_under(own))
                 parts.append(stage[:, None].astype(float))
-        parts += [np.searchsorted(points, where)[:, None].astype(float) for points, where, _ in self._tables(table)]
+        tables = self._tables(table)
+        parts += [np.searchsorted(law.points, place)[:, None].astype(float) for law, _, place in tables]
         return np.concatenate(parts, axis=1)
 
-    def _tables(self, table: Array) -> Iterator[tuple[Array, Array, str]]:
-        """Points of every table of excitations that acts, where on it the rows of ``table`` are, and its name."""
-        topo, packed = self.assembly.topology, self.assembly.packed
-        for exciter in exciters(self.assembly):
-            disk = packed.line.elements[exciter.place] if exciter.place >= 0 else None
-            if not isinstance(disk, Disk) or exciter.held or not disk.excitation[exciter.number - 1].points:
-                continue
-            harmonic = disk.excitation[exciter.number - 1]
-            where = table[:, 0] * abs(float(topo.speed_ratio[exciter.station]))
-            if harmonic.torques:
-                where = -mean_loads(topo, packed.column, table)[:, exciter.station]
-            yield (
-                np.array(harmonic.points),
-                where,
-                f"the table of {exciter.element} covers {harmonic.covers}; extend it",
-            )
+    def _tables(self, table: Array) -> Iterator[tuple[Excitation, str, Array]]:
+        """Every excitation that acts and has a table, its disk, and where the rows of ``table`` read it (case,)."""
+        for one in disk_torques(self.assembly):
+            if one.law.points and not one.prescribed:
+                yield one.law, one.name, one.place(self.assembly, table)
 
     def _uncovered(self, speed: float) -> str:
         """Why nothing can be computed at a speed; empty where it can."""
-        for points, where, says in self._tables(self.table(np.array([speed]))):
-            slack = BEYOND * np.abs(points).max()
-            if not points[0] - slack <= where[0] <= points[-1] + slack:
-                return says
+        for law, disk, place in self._tables(self.table(np.array([speed]))):
+            if beyond(law, place)[0]:
+                return f"the table of {disk} covers {law.covers}; extend it"
         return ""

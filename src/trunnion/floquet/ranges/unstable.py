@@ -187,7 +187,8 @@ def _unevenness(span: Span) -> float:
     table = span.table(np.linspace(span.start, span.high, 5))
     coefficients = span.assembly.coefficients(table, any_frequency=True)
     joints = sum(4 * float(np.max(law.spread)) for law in joint_laws(span.assembly, table))
-    return joints + sum(float(np.abs(wave.share).sum(axis=1).max()) for wave in coefficients.waves)
+    shares = (sum(np.abs(one.amplitude) for one in wave.harmonics) for wave in coefficients.waves)
+    return joints + sum(float(np.max(share)) for share in shares)
 
 
 def _swing(span: Span) -> float:

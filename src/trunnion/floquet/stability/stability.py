@@ -9,7 +9,7 @@ ln det Z = −∫tr(M⁻¹C) dτ is checked each time.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
@@ -31,10 +31,11 @@ from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, name
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.modes.resonance_speeds import Resonance, Source, sources
 from trunnion.numerics.spectrum import multipliers, spectral_radius
-from trunnion.results.declared import Held, Judged, fields_over, over, remarks
+from trunnion.results.fields import attribute, computed, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed
-from trunnion.results.units import angle_words, with_error
+from trunnion.results.result import Result
+from trunnion.results.units import with_error
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.steady.orders.forced_response import LINEAR_RANGE, LinearResponse, linear_response
 from trunnion.steady.shooting.periodic_orbit import speed_in_words
@@ -47,6 +48,7 @@ NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1
 """Tolerance of the motion that a free line is judged about, over that of its multipliers."""
+EXTRA = "what the drives of a bent line that starts free give beyond the balance of the loads; None elsewhere"
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -55,39 +57,33 @@ SET_ASIDE = {
 }
 
 
-@dataclass(frozen=True, repr=False)
-class Stability(Judged):
+@labelled
+class Stability(Result):
     """Floquet stability at one speed.
 
-    multipliers (2n,) by falling modulus, multiplier_error (2n,) their error bounds; spectral_radius and
-    error_estimate leave out the ``set_aside`` multipliers, exactly 1, of a line that starts free: a turn of the whole
-    line, and its speed where no torque depends on it; period [rad of input angle]; speed [rad/s]
-    (dτ/dt for a system of your own); liouville_defect: |ln det Z + ∫tr(M⁻¹C)dτ|, an independent check;
-    floquet_modes (2n, 2n): columns are the states (x, dx/dτ) at τ = 0 that each multiplier carries on;
-    resonance: the one the critical multiplier names; forced: computes the ``response``; extra_torque: of a bent line
-    that starts free, judged about its own periodic motion, the torque [N m at the input] that its drives give
-    beyond the balance of the loads (None elsewhere); speed_sentence: of such a line none of whose torques depends on
-    the speed, what becomes of a change of its mean speed; left_out: findings about what the line has and this does
-    not count.
+    Spectral radius and error estimate leave out the ``set_aside`` multipliers, exactly 1, of a line that starts free: a
+    turn of the whole line, and its speed where no torque depends on it.
     """
 
-    multipliers: Complex
-    multiplier_error: Array
-    floquet_modes: Complex
-    spectral_radius: float
-    error_estimate: float
-    verdict: Verdict
-    period: float
-    speed: float
-    resonance: Resonance | None
-    forced: Callable[[], LinearResponse] | None
-    liouville_defect: float
-    names: tuple[str, ...]
-    set_aside: int
-    left_out: tuple[Finding, ...] = ()
-    unit: str = "rad/s"
-    extra_torque: float | None = None
-    speed_sentence: str = ""
+    multipliers: Complex = variable("multiplier_number", "1", "by falling modulus", name="multiplier")
+    multiplier_error: Array = variable("multiplier_number", "1", "bound")
+    floquet_modes: Complex = internal(
+        "states (x, dx/dτ) at τ = 0 that each multiplier carries on", axes="state multiplier"
+    )
+    spectral_radius: float = variable("", "1")
+    error_estimate: float = variable("", "1", "of the spectral radius")
+    verdict: Verdict = attribute()
+    period: float = variable("", "rad", "period in input angle")
+    speed: float = variable("", "rad/s", "of the input; dτ/dt for a system of your own")
+    resonance: Resonance | None = internal("that the critical multiplier names")
+    forced: Callable[[], LinearResponse] | None = internal("computes the response")
+    liouville_defect: float = attribute("|ln det Z + ∫tr(M⁻¹C)dτ|, an independent check")
+    names: tuple[str, ...] = internal("of the rotations")
+    set_aside: int = internal("how many multipliers are")
+    left_out: tuple[Finding, ...] = internal("what the line has and this does not count", default=())
+    unit: str = internal("of speeds in print", default="rad/s")
+    extra_torque: float | None = internal(EXTRA, "N m at the input", default=None)
+    speed_sentence: str = internal("of a bent free line none of whose torques depends on the speed", default="")
 
     @property
     def response(self) -> LinearResponse | None:
@@ -114,6 +110,7 @@ class Stability(Judged):
             return np.asarray(np.log(self.multipliers) * (self.speed / self.period), dtype=complex)
 
     @property
+    @computed(variable("", "1/s"), after="error_estimate")
     def growth_rate(self) -> float:
         """Growth of the fastest disturbance [1/s]; negative when it decays."""
         return float(np.log(self.spectral_radius) * self.speed / self.period)
@@ -142,49 +139,45 @@ class Stability(Judged):
         state = np.real(mode * (size / largest))
         return np.concatenate([state[:n], state[n:] * self.speed])
 
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``."""
-        return by_gravity([*_findings(self, unit), *self.left_out])
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
+        return by_gravity([*_findings(self), *self.left_out])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Multipliers, growth and verdict, and what the forced response holds."""
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s")
-        yield over("", "period", self.period, "rad", "period in input angle")
-        yield over("", "speed", self.speed, "rad/s")
-        yield from remarks(
-            verdict=str(self.verdict), resonance=str(self.resonance or ""), liouville_defect=self.liouville_defect
-        )
+        yield from super().declared()
+        yield from attributes(resonance=str(self.resonance or ""))
         if self.response is not None:
-            yield from (held for held in self.response.declared() if held.axes is not None)
+            yield from (one for one in self.response.declared() if isinstance(one, Variable))
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        lines = [
-            f"{self.verdict} at {show_speed(self.speed, unit)}: {MEANING[self.verdict]}",
+    @property
+    def _printed(self) -> tuple[Finding, ...]:
+        return self.left_out
+
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.verdict} at {self.words.speed(self.speed)}: {MEANING[self.verdict]}"
+        yield (
             f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)} per period of "
-            f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle",
-            f"  growth rate {with_error(self.growth_rate, self.growth_rate_error, 4, sign='+')} 1/s",
-        ]
+            f"{'' if self.period == np.pi else f'{self.period / np.pi:g}'}π rad of input angle"
+        )
+        yield f"  growth rate {with_error(self.growth_rate, self.growth_rate_error, 4, sign='+')} 1/s"
         if self.resonance is not None:
-            at = f" (at {show_speed(self.resonance.speed, unit)})" if np.isfinite(self.resonance.speed) else ""
-            lines.append(f"  the critical multiplier belongs to the {self.resonance.in_words}{at}")
+            at = f" (at {self.words.speed(self.resonance.speed)})" if np.isfinite(self.resonance.speed) else ""
+            yield f"  the critical multiplier belongs to the {self.resonance.in_words}{at}"
         if self.set_aside:
-            lines.append(f"  {SET_ASIDE[self.set_aside]}")
+            yield f"  {SET_ASIDE[self.set_aside]}"
         if self.extra_torque is not None:
-            lines.append(
+            yield (
                 f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
                 "beyond the balance of the loads"
             )
         if self.speed_sentence:
-            lines.append(f"  {self.speed_sentence}")
+            yield f"  {self.speed_sentence}"
         if self.response is not None:
-            lines.append("  " + str(self.response).replace("\n", "\n  "))
+            yield "  " + str(self.response).replace("\n", "\n  ")
         if self.no_response:
-            lines.append(f"  without the forced response: {self.no_response}")
-        return "\n".join([*lines, *(f"  {finding}" for finding in self.left_out)])
+            yield f"  without the forced response: {self.no_response}"
 
 
 def stability(
@@ -334,8 +327,8 @@ def _judge(
     )
 
 
-def _findings(result: Stability, unit: str) -> Iterable[Finding]:
-    at = show_speed(result.speed, unit)
+def _findings(result: Stability) -> Iterable[Finding]:
+    words, at = result.words, result.words.speed(result.speed)
     if result.verdict is Verdict.UNSTABLE:
         doubling = np.log(2) / result.growth_rate
         where = f"; it belongs to the {result.resonance.in_words}" if result.resonance else ""
@@ -370,9 +363,9 @@ def _findings(result: Stability, unit: str) -> Iterable[Finding]:
         steady = "Stable does not mean quiet: its" if result.verdict is Verdict.STABLE else "Its"
         yield Finding(
             Gravity.DANGER,
-            f"{steady} excitation forces a rotation of {angle_words(response.joint_rotation[worst])} at the input of "
+            f"{steady} excitation forces a rotation of {words.angle(response.joint_rotation[worst])} at the input of "
             f"{response.joints[worst]} at {at} (twist of {response.shafts[shaft]} "
-            f"±{angle_words(response.twist_amplitude[shaft])} by linear theory), beyond the linear range of "
-            f"{angle_words(LINEAR_RANGE)}: read it as resonance, not as an amplitude; the verdict holds for small "
+            f"±{words.angle(response.twist_amplitude[shaft])} by linear theory), beyond the linear range of "
+            f"{words.angle(LINEAR_RANGE)}: read it as resonance, not as an amplitude; the verdict holds for small "
             "twist only.",
         )

@@ -8,11 +8,12 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.stretches import ranges_in_words, stretches_above
+from trunnion.results.stretches import stretches_above
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 
 
-def where_unstable(speeds: Array, verdict: Codes, unit: str, *, lossy: bool = False) -> Iterator[Finding]:
+def where_unstable(speeds: Array, verdict: Codes, words: Words, *, lossy: bool = False) -> Iterator[Finding]:
     """Findings on codes of ``Verdict`` (speed,) at ``speeds`` [rad/s]; lossy: with a loss factor at all frequencies."""
     if np.any(failed := verdict == Verdict.FAILED):
         where = "" if failed.all() else f" at {failed.sum()} of {len(failed)} speeds"
@@ -27,7 +28,7 @@ def where_unstable(speeds: Array, verdict: Codes, unit: str, *, lossy: bool = Fa
     speed, unstable = speeds[order], verdict[order] == Verdict.UNSTABLE
     if not unstable.any():
         return
-    where = ranges_in_words(stretches_above(speed, unstable.astype(float), 0.5, between=False), unit)
+    where = words.ranges(stretches_above(speed, unstable.astype(float), 0.5, between=False))
     yield Finding(
         Gravity.DANGER,
         f"The steady motion is unstable at {where}: a small disturbance grows, "

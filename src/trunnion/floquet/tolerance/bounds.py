@@ -61,7 +61,7 @@ def over_boxes(assembly: Assembly, low: Array, high: Array) -> Coefficients:
     places = [assembly.packed.column(assembly.topology.stations[j].element, "angle") for j in assembly.topology.joints]
     angle = (low[:, places] + high[:, places]) / 2
     turned = np.abs(high[:, places] - low[:, places]) / 2 * (1 + ROUNDED)
-    return Coefficients(k, c, g, s, dk, dc, dg, ds, angle, turned)
+    return Coefficients(k=k, c=c, g=g, s=s, dk=dk, dc=dc, dg=dg, ds=ds, angle=angle, turned=turned)
 
 
 def _middle(low: Array, high: Array) -> tuple[Array, Array]:

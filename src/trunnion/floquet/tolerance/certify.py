@@ -27,10 +27,11 @@ from trunnion.floquet.tolerance.bounded import table_at
 from trunnion.floquet.tolerance.bounds import half_widths, over_boxes
 from trunnion.floquet.tolerance.lyapunov import judge_boxes
 from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks, remarks_of
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, internal, labelled, variable
 from trunnion.results.finding import Finding
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
 
@@ -43,47 +44,37 @@ KEYS = ("stiffness", "damping", "inertia", "angle")
 """What may scatter: numbers with which stiffness, damping and inertia rise, and the angle of a line's only joint."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class StabilityCertificate(Result):
-    """What was proved of all lines within tolerances at all speeds from one to another [rad/s].
+    """What was proved of all lines within tolerances at all speeds from one to another.
 
-    verdict: "proved stable", "counterexample" or "undecided"; undecided_share: of the volume in ln(speed) and shares of
-    tolerances; counterexample: speed and values by parameter of a line that ``stability`` calls unstable; boxes: how
-    many were judged; largest_radius: the largest multiplier at the middle of any box (a sample, no bound);
-    undecided_low, undecided_high (boxes, 1 + parameters): what stays open, speed first, SI units; proved_low,
-    proved_high: what was proved; units of the parameters; ended: what ended the search before its last box, as a
-    clause, "" where nothing did.
+    Boxes have the speed first. The largest radius is that of a sample, no bound.
     """
 
-    parameters: tuple[str, ...]
-    speeds: tuple[float, float]
-    verdict: str
-    undecided_share: float
-    counterexample: dict[str, float] | None
-    boxes: int
-    largest_radius: float
-    undecided_low: Array
-    undecided_high: Array
-    proved_low: Array
-    proved_high: Array
-    units: tuple[str, ...]
-    unit: str
-    findings: tuple[Finding, ...] = ()
-    ended: str = ""
+    parameters: tuple[str, ...] = internal("that scatter")
+    speeds: tuple[float, float] = attribute("from one to another", "rad/s")
+    verdict: str = attribute('"proved stable", "counterexample" or "undecided"')
+    undecided_share: float = attribute("of the volume in ln(speed) and shares of tolerances")
+    counterexample: dict[str, float] | None = internal("values by name of a line that ``stability`` calls unstable")
+    boxes: int = attribute("how many were judged")
+    undecided_low: Array = variable("open_box variable", words="what stays open, SI units", name="low")
+    undecided_high: Array = variable("open_box variable", words="what stays open, SI units", name="high")
+    proved_low: Array = variable("proved_box variable", words="what was proved, SI units")
+    proved_high: Array = variable("proved_box variable", words="what was proved, SI units")
+    largest_radius: float = variable("", "1", "largest multiplier at the middle of any box")
+    units: tuple[str, ...] = internal("of the parameters")
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
+    ended: str = attribute("what ended the search before its last box, as a clause", default="")
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """The verdict, the counterexample, and the boxes that stay open."""
-        yield axis("variable", ["speed", *self.parameters])
-        known = self.counterexample or {}
-        yield over("variable", "counterexample", np.array([known.get(n, np.nan) for n in ("speed", *self.parameters)]))
-        yield axis("open_box", np.arange(len(self.undecided_low)))
-        yield over("open_box variable", "low", self.undecided_low)
-        yield over("open_box variable", "high", self.undecided_high)
-        yield axis("proved_box", np.arange(len(self.proved_low)))
-        yield from fields_over("proved_box variable", self, proved_low="", proved_high="")
-        yield over("", "largest_radius", self.largest_radius, "1", "largest multiplier at the middle of any box")
-        yield from remarks_of(self, "verdict", "undecided_share")
-        yield from remarks(speeds=list(self.speeds), boxes=self.boxes, ended=self.ended)
+        names, known = ["speed", *self.parameters], self.counterexample or {}
+        yield Coordinate("variable", names, "variable")
+        yield Coordinate("open_box", np.arange(len(self.undecided_low)), "open_box")
+        yield Coordinate("proved_box", np.arange(len(self.proved_low)), "proved_box")
+        yield Variable("counterexample", np.array([known.get(name, np.nan) for name in names]), "variable")
+        yield from super().declared()
 
     @property
     def ends(self) -> tuple[Array, Array]:
@@ -95,20 +86,20 @@ class StabilityCertificate(Result):
         """What is proved and what is left open; see ``plots.certificate.draw``."""
         return drawing(self, "plot")(self, axes)
 
-    def __str__(self) -> str:
-        span = f"from {show_speed(self.speeds[0], self.unit)} to {show_speed(self.speeds[1], self.unit)}"
-        what = f"{len(self.parameters)} tolerance{'s' if len(self.parameters) > 1 else ''}, {span}"
+    def _lines(self) -> Iterator[str]:
+        many = f"{len(self.parameters)} tolerance{'s' if len(self.parameters) > 1 else ''}"
+        what = f"{many}, from {self.words.ends(*self.speeds)}"
         if self.verdict == "proved stable":
-            head = f"proved stable: every line within {what}"
+            yield f"proved stable: every line within {what}"
         elif self.counterexample is not None:
             values = ", ".join(f"{n} = {v:.9g}" for n, v in self.counterexample.items() if n != "speed")
-            at = show_speed(self.counterexample["speed"], self.unit)
-            head = f"not stable within {what}: at {at} the line with {values} is unstable"
+            at = self.words.speed(self.counterexample["speed"])
+            yield f"not stable within {what}: at {at} the line with {values} is unstable"
         else:
             rest = "the rest is proved stable" if self.undecided_share < 1 else "no part of it is proved stable"
             ended = f"; {self.ended}" if self.ended else ""
-            head = f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
-        return "\n".join([head, f"  {self.boxes} boxes", *(f"  {finding}" for finding in self.findings)])
+            yield f"undecided within {what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
+        yield f"  {self.boxes} boxes"
 
 
 @keeps_time

@@ -55,7 +55,10 @@ def floquet_form(a: Array, energy: Array) -> FloquetForm:
         q = _inverse(w).astype(complex)
     each = np.linalg.norm(modes, axis=(2, 3))
     most, most_slope, most_bend = (((2 * np.abs(ORDERS)) ** k * each).sum(axis=1) for k in range(3))
-    return FloquetForm(w, slope, q, lam, exponents, basis, blocks, radius, most, most_slope, most_bend)
+    return FloquetForm(
+        w=w, slope=slope, q=q, lam=lam, exponents=exponents, basis=basis, blocks=blocks, radius=radius, most=most,
+        most_slope=most_slope, most_bend=most_bend,
+    )  # fmt: skip
 
 
 def sampled(harmonic: Complex) -> tuple[Complex, Complex]:

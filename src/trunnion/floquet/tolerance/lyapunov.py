@@ -145,8 +145,9 @@ def first_order(terms: BoxTerms, co: Coefficients, at: Ratios, form: FloquetForm
     joints = co.angle.shape[1]
     rest_most = _bounded(rest, SLACK * carried, HARMONICS + 4 * joints, co, 4 * joints)
     return FirstOrder(
-        width, b, s, s_most, s_slope, d, rest_most, most, steepest, most_t, steepest_t, w @ parts @ q, power, crude
-    )
+        width=width, b=b, s=s, s_most=s_most, s_slope=s_slope, d=d, rest=rest_most, most=most, steepest=steepest,
+        most_terms=most_t, steepest_terms=steepest_t, b_terms=w @ parts @ q, power=power, crude=crude,
+    )  # fmt: skip
 
 
 def _turned(b: Complex, form: FloquetForm) -> tuple[Complex, Complex, Complex, Array, Array]:

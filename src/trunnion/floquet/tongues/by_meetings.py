@@ -106,8 +106,9 @@ def _row(family: LineFamily, v: float, found: UnstableRanges) -> Row:
     by = np.full(len(ends), BY_ROWS, dtype=np.int8)
     untold = _unknown(family, found)
     return Row(
-        v, ends[:, 0], ends[:, 1], inside, kind_of(along.critical[top]), ends == beyond, untold, by, (none,) * len(ends)
-    )
+        v=v, low=ends[:, 0], high=ends[:, 1], inside=inside, kind=kind_of(along.critical[top]), clipped=ends == beyond,
+        unknown=untold, by=by, of=(none,) * len(ends),
+    )  # fmt: skip
 
 
 def _unknown(family: LineFamily, found: UnstableRanges) -> Array:

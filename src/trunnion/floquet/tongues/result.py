@@ -5,18 +5,19 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 from trunnion.modes.resonance_speeds import Resonance
-from trunnion.results.declared import Held, Result, axis, over, remarks
 from trunnion.results.drawing import Axes, drawing
-from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
+from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
+from trunnion.results.quantity_axes import QuantityAxis
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.writing import written_whole
 
 if TYPE_CHECKING:
@@ -24,37 +25,31 @@ if TYPE_CHECKING:
 
 Intervals = Callable[[float], Array]
 """y → unstable intervals (intervals, 2) in x of that row, found anew."""
+FADES = 'ends, "below" and "above", beyond which it goes on, but without damping grows too little to be told'
 
 
-@dataclass(frozen=True)
+@labelled
 class Tongue:
-    """One instability region: the interval ``low`` to ``high`` in x at each of ``y``, rising; all (rows,), SI units.
+    """One instability region: the interval ``low`` to ``high`` in x at each of ``y``, SI units."""
 
-    kind: how the multipliers leave the unit circle where it begins; resonance: the one its growing mode names (None
-    where the mode is mixed, or for a family of one's own). tip: (x, y) at which it closes below, or else above; top:
-    where it closes above as well. fades: ends, "below" and "above", beyond which it goes on, but without damping grows
-    too little to be told. growth_rate [1/s, or per unit of a family's τ]: the largest found inside, at
-    ``growth_at``. joins, parts: numbers of the tongues it runs into above or comes out of below. cut: sides of the
-    box that cut it off.
-    """
-
-    number: int
-    kind: str
-    resonance: Resonance | None
-    y: Array
-    low: Array
-    high: Array
-    tip: tuple[float, float] | None
-    top: tuple[float, float] | None
-    growth_rate: float
-    growth_at: tuple[float, float]
-    joins: int | None
-    parts: int | None
-    cut: tuple[str, ...]
-    fades: tuple[str, ...] = ()
-    find: Intervals | None = field(default=None, repr=False, compare=False)
+    number: int = internal("by falling growth rate")
+    kind: str = variable(words="how the multipliers leave the unit circle where it begins")
+    resonance: Resonance | None = internal("that its growing mode names; None where the mode is mixed, or of a family")
+    y: Array = internal("rows, rising", axes="rows")
+    low: Array = internal("end in x", axes="rows")
+    high: Array = internal("end in x", axes="rows")
+    tip: tuple[float, float] | None = internal("(x, y) at which it closes below, or else above")
+    top: tuple[float, float] | None = internal("(x, y) where it closes above as well")
+    growth_rate: float = variable("", "{self.rate_unit}", "the largest found inside, per s or per unit of a family's τ")
+    growth_at: tuple[float, float] = internal("(x, y) where it grows fastest")
+    joins: int | None = internal("number of the tongue that it runs into above")
+    parts: int | None = internal("number of the tongue that it comes out of below")
+    cut: tuple[str, ...] = internal("sides of the box that cut it off")
+    fades: tuple[str, ...] = internal(FADES, default=())
+    find: Intervals | None = internal("its row found anew", default=None, repr=False, compare=False)
 
     @property
+    @computed(variable())
     def name(self) -> str:
         """Its resonance, or how its multipliers leave the circle."""
         return str(self.resonance) if self.resonance is not None else f"unnamed ({self.kind})"
@@ -95,6 +90,7 @@ class Tongue:
         return high - low
 
     @property
+    @computed(variable("", "{self.x_unit}"))
     def widest(self) -> float:
         """The largest width in x on the rows known."""
         return float((self.high - self.low).max())
@@ -112,32 +108,31 @@ class Unknown:
     between: tuple[float, float]
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Tongues(Result):
     """Every instability region found in a box, by falling growth rate; a sequence of ``Tongue``.
 
-    x_range, y_range: the box, SI units; rows: how many values of y were searched; complete: whether each of these was
-    searched for every zero of the boundary functions, or sampled; ``search`` says it in words; ``row_step`` is the
-    largest distance between rows: a region that lies wholly between two of them is not in the list. ``unknown``: where
-    rows could not be told; an empty list of tongues means stability only where nothing is.
+    A region that lies wholly between two rows is not in the list. An empty list of tongues means stability only where
+    nothing is ``unknown``.
     """
 
-    tongues: tuple[Tongue, ...]
-    x_label: str
-    y_label: str
-    x_unit: str
-    y_unit: str
-    x_range: tuple[float, float]
-    y_range: tuple[float, float]
-    rate_unit: str
-    rows: int
-    row_step: float
-    complete: bool
-    search: str
-    unknown: tuple[Unknown, ...]
-    line: Driveline | None
-    remarks: tuple[str, ...] = ()
-    find: Intervals | None = field(default=None, repr=False, compare=False)
+    tongues: tuple[Tongue, ...] = members(Tongue, "tongue", name="number")
+    x_label: str = attribute("parameter along x", name="x")
+    y_label: str = attribute("parameter along y", name="y")
+    x_unit: str = internal("of the parameter along x")
+    y_unit: str = internal("of the parameter along y")
+    x_range: tuple[float, float] = attribute("of the box, SI units")
+    y_range: tuple[float, float] = attribute("of the box, SI units")
+    rate_unit: str = internal("of growth rates")
+    rows: int = attribute("how many values of y were searched")
+    row_step: float = attribute("largest distance between rows")
+    complete: bool = attribute("whether each row was searched for every zero of the boundary functions, or sampled")
+    search: str = attribute("the same in words")
+    unknown: tuple[Unknown, ...] = internal("where rows could not be told")
+    line: Driveline | None = internal("that was searched; None of a family of one's own")
+    remarks: tuple[str, ...] = internal("what was clipped", default=())
+    find: Intervals | None = internal("a row searched anew", default=None, compare=False)
+    unit: str | None = internal("of speeds in print; None of a family of one's own", default=None)
 
     def __iter__(self):  # type: ignore[no-untyped-def]
         return iter(self.tongues)
@@ -163,42 +158,27 @@ class Tongues(Result):
         """Tongues that are nowhere as wide in x: those that pixels so far apart may hide."""
         return tuple(t for t in self.tongues if t.widest < width)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """One entry a tongue; their edges one after another, with the number of the tongue at each point."""
+        yield from super().declared()
         every = self.tongues
         none = (float("nan"), float("nan"))
-        yield axis("tongue", np.array([t.number for t in every], dtype=int))
-        yield over("tongue", "name", [t.name for t in every])
-        yield over("tongue", "kind", [t.kind for t in every])
         for k, (part, unit) in enumerate((("x", self.x_unit), ("y", self.y_unit))):
-            yield over("tongue", f"tip_{part}", np.array([(t.tip or none)[k] for t in every]), unit)
-            yield over("tongue", f"top_{part}", np.array([(t.top or none)[k] for t in every]), unit)
-            yield over("tongue", f"growth_{part}", np.array([t.growth_at[k] for t in every]), unit)
-        yield over("tongue", "fades", [" ".join(t.fades) for t in every])
-        yield over("tongue", "growth_rate", np.array([t.growth_rate for t in every]), self.rate_unit)
-        yield over("tongue", "widest", np.array([t.widest for t in every]), self.x_unit)
-        yield axis("point", np.arange(sum(len(t.boundary) for t in every)))
-        owners = np.repeat([t.number for t in every], [len(t.boundary) for t in every]).astype(int)
-        yield over("point", "of_tongue", owners)
+            yield Variable(f"tip_{part}", np.array([(t.tip or none)[k] for t in every]), "tongue", unit)
+            yield Variable(f"top_{part}", np.array([(t.top or none)[k] for t in every]), "tongue", unit)
+            yield Variable(f"growth_{part}", np.array([t.growth_at[k] for t in every]), "tongue", unit)
+        yield Variable("fades", [" ".join(t.fades) for t in every], "tongue")
+        lengths = [len(t.boundary) for t in every]
+        yield Coordinate("point", np.arange(sum(lengths)), "point")
+        yield Variable("of_tongue", np.repeat([t.number for t in every], lengths).astype(int), "point")
         points = np.concatenate([t.boundary for t in every] or [np.zeros((0, 2))])
-        yield over("point", "boundary_x", points[:, 0], self.x_unit, self.x_label)
-        yield over("point", "boundary_y", points[:, 1], self.y_unit, self.y_label)
-        yield axis("unknown", np.arange(len(self.unknown)))
-        yield over("unknown", "unknown_y", np.array([u.y for u in self.unknown]), self.y_unit, self.y_label)
+        yield Variable("boundary_x", points[:, 0], "point", self.x_unit, self.x_label)
+        yield Variable("boundary_y", points[:, 1], "point", self.y_unit, self.y_label)
+        yield Coordinate("unknown", np.arange(len(self.unknown)), "unknown")
+        yield Variable("unknown_y", np.array([u.y for u in self.unknown]), "unknown", self.y_unit, self.y_label)
         for k, end in enumerate(("from", "to")):
-            yield over(
-                "unknown", f"unknown_x_{end}", np.array([u.x[k] for u in self.unknown]), self.x_unit, self.x_label
-            )
-        yield from remarks(
-            x=self.x_label,
-            y=self.y_label,
-            x_range=list(self.x_range),
-            y_range=list(self.y_range),
-            rows=self.rows,
-            row_step=self.row_step,
-            complete=int(self.complete),
-            search=self.search,
-        )
+            ends = np.array([u.x[k] for u in self.unknown])
+            yield Variable(f"unknown_x_{end}", ends, "unknown", self.x_unit, self.x_label)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per point of a boundary: number and name of the tongue, x, y."""
@@ -233,20 +213,15 @@ class Tongues(Result):
             for t in self.tongues
         ]
 
-    def __str__(self) -> str:
-        return self.said_in(speed_unit(self.line) if self.line else None)
-
-    def said_in(self, unit: str | None) -> str:
-        """Every region in a line; speeds in ``unit``, numbers of a family of one's own as they are."""
-        across, up = parameter_axis(self.x_label, self.x_unit, unit), parameter_axis(self.y_label, self.y_unit, unit)
-        what = f"over {across.quantity} × {up.quantity}"
-        many = "region" if len(self) == 1 else "regions"
-        head = f"{len(self)} instability {many} {what}" if self.tongues else f"no instability found {what}"
-        rows = [
-            f"  {t.number}  {t.name}: {_tip_words(t, across, up)}; grows by up to {t.growth_rate:.4g} {self.rate_unit}"
-            for t in self.tongues
-        ]
-        return "\n".join([head, *rows, f"  {self.search}", *(f"  note: {r}" for r in self.remarks)])
+    def _lines(self) -> Iterator[str]:
+        across, up = (self.words.parameter(*of) for of in ((self.x_label, self.x_unit), (self.y_label, self.y_unit)))
+        what, many = f"over {across.quantity} × {up.quantity}", "region" if len(self) == 1 else "regions"
+        yield f"{len(self)} instability {many} {what}" if self.tongues else f"no instability found {what}"
+        for t in self.tongues:
+            rate = f"{t.growth_rate:.4g} {self.rate_unit}"
+            yield f"  {t.number}  {t.name}: {_tip_words(t, across, up)}; grows by up to {rate}"
+        yield f"  {self.search}"
+        yield from (f"  note: {r}" for r in self.remarks)
 
 
 def _tip_words(tongue: Tongue, across: QuantityAxis, up: QuantityAxis) -> str:

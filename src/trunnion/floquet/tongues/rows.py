@@ -99,7 +99,10 @@ def unknown_row(region: Region, v: float) -> Row:
     """A row of which nothing is known."""
     none = np.zeros(0)
     whole = np.array([[region.box.u0, region.box.u1]])
-    return Row(v, none, none, none, none.astype(np.int8), np.zeros((0, 2), bool), whole, none.astype(np.int8), ())
+    return Row(
+        v=v, low=none, high=none, inside=none, kind=none.astype(np.int8), clipped=np.zeros((0, 2), bool), unknown=whole,
+        by=none.astype(np.int8), of=(),
+    )  # fmt: skip
 
 
 def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
@@ -259,7 +262,11 @@ def _edges(
         unknown = gaps[(which == r) & np.isnan(radius), :2]
         by, of = np.full(own.sum(), BY_ROWS, dtype=np.int8), (frozenset[int](),) * int(own.sum())
         inside, kind = gaps[top[own], 2], kinds[top[own]]
-        rows.append(Row(float(v[r]), low[own], high[own], inside, kind, clipped[own], unknown, by, of))
+        row = Row(
+            v=float(v[r]), low=low[own], high=high[own], inside=inside, kind=kind, clipped=clipped[own],
+            unknown=unknown, by=by, of=of,
+        )  # fmt: skip
+        rows.append(row)
     return rows
 
 

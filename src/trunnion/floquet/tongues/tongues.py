@@ -30,12 +30,13 @@ from trunnion.floquet.tongues.ridges import ridge
 from trunnion.floquet.tongues.rows import Kind, Row, unstable_intervals
 from trunnion.floquet.tongues.shapes import Shape, lost, shapes
 from trunnion.modes.resonance_speeds import Resonance
-from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
+from trunnion.results.quantity_axes import QuantityAxis
+from trunnion.results.words import Words
 from trunnion.systems.family import PeriodicLinearFamily
 
 Range = Sequence[object]
 Progress = Callable[[float], None]
-Words = Callable[[str, list[Strand]], str]
+Said = Callable[[str, list[Strand]], str]
 """How rows were searched, from how many there are and how far apart, and from the strands found."""
 
 ROWS = 65
@@ -80,9 +81,9 @@ def tongues(
     region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
     own = own_value(task.family.assembly, task.y) if isinstance(task.family, LineFamily) else None
     levels = np.sort(task.family.to_patch(levels_of(task.y, int(rows), own), False))
-    search, words = _search(region)
+    search, said = _search(region)
     regions = regions_on(region, search, levels, lambda s: tell(0.3 + 0.6 * s))
-    found = described(task, region, search, regions, words)
+    found = described(task, region, search, regions, said)
     tell(1.0)
     return found
 
@@ -109,7 +110,7 @@ def regions_on(region: Region, search: Search, levels: Array, tell: Progress, kn
     return Regions(shaped, rows)
 
 
-def described(task: Task, region: Region, search: Search, regions: Regions, words: Words) -> Tongues:
+def described(task: Task, region: Region, search: Search, regions: Regions, said: Said) -> Tongues:
     """The result: names, growth rates and what was searched."""
     shaped, searched = regions.shaped, regions.rows
     places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
@@ -119,31 +120,19 @@ def described(task: Task, region: Region, search: Search, regions: Regions, word
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
     untold, open_ends = _unknown(region, searched), _open_ends(region, shaped)
     unit = speed_unit(task.line) if task.line else None
-    across, up = (parameter_axis(axis.label, axis.unit, unit) for axis in (task.x, task.y))
+    across, up = (Words(unit).parameter(axis.label, axis.unit) for axis in (task.x, task.y))
+    apart = float(np.abs(steps).max())
+    first = said(f"{len(searched)} rows, at most {up.number(apart, 3)} apart,", [shape.strand for shape in shaped])
     return Tongues(
-        _numbered(found),
-        task.x.label,
-        task.y.label,
-        task.x.unit,
-        task.y.unit,
-        (float(task.x.values[0]), float(task.x.values[-1])),
-        (float(task.y.values[0]), float(task.y.values[-1])),
-        "1/s" if task.line is not None else "1",
-        len(searched),
-        float(np.abs(steps).max()),
-        region.by_coefficients and not region.uncovered and not untold and not open_ends,
-        words(
-            f"{len(searched)} rows, at most {up.number(float(np.abs(steps).max()), 3)} apart,",
-            [shape.strand for shape in shaped],
-        )
-        + _faint_words(shaped)
-        + _unknown_words(untold, across, up)
-        + _open_words(open_ends, up),
-        tuple(sorted((*untold, *open_ends), key=lambda place: (place.y, place.x))),
-        task.line,
-        task.remarks,
-        find,
-    )
+        tongues=_numbered(found), x_label=task.x.label, y_label=task.y.label, x_unit=task.x.unit, y_unit=task.y.unit,
+        x_range=(float(task.x.values[0]), float(task.x.values[-1])),
+        y_range=(float(task.y.values[0]), float(task.y.values[-1])), rate_unit="1/s" if task.line is not None else "1",
+        rows=len(searched), row_step=apart,
+        complete=region.by_coefficients and not region.uncovered and not untold and not open_ends,
+        search=first + _faint_words(shaped) + _unknown_words(untold, across, up) + _open_words(open_ends, up),
+        unknown=tuple(sorted((*untold, *open_ends), key=lambda place: (place.y, place.x))), line=task.line,
+        remarks=task.remarks, find=find, unit=unit,
+    )  # fmt: skip
 
 
 def task_of(
@@ -219,7 +208,7 @@ def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
     return f"; where {many} end was not found, first between {up.said(np.array(first.between))}"
 
 
-def _search(region: Region) -> tuple[Search, Words]:
+def _search(region: Region) -> tuple[Search, Said]:
     """How rows are searched, and what there is to say of it when tongues are known."""
     alone = ""
     if not region.by_coefficients:
@@ -288,21 +277,11 @@ def _tongue(
     if falling:
         tip, top = top, tip
     return Tongue(
-        places[strand],
-        str(Kind(strand.held[0].kind)),
-        named,
-        y[order],
-        ends[0][order],
-        ends[1][order],
-        tip if tip is not None else top,
-        top if tip is not None else None,
-        *growth,
-        places.get(strand.into[1]),
-        places.get(strand.into[0]),
-        _cut(task, region, strand),
-        _fades(shape, falling),
-        find,
-    )
+        number=places[strand], kind=str(Kind(strand.held[0].kind)), resonance=named, y=y[order], low=ends[0][order],
+        high=ends[1][order], tip=tip if tip is not None else top, top=top if tip is not None else None,
+        growth_rate=growth[0], growth_at=growth[1], joins=places.get(strand.into[1]), parts=places.get(strand.into[0]),
+        cut=_cut(task, region, strand), fades=_fades(shape, falling), find=find,
+    )  # fmt: skip
 
 
 def _fades(shape: Shape, falling: bool) -> tuple[str, ...]:

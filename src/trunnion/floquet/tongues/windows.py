@@ -23,12 +23,15 @@ from trunnion.floquet.tongues.levels import DAMPING
 from trunnion.floquet.tongues.result import Tongue, Tongues
 from trunnion.floquet.tongues.tongues import task_of
 from trunnion.floquet.tongues.window_search import UNKNOWN, Seen, searched
-from trunnion.results.declared import Held, Result, axis, over, remarks
 from trunnion.results.drawing import Axes, drawing
-from trunnion.results.speeds import show_speed
+from trunnion.results.fields import attribute, computed, internal, labelled
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable
+from trunnion.results.words import Words
 from trunnion.waiting import keeps_time
 
 Progress = Callable[[float], None]
+COMPLETE = "whether rows and columns were searched for every zero and told everywhere, and every tip confirmed"
 
 
 @dataclass(frozen=True)
@@ -40,31 +43,34 @@ class End:
     region: str
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class StableWindows(Result):
-    """Ranges ``windows`` (windows, 2) of ``parameter``, rising, in which every speed of ``speeds`` [rad/s] is stable.
+    """Ranges of a parameter in which a whole range of speeds is stable."""
 
-    ends: what begins beyond each end of each window; low, high: the range searched; margin: by which share the speeds
-    asked for were widened at either end; search: how it was searched; ``tongues`` are the unstable regions behind it;
-    confirmed (speed,) [rad/s]: speeds at each of which the whole range was searched, and the windows found stable;
-    complete: whether every row and column was searched for every zero and told everywhere, and every tip confirmed;
-    ended: what ended the search before it was done, as a clause, "" where it was done.
-    """
+    SPEEDS_IN = "speed_unit"
 
-    parameter: str
-    unit: str
-    windows: Array
-    ends: tuple[tuple[End | None, End | None], ...]
-    speeds: tuple[float, float]
-    margin: float
-    low: float
-    high: float
-    search: str
-    speed_unit: str
-    tongues: Tongues
-    confirmed: Array
-    complete: bool
-    ended: str = ""
+    parameter: str = attribute("what was searched")
+    unit: str = internal("of the parameter")
+    windows: Array = internal("rising ranges of the parameter in which every speed is stable", "{unit}", "window 2")
+    ends: tuple[tuple[End | None, End | None], ...] = internal("what begins beyond each end of each window")
+    speeds: tuple[float, float] = attribute("asked for", "rad/s")
+    margin: float = attribute("share by which the speeds asked for were widened at either end")
+    low: float = internal("end of the range searched")
+    high: float = internal("end of the range searched")
+    search: str = attribute("how it was searched")
+    speed_unit: str = internal("of speeds in print")
+    tongues: Tongues = internal("the unstable regions behind it")
+    confirmed: Array = attribute(
+        "speeds at each of which the whole range was searched, and the windows found stable", "rad/s"
+    )
+    complete: bool = attribute(COMPLETE)
+    ended: str = attribute("what ended the search before it was done, as a clause", default="")
+
+    @property
+    @computed(attribute())
+    def range(self) -> tuple[float, float]:
+        """The range of the parameter that was searched."""
+        return self.low, self.high
 
     @property
     def largest(self) -> float | None:
@@ -81,13 +87,10 @@ class StableWindows(Result):
         return float(self.windows[-1, 0])
 
     @property
+    @computed(attribute())
     def sentence(self) -> str:
-        """The answer in a sentence; speeds in the unit of the line's description."""
-        return self.sentence_in(self.speed_unit)
-
-    def sentence_in(self, unit: str) -> str:
-        """The answer in a sentence, speeds in ``unit``."""
-        span = f"from {show_speed(self.speeds[0], unit)} to {show_speed(self.speeds[1], unit)}"
+        """The answer in a sentence."""
+        span = f"from {self.words.ends(*self.speeds)}"
         if self.ended and not len(self.confirmed):
             return f"No {self.parameter} is known yet to keep every speed {span} stable: {self.ended}."
         if not len(self.windows):
@@ -97,8 +100,8 @@ class StableWindows(Result):
             return f"No {asked} {known} every speed {span} stable{f'; {self.ended}' if self.ended else ''}."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):
-            begin = f"{self._value(low)}{_why(below, unit)}"
-            parts.append(f"from {begin} to {self._value(high)}{_why(above, unit)}")
+            begin = f"{self._value(low)}{_why(below, self.words)}"
+            parts.append(f"from {begin} to {self._value(high)}{_why(above, self.words)}")
         how = "confirmed" if self.complete else "checked"
         return (
             f"Every speed {span} is stable with {self.parameter} {' and '.join(parts)}; "
@@ -110,32 +113,22 @@ class StableWindows(Result):
             return f"{np.rad2deg(value):.6g}°"
         return f"{value:.6g}{'' if self.unit == '1' else ' ' + self.unit}"
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Windows, and what ends them."""
-        yield axis("window", np.arange(len(self.windows)))
+        yield from super().declared()
+        yield Coordinate("window", np.arange(len(self.windows)), "window")
         for k, name in enumerate(("from", "to")):
-            yield over("window", name, self.windows[:, k], self.unit, self.parameter)
-            speed = [float("nan") if e[k] is None else e[k].speed for e in self.ends]  # type: ignore[union-attr]
-            yield over("window", f"{name}_speed", np.array(speed), "rad/s")
-            yield over("window", f"{name}_region", ["" if e[k] is None else e[k].region for e in self.ends])  # type: ignore[union-attr]
-        yield from remarks(
-            parameter=self.parameter,
-            speeds=list(self.speeds),
-            margin=self.margin,
-            range=[self.low, self.high],
-            search=self.search,
-            complete=int(self.complete),
-            confirmed=self.confirmed.tolist(),
-            sentence=self.sentence,
-            ended=self.ended,
-        )
+            ends = [pair[k] or End(float("nan"), "") for pair in self.ends]
+            yield Variable(name, self.windows[:, k], "window", self.unit, self.parameter)
+            yield Variable(f"{name}_speed", np.array([end.speed for end in ends]), "window", "rad/s")
+            yield Variable(f"{name}_region", [end.region for end in ends], "window")
 
     def plot(self, axes: Axes | None = None, *, unit: str | None = None, labelled: int = 12) -> Axes:
         """The unstable regions over speed and parameter; see ``plots.tongues.draw_windows``."""
         return drawing(self, "plot")(self, axes, unit=unit, labelled=labelled)
 
-    def __str__(self) -> str:
-        return "\n".join([self.sentence, f"  {self.search}", *(f"  note: {r}" for r in self.tongues.remarks)])
+    def _lines(self) -> list[str]:
+        return [self.sentence, f"  {self.search}", *(f"  note: {r}" for r in self.tongues.remarks)]
 
 
 @keeps_time
@@ -179,9 +172,10 @@ def stable_windows(
     # A range that reaches below the slowest turn that can be computed was searched from there on.
     begin = asked[0] if found.x_range[0] <= span[0] * (1 + 1e-12) else found.x_range[0]
     return StableWindows(
-        found.y_label, found.y_unit, windows, ends, (begin, asked[1]), float(margin),
-        *found.y_range, found.search, speed_unit(assembly.line), found, np.sort([column.x for column in columns]),
-        found.complete and not ended and not any(column.left_out for column in columns), ended,
+        parameter=found.y_label, unit=found.y_unit, windows=windows, ends=ends, speeds=(begin, asked[1]),
+        margin=float(margin), low=found.y_range[0], high=found.y_range[1], search=found.search,
+        speed_unit=speed_unit(assembly.line), tongues=found, confirmed=np.sort([column.x for column in columns]),
+        complete=found.complete and not ended and not any(column.left_out for column in columns), ended=ended,
     )  # fmt: skip
 
 
@@ -242,8 +236,8 @@ def all_damping(assembly: Assembly) -> Parameter:
     return Parameter("factor of all damping", "1", tuple(terms))
 
 
-def _why(end: End | None, unit: str) -> str:
-    return "" if end is None else f" (set by {end.region} at {show_speed(end.speed, unit)})"
+def _why(end: End | None, words: Words) -> str:
+    return "" if end is None else f" (set by {end.region} at {words.speed(end.speed)})"
 
 
 def _free_of(found: Tongues, columns: list[Seen]) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:

@@ -209,7 +209,7 @@ class LineMap(ExactMap):
         return np.concatenate([size, np.maximum(np.abs(start[m:]), size * turning)])[self.kept]
 
     def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
-        slope = -self.length / self.value if self.line.clock in ("speed", "frequency") else 0.0
+        slope = self.length * self.line.period_slope(self.value)
         run = staged_flow.period(self.flow, self.whole(x), self.length, slope, watch=watch)
         if not (run.done and np.isfinite(run.tangents).all()):
             return _broken(self.size, len(by))

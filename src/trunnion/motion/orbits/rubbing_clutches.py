@@ -51,7 +51,7 @@ def _shifts_alike(line: LineSystem, stuck: list[int]) -> bool:
     topo, elements = line.assembly.topology, line.assembly.line.elements
     clutches = [elements[topo.compliances[line.sliders[i].compliance].shafts[0]] for i in stuck]
     springs = [clutch.stiffnesses for clutch in clutches if isinstance(clutch, Clutch)]
-    by_order = any(one.law.order is not None for one in line.harmonics)
+    by_order = any(one.order for one in line.torques)
     if bent(line.assembly) or any(len(stiffnesses) > 1 for stiffnesses in springs):
         return False
     return not by_order or not any(map(any, springs))

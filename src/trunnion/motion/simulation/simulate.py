@@ -168,7 +168,7 @@ def simulate_line(
     if len(profile.time) > 1:
         require_share(prepared.assembly)
     elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:
-        for one in prepared.harmonics:
+        for one in prepared.torques:
             one.refuse_change()
     go = _Going(tuple(events), tolerance, most_steps, dense)
     if turns is not None and prepared.assembly.topology.free:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.equations.coefficients import joint_laws
+from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -59,28 +60,28 @@ def strongest_order(run: LineSimulation, since: float, until: float) -> Stronges
     if not energy[place, spring] > 0:
         return None
     order = int(place) / turns
-    exciting = [(rate, name) for rate, name in _exciting(run.line) if abs(rate - order) * turns < 1.5]
+    begun, ended = (float(a) for a in run.whole.angle([times[0], until]))
+    speed = (ended - begun) / (until - float(times[0]))
+    exciting = [(rate, name) for rate, name in _exciting(run.line, speed) if abs(rate - order) * turns < 1.5]
     if exciting:
         order = min(exciting, key=lambda one: abs(one[0] - place / turns))[0]
     sources = tuple(dict.fromkeys(name for rate, name in exciting if rate == order))
-    begun, ended = (float(a) for a in run.whole.angle([times[0], until]))
-    frequency = order * (ended - begun) / (until - float(times[0]))
+    frequency = order * speed
     name = run.shafts[int(spring)]
     return StrongestOrder(order, name, float(torque[place, spring]), frequency, sources, *_mode(run.line, frequency))
 
 
-def _exciting(line: LineSystem) -> Iterator[tuple[float, str]]:
-    """Orders of everything that excites, in cycles per turn of the input, and its name."""
+def _exciting(line: LineSystem, speed: float) -> Iterator[tuple[float, str]]:
+    """Orders of everything that excites, in cycles per turn of the input at its ``speed`` [rad/s], and its name."""
     assembly, topo = line.assembly, line.assembly.topology
     names = assembly.line.names
     for joint, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
         if law.uneven:
             yield from ((float(rate), names[topo.stations[joint].element]) for rate in topo.joint_rates(joint))
-    for one in line.harmonics:
-        if one.law.order is not None:
-            yield one.law.order * abs(float(topo.speed_ratio[one.station])), one.name
     for mesh in topo.meshes:
-        yield from ((float(rate), names[mesh.element]) for rate in mesh.rates)
+        yield from ((float(rate), names[mesh.element]) for rate in mesh.stiffness_rates)
+    for one in line_harmonics(assembly):
+        yield abs(float(one.order) + one.frequency / speed), one.name
 
 
 def _mode(line: LineSystem, frequency: float) -> tuple[int, float]:

@@ -60,16 +60,15 @@ def chain_propagator(
 ) -> tuple[Array, Array, Array]:
     """The same for any stretch of input angle from ``begin`` on."""
     n, count = lanes.stiffness.shape
-    matrix = np.empty((count, 2 * n, 2 * n))
-    error, trace = np.empty(count), np.empty(count)
-    order = _alike_together(lanes)
+    found = np.empty((count, 2 * n, 2 * n)), np.empty(count), np.empty(count)
+    order, stretch = _alike_together(lanes), (begin, length, tolerance, MOST_STEPS)
     integrate = integrate_stages if has_extra(program, lanes) else integrate_series
 
     def run(first: int, last: int) -> None:
-        integrate(program, lanes, order, first, last, begin, length, tolerance, MOST_STEPS, matrix, error, trace)
+        integrate(program, lanes, order, first, last, *stretch, *found)
 
     _in_pieces(run, count, threads, LANES if n > SMALL else 4 * LANES)
-    return matrix, error, trace
+    return found
 
 
 def complete(

@@ -135,8 +135,9 @@ def move(
     events_found = record[:events].copy()
     gone = flow.moves[np.arange(m), now] * z[m:]
     return StagedPassage(
-        float(time), z, np.append(gone, rate), now, w.T, states, shown_stages, events_found, seen, int(ended)
-    )
+        time=float(time), state=z, rate=np.append(gone, rate), stages=now, tangents=w.T, states=states,
+        shown_stages=shown_stages, events=events_found, seen=seen, ended=int(ended),
+    )  # fmt: skip
 
 
 def period(

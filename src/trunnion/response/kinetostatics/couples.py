@@ -23,7 +23,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.laws.hooke import QUARTER_TURN
-from trunnion.response.kinetostatics.chain import Chain, Link
+from trunnion.response.kinetostatics.chain import Chain
 from trunnion.response.kinetostatics.torques import Torques
 
 
@@ -51,7 +51,7 @@ def secondary_couples(chain: Chain, motion: Rotations, passed: Torques, pin_mome
         chi, behind = motion.chi[i][0], motion.angle[i][0]
         names += [f"{step.name} in", f"{step.name} out"]
         member += [chain.steps[step.parent].member, step.member]
-        if step.link is Link.HOOKE:
+        if step.cross:
             speeds = motion.angle[step.parent][1], motion.angle[i][1]
             on_input, on_output, lost = _cross(step.angle, chi, passed.out[i][0], speeds, pin_moment)
             heat = heat + lost
@@ -79,7 +79,7 @@ def cross_tilts(chain: Chain, motion: Rotations) -> Array:
     tilts = []
     for i in chain.joints:
         step, chi = chain.steps[i], motion.chi[i][0]
-        if step.link is Link.HOOKE:
+        if step.cross:
             tilts += [np.arctan(np.tan(step.angle) * np.sin(chi)), np.arcsin(np.sin(step.angle) * np.cos(chi))]
         else:
             tilts += [np.full(len(chi), np.nan)] * 2

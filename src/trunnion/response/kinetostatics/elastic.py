@@ -38,7 +38,7 @@ def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Rotations, Torque
     motion, twist, change = untwisted, dict[int, Array](), np.inf
     for _ in range(ROUNDS):
         found = torques(chain, drive, motion, MOTION_ORDER, untwisted)
-        new = {i: _yielding(chain.steps[i], found.spring[i]) for i in chain.shafts}
+        new = {i: _yielding(chain.steps[i], found.out[i]) for i in chain.shafts}
         before, change = change, _change(new, twist, drive.speed)
         twist = new
         if change < 1e-15 or (change < 1e-11 and change >= before):  # rounding

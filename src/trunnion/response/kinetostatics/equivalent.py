@@ -21,7 +21,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.response.kinetostatics.chain import Chain, Link
+from trunnion.equations.topology import Link
+from trunnion.response.kinetostatics.chain import Chain
 
 Changes = Mapping[int, Array]
 
@@ -29,9 +30,9 @@ Changes = Mapping[int, Array]
 def is_one_joint(chain: Chain) -> bool:
     """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio."""
     geared = False
-    for i in chain.path(chain.output):
+    for i in chain.way:
         step = chain.steps[i]
-        if step.orders and (geared or step.link is not Link.HOOKE):
+        if step.orders and (geared or not step.cross):
             return False
         geared = geared or step.link is Link.RATIO
     return True
@@ -44,13 +45,13 @@ def matrices(
     """M of the line for many variants, shape (case, 2, 2); changed numbers are arrays (case,) by step."""
     angle, plane, fork_offset = angle or {}, plane or {}, fork_offset or {}
     product = np.broadcast_to(np.eye(2), (cases, 2, 2))
-    for i in chain.path(chain.output):
+    for i in chain.way:
         step = chain.steps[i]
         if step.link is Link.SHAFT:
             product = _rotation(fork_offset.get(i, step.fork_offset), cases) @ product
         elif step.law is not None:
             product = _rotation(-np.asarray(plane.get(i, step.plane)), cases) @ product
-        if step.link is Link.HOOKE:
+        if step.cross:
             root = np.sqrt(np.cos(angle.get(i, step.angle)))
             stretch = np.zeros((cases, 2, 2))
             stretch[:, 0, 0], stretch[:, 1, 1] = root, 1 / root
@@ -73,9 +74,7 @@ def irregularity(product: Array) -> Array:
 
 def least_irregularity(chain: Chain) -> float:
     """What the best phasing of the forks can reach [1]."""
-    rapidities = [
-        -np.log(np.cos(chain.steps[i].angle)) for i in chain.path(chain.output) if chain.steps[i].link is Link.HOOKE
-    ]
+    rapidities = [-np.log(np.cos(chain.steps[i].angle)) for i in chain.way if chain.steps[i].cross]
     rest = max(0.0, 2 * max(rapidities, default=0.0) - sum(rapidities))
     return float(2 * np.sinh(rest))
 
@@ -83,7 +82,7 @@ def least_irregularity(chain: Chain) -> float:
 def phasors(chain: Chain) -> tuple[Array, Array]:
     """Angles β_i and input angles χ_i [rad] of the joints on the way to the output, for small angles."""
     a, angles, phases = 0.0, [], []
-    for i in chain.path(chain.output):
+    for i in chain.way:
         step = chain.steps[i]
         if step.link is Link.SHAFT:
             a += step.fork_offset
@@ -91,7 +90,7 @@ def phasors(chain: Chain) -> tuple[Array, Array]:
             a /= step.ratio
         elif step.law is not None:
             a -= step.plane
-            if step.link is Link.HOOKE:
+            if step.cross:
                 angles.append(step.angle)
                 phases.append(a)
             a += step.law.turned

@@ -16,13 +16,14 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations import kinematics
 from trunnion.equations.kinematics import Place, Rotations
+from trunnion.equations.topology import Link
 from trunnion.laws import hooke
-from trunnion.response.kinetostatics.chain import Chain, Link
+from trunnion.response.kinetostatics.chain import Chain
 
 
 @dataclass(frozen=True)
 class Drive:
-    """What is done to the line: input, torque [N m] by end step, pin friction, and whether inertias count."""
+    """What is done to the line: input, torque [N m] by the element at an end, pin friction, whether inertias count."""
 
     input_angle: Array
     speed: float

@@ -19,9 +19,10 @@ from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.driveline.refusals import nearest
+from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics import equivalent
-from trunnion.response.kinetostatics.chain import Chain, Link, chain, period_turns
+from trunnion.response.kinetostatics.chain import Chain, chain
 from trunnion.response.kinetostatics.measures import equivalent_angle, extremes, phasor_angle
 from trunnion.response.kinetostatics.motion import drive_jet, walk
 
@@ -135,7 +136,7 @@ def phased_shafts(train: Chain) -> tuple[int, ...]:
     """The first Shaft between each two neighbouring joints that are not ideal, on the way to the output."""
     found: list[int] = []
     shaft, seen = None, False
-    for i in train.path(train.output):
+    for i in train.way:
         step = train.steps[i]
         if step.link is Link.SHAFT and seen and shaft is None:
             shaft = i
@@ -161,16 +162,16 @@ def irregularity_of(
     if equivalent.is_one_joint(train):
         lines = equivalent.matrices(train, len(offsets), angle=angle, plane=plane, fork_offset=shafts)
         return equivalent.irregularity(lines)
-    input_angle: Array = np.arange(period_turns(train) * POINTS, dtype=np.float64) * (2 * np.pi / POINTS)
+    input_angle: Array = np.arange(train.turns * POINTS, dtype=np.float64) * (2 * np.pi / POINTS)
     drive = drive_jet(input_angle, 1.0, 0.0, 1)[:, None]
 
     def column(values: Mapping[int, Array] | None) -> dict[int, Array]:
         return {i: x[:, None] for i, x in (values or {}).items()}
 
     motion = walk(train, drive, angle=column(angle), plane=column(plane), fork_offset=column(shafts))
-    speed = np.broadcast_to(motion.angle[train.output][1], (len(offsets), drive.shape[-1]))
+    speed = np.broadcast_to(motion.angle[train.behind[train.output]][1], (len(offsets), drive.shape[-1]))
     low, high = extremes(speed)
-    return np.asarray((high - low) / abs(train.mean_ratio(train.output)))
+    return np.asarray((high - low) / abs(float(train.steps[train.behind[train.output]].speed)))
 
 
 def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:

@@ -10,11 +10,11 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.response.kinetostatics.chain import Chain, period_turns
+from trunnion.response.kinetostatics.chain import Chain
 from trunnion.response.kinetostatics.motion import Drive
 from trunnion.response.kinetostatics.supports import Supports
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.results.words import Words
 
 NEAR_RESONANCE = 1 / 3
 """Excitation over lowest elastic frequency up to which inertia torques count as quasi-static."""
@@ -47,7 +47,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
     from trunnion.modes.natural_frequencies import natural_frequencies
 
-    rates = [max(chain.steps[i].orders) * abs(chain.mean_ratio(i)) for i in chain.uneven]
+    rates = [float(max(step.orders) * abs(step.speed)) for step in chain.steps if step.orders]
     if not rates:
         return []
     try:
@@ -60,11 +60,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     lowest, excitation = float(elastic[0]), max(rates) * drive.speed
     if excitation <= NEAR_RESONANCE * lowest:
         return []
-    unit = frequency_unit(speed_unit(chain.line))
-
-    def show(frequency: float) -> str:
-        return f"{frequency * speed_factor(unit):.4g} {unit}"
-
+    show = Words(speed_unit(chain.line)).of_frequencies.rounded
     torque = "inertia torques of the rigid line" if rigid else "quasi-static inertia torques"
     if excitation < lowest:
         grave, share = Gravity.CAUTION, (excitation / lowest) ** 2
@@ -132,7 +128,7 @@ def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
 
 def _repeats(chain: Chain, turns: int) -> list[Finding]:
     """Whether the turns asked for cover a whole period of a line with ratios."""
-    period = period_turns(chain)
+    period = chain.turns
     if turns % period == 0:
         return []
     return [

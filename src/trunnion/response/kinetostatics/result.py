@@ -15,7 +15,6 @@ from trunnion._version import __version__
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
@@ -29,11 +28,11 @@ from trunnion.response.kinetostatics.measures import (
     parts,
 )
 from trunnion.response.kinetostatics.supports import Supports
-from trunnion.results.declared import Described, Held, axis, over, remark, remarks
 from trunnion.results.drawing import Figure, drawing
+from trunnion.results.fields import attribute, computed, coordinate, declared, internal, labelled, variable
 from trunnion.results.finding import Finding, by_gravity
-from trunnion.results.speeds import show_speed, speed_factor
-from trunnion.results.units import angle_words
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.writing import written_whole
 
 ANGLES = (
@@ -41,6 +40,7 @@ ANGLES = (
     ("speed", "rad/s", "speed"),
     ("acceleration", "rad/s^2", "angular acceleration"),
 )
+TILT = "tilt of the other fork's pins out of the plane square to the shaft"
 
 
 @dataclass(frozen=True)
@@ -57,78 +57,58 @@ class ConstantTwist:
     acceleration: float
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Kinetostatics(Described):
+@labelled
+class Kinetostatics(Result):
     """Motion, torques, couples and support forces of a line over the input angle; SI units.
 
-    Axes: ``point`` is the input angle, ``shaft`` the line's Shafts, ``joint`` its joints (a double-Cardan
-    joint counts as two), ``fork`` the input and output fork of each joint in turn.
-
-    Attributes
-    ----------
-    input_angle : (point,) rotation of the drive [rad]; ``points`` per turn, the end of a turn left out.
-    angle, speed, acceleration : (shaft, point) of the far end of each shaft [rad, rad/s, rad/s²], counted
-        from the unloaded line at input angle 0.
-    twist : (shaft, point) far end minus near end [rad]; zero where rigid.
-    torque : (shaft, point) [N m], positive with the twist, hence *negative* where power flows from the drive
-        to the load; ``transmitted`` is the same with the other sign.
-    branches : name of the element that ends each branch; a line without branches has one. ``branch`` is the one
-        whose end is the output.
-    end_angle, end_speed, end_acceleration : (branch, point) there; end_ratio (branch,) mean speed over the input's.
-    end_torque : (branch,) [N m] asked for at each end, beside the Disks' own loads.
-    output_angle, output_speed, output_acceleration : (point,) at the end of ``branch``.
-    drive_torque : (point,) torque the drive must supply [N m].
-    output_torque : torque [N m] asked for at the end of ``branch``, beside the Disks' own.
-    joint_angle : (joint, point) input angle χ of each joint from its own plane [rad].
-    joint_torque_in, joint_torque_out : (joint, point) transmitted into and out of each joint [N m].
-    cross_tilt : (fork, point) of the cross in each fork [rad]: of the other fork's pins out of the plane square to the
-        shaft, positive away from the drive; NaN where the joint has no cross.
-    secondary_couple : (fork, 2, point) on the shaft, standing frame [N m]: along u (in the joint plane,
-        toward the side the line bends to) and v (normal to it, axis × u).
-    secondary_couple_rotating : (fork, 2, point) the same along the fork's arm and across it (axis × arm).
-    supports : forces on bearings and joint centres, where bearings were given.
-    constant_twists : how good a constant twist would be, for elastic shafts, by branch.
-    power_loss : (point,) heat of the crosses' pins [W].
-    power_residual : largest imbalance of power over the largest power [1]: rounding.
-    findings : what a colleague would remark.
+    The end of a turn is left out. Angles count from the unloaded line at input angle 0. A double-Cardan joint counts as
+    two; its cross tilts positive away from the drive, NaN where a joint has none. Torque is positive with the twist,
+    hence *negative* where power flows from the drive to the load; ``transmitted`` is the same with the other sign.
+    Secondary couples act on the shaft: in the standing frame along u (in the joint plane, toward the side the line
+    bends to) and v (normal to it, axis × u), in the rotating one along the fork's arm and across it (axis × arm).
     """
 
-    line: Driveline
-    input_speed: float
-    input_acceleration: float
-    turns: int
-    rigid: bool
-    inertia: bool
-    branches: tuple[str, ...]
-    branch: str
-    end_ratio: Array
-    end_angle: Array
-    end_speed: Array
-    end_acceleration: Array
-    end_torque: Array
-    input_angle: Array
-    shafts: tuple[str, ...]
-    shaft_ratio: Array
-    angle: Array
-    speed: Array
-    acceleration: Array
-    twist: Array
-    torque: Array
-    drive_torque: Array
-    joints: tuple[str, ...]
-    joint_angle: Array
-    joint_torque_in: Array
-    joint_torque_out: Array
-    forks: tuple[str, ...]
-    fork_ratio: Array
-    cross_tilt: Array
-    secondary_couple: Array
-    secondary_couple_rotating: Array
-    supports: Supports | None
-    constant_twists: tuple[ConstantTwist, ...] | None
-    findings: tuple[Finding, ...]
-    power_loss: Array
-    power_residual: float
+    line: Driveline = internal("whose turn it is")
+    input_angle: Array = coordinate("input_angle", "rad", "input angle")
+    shafts: tuple[str, ...] = coordinate("shaft")
+    branches: tuple[str, ...] = coordinate("branch", words="elements that end them")
+    joints: tuple[str, ...] = coordinate("joint")
+    forks: tuple[str, ...] = coordinate("fork", words="input and output fork of each joint in turn")
+    angle: Array = variable("shaft input_angle", "rad", "rotation of the far end")
+    speed: Array = variable("shaft input_angle", "rad/s", "speed of the far end")
+    acceleration: Array = variable("shaft input_angle", "rad/s^2", "angular acceleration of the far end")
+    twist: Array = variable("shaft input_angle", "rad", "twist, far end minus near end")
+    torque: Array = variable("shaft input_angle", "N*m", "torque, positive with the twist")
+    end_angle: Array = variable("branch input_angle", "rad", "rotation of the branch's end")
+    end_speed: Array = variable("branch input_angle", "rad/s", "speed of the branch's end")
+    end_acceleration: Array = variable("branch input_angle", "rad/s^2", "angular acceleration of the branch's end")
+    drive_torque: Array = variable("input_angle", "N*m", "torque the drive supplies")
+    power_loss: Array = variable("input_angle", "W", "power lost in joint friction")
+    joint_angle: Array = variable("joint input_angle", "rad", "input angle from the joint's own plane")
+    joint_torque_in: Array = variable("joint input_angle", "N*m", "torque transmitted into the joint")
+    joint_torque_out: Array = variable("joint input_angle", "N*m", "torque transmitted out of the joint")
+    cross_tilt: Array = variable("fork input_angle", "rad", TILT)
+    secondary_couple: Array = variable("fork standing input_angle", "N*m", "couple on the fork, standing frame")
+    secondary_couple_rotating: Array = variable(
+        "fork rotating input_angle", "N*m", "couple on the fork, rotating frame"
+    )
+    input_speed: float = attribute("mean", "rad/s")
+    input_acceleration: float = attribute("of the drive", "rad/s^2")
+    branch: str = attribute("whose end is the output", name="output")
+    turns: int = attribute("computed")
+    rigid: bool = attribute("whether shafts are")
+    inertia: bool = attribute("whether inertia torques are included")
+    end_ratio: Array = internal("mean speed over the input's", "1", "branch")
+    end_torque: Array = internal("asked for at each end, beside the disks' own loads", "N m", "branch")
+    shaft_ratio: Array = internal("mean speed over the input's", "1", "shaft")
+    fork_ratio: Array = internal("mean speed over the input's", "1", "fork")
+    supports: Supports | None = internal("forces on bearings and joint centres, where bearings were given")
+    constant_twists: tuple[ConstantTwist, ...] | None = internal("how good a constant twist would be, by branch")
+    findings: tuple[Finding, ...] = internal("what a colleague would remark")
+    power_residual: float = internal("largest imbalance of power over the largest power: rounding", "1")
+    unit: str = internal("of speeds in print")
+
+    __eq__, __hash__ = object.__eq__, object.__hash__
 
     @property
     def _end(self) -> int:
@@ -140,21 +120,25 @@ class Kinetostatics(Described):
         return float(self.end_ratio[self._end])
 
     @property
+    @computed(variable("input_angle", "rad", "rotation of the output"), after="torque")
     def output_angle(self) -> Array:
         """Rotation of the output [rad] (point,)."""
         return np.asarray(self.end_angle[self._end])
 
     @property
+    @computed(variable("input_angle", "rad/s", "speed of the output"), after="torque")
     def output_speed(self) -> Array:
         """Speed of the output [rad/s] (point,)."""
         return np.asarray(self.end_speed[self._end])
 
     @property
+    @computed(variable("input_angle", "rad/s^2", "angular acceleration of the output"), after="torque")
     def output_acceleration(self) -> Array:
         """Angular acceleration of the output [rad/s²] (point,)."""
         return np.asarray(self.end_acceleration[self._end])
 
     @property
+    @computed(attribute())
     def output_torque(self) -> float:
         """Torque asked for at the output [N m]."""
         return float(self.end_torque[self._end])
@@ -174,16 +158,19 @@ class Kinetostatics(Described):
         return -self.torque
 
     @cached_property
+    @computed(attribute())
     def irregularity(self) -> float:
         """U = (largest − smallest output speed)/mean [1], over the turns computed."""
         return irregularity(self.output_speed, self.input_speed * self.mean_ratio)
 
     @property
+    @computed(attribute())
     def equivalent_angle(self) -> float:
         """Angle [rad] of the single Hooke's joint with this irregularity."""
         return float(equivalent_angle(self.irregularity))
 
     @property
+    @computed(attribute())
     def peak_acceleration(self) -> float:
         """Largest angular acceleration of the output [rad/s²]; 0 where it is only rounding."""
         peak = float(largest(self.output_acceleration))
@@ -197,6 +184,7 @@ class Kinetostatics(Described):
         return np.asarray(lead - (low + high) / 2)
 
     @property
+    @computed(attribute())
     def homokinetic_deviation(self) -> float:
         """Largest lead or lag of the output [rad]: half its swing about uniform rotation."""
         low, high = extremes(self.output_angle - self.mean_ratio * self.input_angle)
@@ -226,57 +214,15 @@ class Kinetostatics(Described):
         assert self.supports is not None
         return parts(self.supports.force[b], self.supports.ratio[b] * self.input_angle)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Everything over the input angle, by the named shafts, branches, joints, forks and bearings; the settings."""
-        yield axis("input_angle", self.input_angle, "rad", "input angle")
-        yield axis("shaft", list(self.shafts))
-        yield axis("branch", list(self.branches))
-        yield axis("joint", list(self.joints))
-        yield axis("fork", list(self.forks))
-        yield axis("standing", ["u", "v"])
-        yield axis("rotating", ["arm", "across"])
-        for name, unit, words in ANGLES:
-            yield over("shaft input_angle", name, getattr(self, name), unit, f"{words} of the far end")
-        yield over("shaft input_angle", "twist", self.twist, "rad", "twist, far end minus near end")
-        yield over("shaft input_angle", "torque", self.torque, "N*m", "torque, positive with the twist")
-        for name, unit, words in ANGLES:
-            yield over("input_angle", f"output_{name}", getattr(self, f"output_{name}"), unit, f"{words} of the output")
-        for name, unit, words in ANGLES:
-            values = getattr(self, f"end_{name}")
-            yield over("branch input_angle", f"end_{name}", values, unit, f"{words} of the branch's end")
-        yield over("input_angle", "drive_torque", self.drive_torque, "N*m", "torque the drive supplies")
-        yield over("input_angle", "power_loss", self.power_loss, "W", "power lost in joint friction")
-        joint, fork, couple = "joint input_angle", "fork {} input_angle", "couple on the fork, {} frame"
-        yield over(joint, "joint_angle", self.joint_angle, "rad", "input angle from the joint's own plane")
-        yield over(joint, "joint_torque_in", self.joint_torque_in, "N*m", "torque transmitted into the joint")
-        yield over(joint, "joint_torque_out", self.joint_torque_out, "N*m", "torque transmitted out of the joint")
-        tilt = "tilt of the other fork's pins out of the plane square to the shaft"
-        yield over("fork input_angle", "cross_tilt", self.cross_tilt, "rad", tilt)
-        for frame, name in (("standing", "secondary_couple"), ("rotating", "secondary_couple_rotating")):
-            yield over(fork.format(frame), name, getattr(self, name), "N*m", couple.format(frame))
+        yield from super().declared()
+        yield Coordinate("standing", ["u", "v"], "standing")
+        yield Coordinate("rotating", ["arm", "across"], "rotating")
+        yield from attributes(version=__version__, driveline=dumps(self.line))
         if self.supports is not None:
-            yield axis("bearing", list(self.supports.names))
-            yield axis("loaded_joint", list(self.supports.joint_names))
-            yield axis("axis", ["e", "u", "v"])
-            force, between = (
-                "force of the shaft on its bearing",
-                "force of the shaft in front of the joint on the one behind it",
-            )
-            yield over("bearing standing input_angle", "support_force", self.supports.force, "N", force)
-            yield over("loaded_joint axis input_angle", "joint_force", self.supports.joint_force, "N", between)
-        yield from remarks(
-            version=__version__,
-            driveline=dumps(self.line),
-            input_speed=self.input_speed,
-            input_acceleration=self.input_acceleration,
-            output=self.branch,
-            output_torque=self.output_torque,
-            turns=self.turns,
-            rigid=int(self.rigid),
-            inertia=int(self.inertia),
-        )
-        for name in ("irregularity", "equivalent_angle", "homokinetic_deviation", "peak_acceleration"):
-            yield remark(name, getattr(self, name))
+            yield Coordinate("axis", ["e", "u", "v"], "axis")
+            yield from declared(self.supports)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """One line per input angle, one column per quantity and shaft, units in the heading."""
@@ -288,16 +234,15 @@ class Kinetostatics(Described):
 
     def table(self, unit: str | None = None) -> list[dict[str, Any]]:
         """One row per shaft: speed range in ``unit`` (default the description's), acceleration, torque range, twist."""
-        unit = unit or speed_unit(self.line)
-        factor, rows = speed_factor(unit), []
+        words, rows = self.in_unit(unit).words, []
         for s, name in enumerate(self.shafts):
             slow, fast = extremes(self.speed[s])
             weak, strong = extremes(self.transmitted[s])
             rows.append(
                 {
                     "shaft": name,
-                    f"slowest [{unit}]": float(slow) * factor,
-                    f"fastest [{unit}]": float(fast) * factor,
+                    f"slowest [{words.unit}]": float(slow) * words.factor,
+                    f"fastest [{words.unit}]": float(fast) * words.factor,
                     "largest acceleration [rad/s^2]": float(largest(self.acceleration[s])),
                     "least torque [N*m]": float(weak),
                     "largest torque [N*m]": float(strong),
@@ -310,27 +255,24 @@ class Kinetostatics(Described):
         """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
         return drawing(self, "plot")(self, unit=unit)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The summary that printing gives, the input speed in ``unit``, by default that of the line's description."""
-        return "\n".join(
-            [
-                _title(self, unit or speed_unit(self.line)),
-                *(line for name in self.branches for line in _output(self.on_branch(name))),
-                *_torques(self),
-                *_couples(self),
-                *_supports(self),
-                *_twists(self),
-                *(f"  {finding}" for finding in by_gravity(self.findings)),
-            ]
-        )
+    @property
+    def _printed(self) -> tuple[Finding, ...]:
+        return by_gravity(self.findings)
+
+    def _lines(self) -> Iterator[str]:
+        yield _title(self)
+        for name in self.branches:
+            yield from _output(self.on_branch(name))
+        for part in (_torques, _couples, _supports, _twists):
+            yield from part(self)
 
 
-def _title(r: Kinetostatics, unit: str) -> str:
+def _title(r: Kinetostatics) -> str:
     name = f" of {r.line.name!r}" if r.line.name else ""
     turns = "one turn" if r.turns == 1 else f"{r.turns} turns"
     kind = "rigid shafts" if r.rigid else "elastic shafts, their damping left out"
     return (
-        f"kinetostatics{name} over {turns} at {show_speed(r.input_speed, unit)}: {kind}, "
+        f"kinetostatics{name} over {turns} at {r.words.speed(r.input_speed)}: {kind}, "
         f"inertia torques {'included' if r.inertia else 'left out'}, {len(r.input_angle)} points"
     )
 
@@ -391,7 +333,7 @@ def _twists(r: Kinetostatics) -> list[str]:
         return []
     s = int(np.argmax(largest(r.twist)))
     return [
-        f"  largest twist {angle_words(largest(r.twist)[s], 4)} in {r.shafts[s]}, varying by ± "
+        f"  largest twist {r.words.angle(largest(r.twist)[s], 4)} in {r.shafts[s]}, varying by ± "
         f"{100 * constant.variation[s]:.3g} % of its mean over the turn; taken as constant, the output speed "
         f"is off by {constant.speed / r.input_speed:.2g} of the input speed"
     ]

@@ -12,7 +12,7 @@ from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.errors import InputError
-from trunnion.response.kinetostatics.chain import Chain, Link, chain
+from trunnion.response.kinetostatics.chain import Chain, chain
 from trunnion.response.kinetostatics.measures import equivalent_angle
 from trunnion.response.kinetostatics.phasing import irregularity_of, phased_shafts
 
@@ -72,7 +72,7 @@ def assembly_sensitivity(
     if not size > 0:
         raise InputError("must be positive", key="error", value=error, remedy='write "1 deg", say')
     train = chain(line, branch=branch)
-    hooke, shafts = tuple(i for i in train.path(train.output) if i in train.of(Link.HOOKE)), phased_shafts(train)
+    hooke, shafts = tuple(i for i in train.way if train.steps[i].cross), phased_shafts(train)
     if not hooke:
         raise InputError("has no Hooke's joint", element="driveline", remedy="its output is as even as its input")
     _refuse_reaching_90(train, hooke, size, error)

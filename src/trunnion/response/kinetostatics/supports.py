@@ -15,35 +15,36 @@ of ``torques``), linear with constant coefficients, so one factorisation serves 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings, place_bearings
-from trunnion.response.kinetostatics.chain import Chain, Link, member_ratio
+from trunnion.response.kinetostatics.chain import Chain
 from trunnion.response.kinetostatics.couples import Couples, turned
 from trunnion.response.kinetostatics.frames import member_frames
+from trunnion.results.fields import coordinate, internal, labelled, variable
+
+ON_BEARING = "force of the shaft on its bearing"
+ON_JOINT = "force of the shaft in front of the joint on the one behind it"
 
 
-@dataclass(frozen=True)
+@labelled
 class Supports:
-    """Loads on bearings and joint centres [N].
+    """Loads on bearings and joint centres.
 
-    ``force`` (bearing, 2, point): of the shaft on its bearing, along u and v of the joint in front of the
-    shaft (on the first shaft: of the joint behind it at plane 0). ``joint_force`` (joint, 3, point): of the
-    shaft in front of the joint on the one behind it, along e, u, v of the one behind. ``ratio`` (bearing,)
-    is the mean speed of the bearing's shaft over the input's; ``idle`` names joints taken to carry no
-    force.
+    u and v are those of the joint in front of the shaft (on the first shaft: of the joint behind it at plane 0), of
+    joint forces e, u, v those of the shaft behind.
     """
 
-    names: tuple[str, ...]
-    ratio: Array
-    force: Array
-    joint_names: tuple[str, ...]
-    joint_force: Array
-    idle: tuple[str, ...]
+    names: tuple[str, ...] = coordinate("bearing")
+    ratio: Array = internal("mean speed of the bearing's shaft over the input's", "1", "bearing")
+    force: Array = variable("bearing standing input_angle", "N", ON_BEARING, name="support_force")
+    joint_names: tuple[str, ...] = coordinate("loaded_joint")
+    joint_force: Array = variable("loaded_joint axis input_angle", "N", ON_JOINT)
+    idle: tuple[str, ...] = internal("joints taken to carry no force")
 
 
 def support_forces(chain: Chain, couples: Couples, bearings: Bearings) -> Supports:
@@ -189,7 +190,7 @@ class _Statics:
         steps = self.chain.steps
         return Supports(
             tuple(f"{self._shaft(m)} at {x:g} m" for m, x in self.bearings),
-            np.array([member_ratio(self.chain, m) for m, _ in self.bearings]),
+            np.array([float(self.chain.members[m].speed) for m, _ in self.bearings]),
             np.asarray(solution[n : n + 2 * b].reshape(b, 2, points), dtype=np.float64),
             tuple(steps[j].name for j in self.joints),
             np.asarray(np.reshape(local, (len(self.joints), 3, points)), dtype=float),

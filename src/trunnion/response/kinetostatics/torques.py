@@ -19,23 +19,21 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
+from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.laws.joint import through
 from trunnion.numerics import jets
-from trunnion.response.kinetostatics.chain import Chain, Link, Step
+from trunnion.response.kinetostatics.chain import Chain, Step
 from trunnion.response.kinetostatics.motion import Drive
 
 
 @dataclass(frozen=True)
 class Torques:
-    """Jets of transmitted torque [N m]: ``into[i]`` at the front of step i, ``out[i]`` behind it.
-
-    ``spring[i]`` is what the Shaft of step i twists under (its ends differ where the tube has inertia).
-    """
+    """Jets of transmitted torque [N m]: ``into[i]`` at the front of step i, ``out[i]`` behind it, where all that sits
+    there is driven. A Shaft twists under its ``out``."""
 
     into: list[Array]
     out: list[Array]
-    spring: dict[int, Array]
 
 
 def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Rotations) -> Torques:
@@ -50,23 +48,21 @@ def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Ro
     zero = np.zeros((size, len(drive.input_angle)))
     out: list[Array] = [zero.copy() for _ in chain.steps]
     for end, asked in drive.output_torque.items():
-        out[end][0] += np.sign(chain.mean_ratio(end)) * asked
-    into, spring = [zero] * len(chain.steps), {}
+        station = chain.behind[end]
+        out[station][0] += np.sign(float(chain.steps[station].speed)) * asked
+    into = [zero] * len(chain.steps)
     for i in range(len(chain.steps) - 1, -1, -1):
         step, parent = chain.steps[i], chain.steps[i].parent
         torque = out[i]
-        sense = float(np.sign(chain.mean_ratio(i)))
+        sense = float(np.sign(float(step.speed)))
         if step.load:
             torque = torque + jets.constant(sense * step.load, torque)
         if _grows(step):
             torque = torque + _speed_load(step, jets.rate(rigid.jet(i))[:size], sense)
-        if drive.inertia and step.far_inertia:
-            torque = torque + step.far_inertia * _acceleration(rigid, i)[:size]
-        if step.link is Link.SHAFT:
-            spring[i] = torque
-            if drive.inertia and step.near_inertia:
-                torque = torque + step.near_inertia * _acceleration(rigid, parent)[:size]
-        elif step.link is Link.HOOKE and drive.pin_moment:
+        if drive.inertia and step.inertia:
+            torque = torque + step.inertia * _acceleration(rigid, i)[:size]
+        out[i] = torque
+        if step.cross and drive.pin_moment:
             power = np.sign(torque[0]) * sense
             torque = jets.multiply(
                 torque, _with_friction(step, np.stack(motion.chi[i][:size]), power * drive.pin_moment)
@@ -78,7 +74,7 @@ def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Ro
         into[i] = torque
         if parent >= 0:
             out[parent] = out[parent] + torque
-    return Torques(into, out, spring)
+    return Torques(into, out)
 
 
 def rates_needed(chain: Chain, drive: Drive) -> int:
@@ -103,7 +99,7 @@ def _speed_load(step: Step, speed: Array, sense: float) -> Array:
 def refuse_locking(chain: Chain, pin_moment: float) -> None:
     """A cross whose pin friction exceeds what its angle lets through would not turn."""
     for step in chain.steps:
-        if step.link is Link.HOOKE and pin_moment * abs(np.tan(step.angle)) >= 1:
+        if step.cross and pin_moment * abs(np.tan(step.angle)) >= 1:
             raise InputError(
                 f"locks under this friction (pin friction {pin_moment:.3g} of the moment it passes)",
                 element=step.name,

@@ -10,12 +10,13 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings
-from trunnion.response.kinetostatics.chain import Chain, Link, chain, member_ratio
+from trunnion.response.kinetostatics.chain import Chain, chain
 from trunnion.response.kinetostatics.couples import cross_tilts, secondary_couples
 from trunnion.response.kinetostatics.elastic import constant_twist, solve
 from trunnion.response.kinetostatics.friction import CrossFriction
@@ -95,7 +96,7 @@ def kinetostatics(
     couples = secondary_couples(train, motion, passed, pin_moment)
     forces = support_forces(train, couples, supports) if supports is not None else None
     constant = None if rigid else _constant(train, drive, motion, twist)
-    ends = train.ends
+    names, ends = line.names, tuple(train.behind[i] for i in train.ends)
     zero = np.array(assembled(train))
     steps, joints = train.steps, train.joints
 
@@ -114,28 +115,28 @@ def kinetostatics(
         turns=turns,
         rigid=rigid,
         inertia=inertia,
-        branches=tuple(steps[i].name for i in ends),
-        branch=steps[train.output].name,
-        end_ratio=np.array([train.mean_ratio(i) for i in ends]),
+        branches=tuple(names[i] for i in train.ends),
+        branch=names[train.output],
+        end_ratio=np.array([float(steps[i].speed) for i in ends]),
         end_angle=derivative(ends, 0),
         end_speed=derivative(ends, 1),
         end_acceleration=derivative(ends, 2),
-        end_torque=np.array([torque.get(i, 0.0) for i in ends]),
+        end_torque=np.array([torque.get(i, 0.0) for i in train.ends]),
         input_angle=input_angle,
         shafts=tuple(steps[i].name for i in train.shafts),
-        shaft_ratio=np.array([train.mean_ratio(i) for i in train.shafts]),
+        shaft_ratio=np.array([float(steps[i].speed) for i in train.shafts]),
         angle=derivative(train.shafts, 0),
         speed=derivative(train.shafts, 1),
         acceleration=derivative(train.shafts, 2),
         twist=stack([twist[i][0] if i in twist else np.zeros_like(input_angle) for i in train.shafts]),
-        torque=stack([-passed.spring[i][0] for i in train.shafts]),
+        torque=stack([-passed.out[i][0] for i in train.shafts]),
         drive_torque=passed.out[0][0],
         joints=tuple(steps[i].name for i in joints),
         joint_angle=stack([motion.chi[i][0] for i in joints]),
         joint_torque_in=stack([passed.into[i][0] for i in joints]),
         joint_torque_out=stack([passed.out[i][0] for i in joints]),
         forks=couples.names,
-        fork_ratio=np.array([member_ratio(train, m) for m in couples.member]),
+        fork_ratio=np.array([float(train.members[m].speed) for m in couples.member]),
         cross_tilt=cross_tilts(train, motion),
         secondary_couple=couples.standing,
         secondary_couple_rotating=couples.rotating,
@@ -144,11 +145,12 @@ def kinetostatics(
         findings=remarks(train, drive, rigid, forces, turns, twist),
         power_loss=couples.friction_power,
         power_residual=_power_residual(train, drive, motion, passed, twist, couples.friction_power),
+        unit=speed_unit(line),
     )
 
 
 def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]) -> dict[int, float]:
-    """Torque [N m] by end step."""
+    """Torque [N m] by the element at the end of a branch."""
     if not isinstance(given, Mapping):
         return {train.output: quantity(given, TORQUE, "output_torque")}
     found: dict[int, float] = {}
@@ -171,7 +173,7 @@ def _constant(train: Chain, drive: Drive, motion: Rotations, twist: dict[int, Ar
         mean, swing = float(np.mean(twist[i][0])), float(np.ptp(twist[i][0]))
         variation.append(swing / (2 * abs(mean)) if mean else np.nan)
     found = []
-    for end in train.ends:
+    for end in (train.behind[i] for i in train.ends):
         errors = [np.abs(approximate[end][k] - motion.angle[end][k]) for k in range(3)]
         angle, speed, half = (float(largest(error)) for error in errors)
         found.append(ConstantTwist(np.array(variation), angle, speed, 2 * half))
@@ -183,28 +185,17 @@ def _power_residual(
 ) -> float:
     """Largest imbalance of power over the largest power [1].
 
-    Supplied power = loads + heat of the joints + what springs and inertias take up. With elastic shafts the
-    inertia torques are those of the rigid line; the balance is that of the torques as they are used.
+    Supplied power = what loads, inertias and springs take up + heat of the joints. With elastic shafts the inertia
+    torques are those of the rigid line; the balance is that of the torques as they are used.
     """
-    balance = passed.out[0][0] * drive.speed - heat
-    size = np.abs(balance)
+    taken = [out[0].copy() for out in passed.out]
     for i, step in enumerate(train.steps[1:], start=1):
-        into, out = passed.into[i][0], passed.out[i][0]
-        front, behind = motion.angle[step.parent][1], motion.angle[i][1]
-        if step.link is Link.SHAFT:
-            spring = passed.spring[i][0]
-            taken = (into - spring) * front + (spring - out) * behind
-            if i in twist:
-                taken = taken - spring * twist[i][1]
-        elif step.link is Link.RIGID:
-            taken = (into - out) * behind
-        else:
-            continue
-        balance, size = balance - taken, np.maximum(size, np.abs(taken))
-    for end in train.ends:
-        balance = balance - passed.out[end][0] * motion.angle[end][1]
-    scale = float(np.max(size))
-    return float(np.max(np.abs(balance))) / scale if scale else 0.0
+        taken[step.parent] -= passed.into[i][0]
+    powers = [torque * motion.angle[i][1] for i, torque in enumerate(taken) if torque.any()]
+    powers += [-passed.out[i][0] * jet[1] for i, jet in twist.items()]
+    supplied = passed.out[0][0] * drive.speed - heat
+    scale = float(np.max(np.abs([supplied, *powers])))
+    return float(np.max(np.abs(supplied - sum(powers)))) / scale if scale else 0.0
 
 
 def _lengths(line: Driveline, lengths: Mapping[str, float | str] | None) -> dict[str, float]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,57 +13,53 @@ from trunnion.driveline.elements import Disk
 from trunnion.errors import InputError
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
-from trunnion.results.declared import Held, Result, axis, over, remark
-from trunnion.results.speeds import show_speed
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.result import Result
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Misfire(Result):
-    """Linear response with every cylinder in turn out of work.
+    """Linear response with every cylinder in turn out of work."""
 
-    cylinders: disk and number of each; vibratory_torque (cylinder, spring) and normal (spring,) [N m]: largest half of
-    peak-to-peak over the speeds; speed (cylinder, spring) [rad/s]: where; line: with the worst cylinder out of work,
-    response: of that line.
-    """
+    cylinders: tuple[tuple[str, int], ...] = internal("disk and number of each")
+    springs: tuple[str, ...] = coordinate("spring")
+    vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak over the speeds")
+    speed: Array = variable("cylinder spring", "rad/s", "input speed where it is largest")
+    normal: Array = variable("spring", "N*m", "vibratory torque with all cylinders firing")
+    line: Driveline = internal("with the worst cylinder out of work")
+    response: OrderResponse = internal("of that line")
+    unit: str = internal("of speeds in print")
 
-    cylinders: tuple[tuple[str, int], ...]
-    springs: tuple[str, ...]
-    vibratory_torque: Array
-    normal: Array
-    speed: Array
-    line: Driveline
-    response: OrderResponse
+    @property
+    @computed(coordinate("cylinder"), after="springs")
+    def names(self) -> list[str]:
+        """Disk and number of every cylinder."""
+        return [f"{name} {number}" for name, number in self.cylinders]
+
+    @property
+    @computed(attribute(name="worst"))
+    def _worst_name(self) -> str:
+        return self.names[self.cylinders.index(self.worst)]
 
     @property
     def worst(self) -> tuple[str, int]:
         """The cylinder whose misfire raises the torque of any spring most, relative to normal running."""
         return self.cylinders[_worst(self.vibratory_torque, self.normal)]
 
-    def declared(self) -> Iterator[Held]:
-        """Torque over (cylinder, spring)."""
-        yield axis("cylinder", [f"{name} {number}" for name, number in self.cylinders])
-        yield axis("spring", list(self.springs))
-        yield over("cylinder spring", "vibratory_torque", self.vibratory_torque, "N*m")
-        yield over("cylinder spring", "speed", self.speed, "rad/s", "input speed where it is largest")
-        yield over("spring", "normal", self.normal, "N*m", "vibratory torque with all cylinders firing")
-        yield remark("worst", f"{self.worst[0]} {self.worst[1]}")
-
     def _called(self, name: str, number: int) -> str:
         """A disk that carries one cylinder is that cylinder."""
         several = sum(one == name for one, _ in self.cylinders) > 1
         return f"cylinder {number} of {name}" if several else name
 
-    def __str__(self) -> str:
+    def _lines(self) -> Iterator[str]:
         name, number = self.worst
         row = self.cylinders.index(self.worst)
-        rows = [f"misfire: {self._called(name, number)} is the worst of {len(self.cylinders)}"]
+        yield f"misfire: {self._called(name, number)} is the worst of {len(self.cylinders)}"
         for s, spring in enumerate(self.springs):
-            at = show_speed(float(self.speed[row, s]), self.response.unit)
-            rows.append(
-                f"  {spring}: vibratory torque up to {self.vibratory_torque[row, s]:.4g} N m at {at}, "
-                f"{self.normal[s]:.4g} N m with all cylinders firing"
+            yield (
+                f"  {spring}: vibratory torque up to {self.vibratory_torque[row, s]:.4g} N m at "
+                f"{self.words.speed(float(self.speed[row, s]))}, {self.normal[s]:.4g} N m with all cylinders firing"
             )
-        return "\n".join(rows)
 
 
 def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None) -> Misfire:
@@ -96,7 +91,8 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None) ->
     largest, usual = np.nanmax(torque, axis=1), np.nanmax(normal, axis=0)
     worst = _worst(largest, usual)
     return Misfire(
-        cylinders, found[0].springs, largest, usual, found[0].speed[at], lines[worst], found[worst]
+        cylinders=cylinders, springs=found[0].springs, vibratory_torque=largest, speed=found[0].speed[at], normal=usual,
+        line=lines[worst], response=found[worst], unit=found[worst].unit,
     )  # fmt: skip
 
 

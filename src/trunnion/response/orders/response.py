@@ -1,6 +1,6 @@
 """Linear steady response of a line at every speed to every excitation order.
 
-Excited by the harmonic torques of its disks (by order of their rotation, or fixed in time), by the transmission errors
+Excited by the harmonic torques of its disks (by order of their rotation, in time, or both), by the transmission errors
 of its meshes, and by its bent joints. A straight line is one complex system per order and speed; in a line with bent
 joints an order k couples to k ± 2mR, R the speed ratio of the joint, and is solved with its side orders.
 
@@ -27,14 +27,14 @@ from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.exciters import Exciter, exciters
+from trunnion.equations.harmonics import disk_torques, line_harmonics
 from trunnion.equations.steady_base import bent, moves_by_itself
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import four_figures
+from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 from trunnion.steady.orders.forced_response import shaft_names
@@ -230,10 +230,7 @@ def _stress_factor(assembly: Assembly) -> Array:
 
 
 def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> Iterator[Finding]:
-    shaken = exciters(assembly)
-    row = assembly.table(1)[0]
-    at_work = [e for e in shaken if not e.held and row[e.amplitude] != 0]
-    if not at_work:
+    if not any(one.acts for one in line_harmonics(assembly)):
         joints = " but its joints" if bent(assembly) else ""
         yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
     for order in unexcited:
@@ -244,7 +241,7 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
             "A loss factor without a frequency has no motion in time: this bent line that starts free is taken about "
             "the motion of its rigid shafts, right to first order in what joints and excitations force.",
         )
-    yield from _nominal_angle(assembly, spectrum, at_work)
+    yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)
     yield from left_out("order_response", assembly.line)
 
@@ -266,21 +263,21 @@ def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[
             )
 
 
-def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum, at_work: list[Exciter]) -> Iterator[Finding]:
+def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
     """How far the disks swing whose orders are taken at their mean angle."""
     topo, worst = assembly.topology, (0.0, "")
     swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
-    for exciter in at_work:
-        if exciter.station >= 0 and not exciter.in_time:
-            i = topo.unknown_of[exciter.station]
-            worst = max(worst, (exciter.own_order * float(np.nanmax(swing[:, i], initial=0.0)), exciter.element))
+    for torque in disk_torques(assembly):
+        if torque.acts and torque.order:
+            i = topo.unknown_of[torque.station]
+            worst = max(worst, (abs(torque.own_order) * float(np.nanmax(swing[:, i], initial=0.0)), torque.name))
     if worst[0] > 0:
         grave = worst[0] > LARGEST_SWING
         check = " Run linearity-check." if grave else ""
         yield Finding(
             Gravity.CAUTION if grave else Gravity.NOTE,
             f"Torque is applied at the mean angle of {worst[1]}; its swing can shift up to "
-            f"{four_figures(float(f'{100 * worst[0]:.2g}'))} % of it to other orders.{check}",
+            f"{figures(100 * worst[0], 2)} % of it to other orders.{check}",
         )
 
 

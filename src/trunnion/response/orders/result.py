@@ -11,14 +11,17 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.floquet.stability.where_unstable import where_unstable
+from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Judged, along, axis, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
-from trunnion.results.speeds import show_speed, speed_factor
-from trunnion.results.stretches import ranges_in_words, stretches_above
-from trunnion.results.units import angle_words, order_words
+from trunnion.results.result import Result
+from trunnion.results.speeds import order_name
+from trunnion.results.stretches import largest_over, stretches_above
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.steady.orders.amplitudes import OrderSpectrum, Range
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
@@ -50,43 +53,40 @@ class OrderWave:
     inertias: tuple[str, ...]
 
 
-@dataclass(frozen=True, repr=False)
-class OrderResponse(Judged):
+@labelled
+class OrderResponse(Result):
     """Linear steady response by order and speed.
 
-    speed (speed,) of the input [rad/s]; order (order,) in cycles per turn of the input. An excitation fixed in time
-    has order 0 (its sidebands multiples of the joints' order) and its ``frequency`` (order,) [rad/s] beside it:
-    a column turns with order · speed + frequency. torque (speed, order, spring) [N m], twist (speed, order, spring)
-    [rad], rotation (speed, order, inertia) [rad] are one-sided complex amplitudes: Re[Y e^{i(order · Ωt +
-    frequency · t)}], the phase that of a cosine at zero rotation of the input. Torque is positive with the twist;
-    rotation is the deviation of every disk, where it is, from its uniform rotation, what a joint in front of it adds
-    included; ends of tubes stand for places without a disk. mean_torque (speed, spring) [N m].
+    A column turns with order · speed + frequency: an excitation fixed in time has order 0 (its sidebands multiples of
+    the joints' order) and its frequency beside it. Torque, twist and rotation are one-sided complex amplitudes:
+    Re[Y e^{i(order · Ωt + frequency · t)}], the phase that of a cosine at zero rotation of the input. Torque is
+    positive with the twist; rotation is the deviation of every disk, where it is, from its uniform rotation, what a
+    joint in front of it adds included; ends of tubes stand for places without a disk.
 
     The sums (peak_torque, vibratory_torque, …) hold everything, also orders not listed. NaN where no steady state
-    exists: an undamped resonance. ``verdict`` says where the motion is stable; it is computed when asked for first, by
-    ``judged``. remarks: what excites the line and what was left out, in sentences. limits: of torque by spring and name
-    [N m], as the description states them, for drawings; rated (spring,): which springs hold a coupling with a rating
-    T_KW, whose rated torque is printed.
+    exists: an undamped resonance.
     """
 
-    speed: Array
-    order: Array
-    frequency: Array
-    torque: Complex
-    twist: Complex
-    rotation: Complex
-    mean_torque: Array
-    mean_twist: Array
-    springs: tuple[str, ...]
-    inertias: tuple[str, ...]
-    joints: tuple[str, ...]
-    stress_factor: Array
-    spectrum: OrderSpectrum
-    judged: Callable[[], Codes]
-    remarks: tuple[Finding, ...]
-    unit: str
-    limits: Mapping[str, Mapping[str, float]]
-    rated: tuple[bool, ...]
+    speed: Array = coordinate("speed", "rad/s")
+    order: Array = coordinate("order_number", "1", "cycles per turn of the input", name="order")
+    frequency: Array = coordinate("order_number", "rad/s", "beside the order", name="frequency")
+    springs: tuple[str, ...] = coordinate("spring")
+    inertias: tuple[str, ...] = coordinate("inertia")
+    torque: Complex = variable("speed order_number spring", "N*m")
+    twist: Complex = variable("speed order_number spring", "rad")
+    rotation: Complex = variable("speed order_number inertia", "rad")
+    mean_torque: Array = variable("speed spring", "N*m")
+    mean_twist: Array = internal("static", "rad", "speed spring")
+    joints: tuple[str, ...] = internal("names")
+    stress_factor: Array = internal("shear stress over torque; NaN without a diameter", "1/m^3", "spring")
+    spectrum: OrderSpectrum = internal("what the sums are made of")
+    judged: Callable[[], Codes] = internal("computes the verdict")
+    remarks: tuple[Finding, ...] = internal("what excites the line and what was left out")
+    unit: str = internal("of speeds in print")
+    limits: Mapping[str, Mapping[str, float]] = internal(
+        "of torque by spring and name, as the description states them", "N m"
+    )
+    rated: tuple[bool, ...] = internal("which springs hold a coupling with a rating T_KW", axes="spring")
 
     @property
     def sum_is_bound(self) -> bool:
@@ -99,60 +99,19 @@ class OrderResponse(Judged):
         return self.spectrum.extremes_at(self.spectrum.channels.torque)
 
     @property
+    @computed(variable("speed spring", "N*m"))
     def peak_torque(self) -> Array:
         """Largest |mean + vibratory torque| (speed, spring) [N m] over the cycle."""
         return self.torque_range.largest
 
     @property
+    @computed(variable("speed spring", "N*m"))
     def vibratory_torque(self) -> Array:
         """Half of the peak-to-peak torque (speed, spring) [N m]."""
         return self.torque_range.swing
 
     @cached_property
-    def twist_range(self) -> Range:
-        """Lowest and highest twist (speed, spring) [rad] over the cycle, mean included."""
-        return self.spectrum.extremes_at(self.spectrum.channels.twist)
-
-    @property
-    def vibratory_twist(self) -> Array:
-        """Half of the peak-to-peak twist (speed, spring) [rad]."""
-        return self.twist_range.swing
-
-    @property
-    def vibratory_stress(self) -> Array:
-        """Amplitude of the shear stress at the outside, τ = T r_o / J_p (speed, spring) [Pa]; NaN without a diameter.
-
-        Of shafts in series the most stressed one; notches are not counted.
-        """
-        return np.asarray(self.vibratory_torque * self.stress_factor)
-
-    @property
-    def peak_stress(self) -> Array:
-        """Largest shear stress at the outside (speed, spring) [Pa]; NaN without a diameter."""
-        return np.asarray(self.peak_torque * self.stress_factor)
-
-    @cached_property
-    def heat(self) -> Array:
-        """Mean power (speed, spring) [W] that becomes heat: ½ c ν² |q|² and ½ ηk |ν| |q|² over all orders."""
-        spectrum = self.spectrum
-        v = np.abs(spectrum.angular_frequency)[..., None]
-        q = np.abs(spectrum.amplitude[..., spectrum.channels.twist]) ** 2
-        damping, loss = spectrum.damping[:, None], spectrum.loss[:, None]
-        return np.asarray(((damping * v**2 + loss * v) * q).sum(axis=1) / 2)
-
-    def heat_parts(self, spring: int) -> Array:
-        """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
-        spectrum = self.spectrum
-        v = np.abs(self.order * self.speed[:, None] + self.frequency)
-        damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
-        return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
-
-    @property
-    def frequency_factor(self) -> Array:
-        """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
-        return frequency_factor(self.order * self.speed[:, None] + self.frequency)
-
-    @cached_property
+    @computed(variable("speed spring", "N*m"))
     def rated_torque(self) -> Array:
         """Σ S_f(f_k) |T_k| over all orders (speed, spring) [N m], S_f = √(f/10 Hz), at least 1.
 
@@ -164,16 +123,72 @@ class OrderResponse(Judged):
         return np.asarray((frequency_factor(spectrum.angular_frequency)[..., None] * size).sum(axis=1))
 
     @cached_property
+    def twist_range(self) -> Range:
+        """Lowest and highest twist (speed, spring) [rad] over the cycle, mean included."""
+        return self.spectrum.extremes_at(self.spectrum.channels.twist)
+
+    @property
+    @computed(variable("speed spring", "rad"))
+    def vibratory_twist(self) -> Array:
+        """Half of the peak-to-peak twist (speed, spring) [rad]."""
+        return self.twist_range.swing
+
+    @property
+    @computed(variable("speed spring", "Pa"))
+    def vibratory_stress(self) -> Array:
+        """Amplitude of the shear stress at the outside, τ = T r_o / J_p (speed, spring) [Pa]; NaN without a diameter.
+
+        Of shafts in series the most stressed one; notches are not counted.
+        """
+        return np.asarray(self.vibratory_torque * self.stress_factor)
+
+    @property
+    @computed(variable("speed spring", "Pa"))
+    def peak_stress(self) -> Array:
+        """Largest shear stress at the outside (speed, spring) [Pa]; NaN without a diameter."""
+        return np.asarray(self.peak_torque * self.stress_factor)
+
+    @cached_property
+    @computed(variable("speed spring", "W"))
+    def heat(self) -> Array:
+        """Mean power (speed, spring) [W] that becomes heat: ½ c ν² |q|² and ½ ηk |ν| |q|² over all orders."""
+        spectrum = self.spectrum
+        v = np.abs(spectrum.angular_frequency)[..., None]
+        q = np.abs(spectrum.amplitude[..., spectrum.channels.twist]) ** 2
+        damping, loss = spectrum.damping[:, None], spectrum.loss[:, None]
+        return np.asarray(((damping * v**2 + loss * v) * q).sum(axis=1) / 2)
+
+    def heat_parts(self, spring: int) -> Array:
+        """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
+        spectrum = self.spectrum
+        v = np.abs(self.angular_frequency)
+        damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
+        return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
+
+    @property
+    def frequency_factor(self) -> Array:
+        """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
+        return frequency_factor(self.angular_frequency)
+
+    @property
+    def angular_frequency(self) -> Array:
+        """Of every order listed (speed, order) [rad/s], of either sign."""
+        return turning(self.order, self.frequency, self.speed[:, None])
+
+    @cached_property
+    @computed(variable("speed inertia", "rad"))
     def rotation_amplitude(self) -> Array:
         """Half of the peak-to-peak rotation (speed, inertia) [rad]."""
         return self._swing(0)
 
     @cached_property
+    @computed(variable("speed inertia", "rad/s"))
     def speed_fluctuation(self) -> Array:
         """Half of the peak-to-peak angular speed (speed, inertia) [rad/s]."""
         return self._swing(1)
 
     @cached_property
+    @computed(variable("speed inertia", "rad/s^2"))
     def acceleration(self) -> Array:
         """Half of the peak-to-peak angular acceleration (speed, inertia) [rad/s²]."""
         return self._swing(2)
@@ -185,6 +200,7 @@ class OrderResponse(Judged):
         return spectrum.extremes(turned, np.zeros((len(self.speed), len(self.inertias)))).swing
 
     @cached_property
+    @computed(variable("speed", "rad"))
     def joint_rotation(self) -> Array:
         """Largest deviation at any joint's input (speed,) [rad]: the measure of the linear range; 0 without joints."""
         return np.asarray(self.joint_rotations.max(axis=1, initial=0.0))
@@ -195,6 +211,7 @@ class OrderResponse(Judged):
         return self.spectrum.joint_rotations
 
     @property
+    @computed(variable("speed"))
     def linear(self) -> Flags:
         """Where the amplitudes can be trusted (speed,): joints' inputs stay within ``linear_range``."""
         return np.asarray(self.joint_rotation <= LINEAR_RANGE)
@@ -210,6 +227,7 @@ class OrderResponse(Judged):
         return np.asarray(self.verdict == Verdict.UNSTABLE)
 
     @property
+    @computed(variable("speed", "1"))
     def cut_off(self) -> Array:
         """Size of the outermost harmonics kept, relative to the largest torque (speed,); 0 on straight lines."""
         return self.spectrum.cut_off
@@ -217,31 +235,35 @@ class OrderResponse(Judged):
     def peak(self, spring: str) -> tuple[float, float]:
         """Largest |torque| of a spring [N m] over all speeds, and the speed it stands at [rad/s]; NaN without a steady
         state at any of them."""
-        column = self.peak_torque[:, self.springs.index(spring)]
-        if not np.any(np.isfinite(column)):
-            return np.nan, np.nan
-        at = int(np.nanargmax(column))
-        return float(column[at]), float(self.speed[at])
+        return self.largest(self.peak_torque[:, self.springs.index(spring)])
 
     def leading_order(self, spring: str) -> tuple[float, float, float]:
         """Order, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order (NaN without orders).
 
-        An excitation fixed in time has order 0.
+        An excitation fixed in time has order 0; ``leading`` names it.
         """
+        k, speed, amplitude = self._leading(spring)
+        return float("nan") if k is None else float(self.order[k]), speed, amplitude
+
+    def leading(self, spring: str) -> tuple[str, float, float]:
+        """The same with the name of the order, by turns and in time; "none" where none vibrates."""
+        k, speed, amplitude = self._leading(spring)
+        if k is None or not amplitude > 0:
+            return "none", speed, amplitude
+        return order_name(float(self.order[k]), float(self.frequency[k])), speed, amplitude
+
+    def _leading(self, spring: str) -> tuple[int | None, float, float]:
         size = np.abs(self.torque[:, :, self.springs.index(spring)])
         if not np.any(np.isfinite(size)):
-            return float("nan"), float("nan"), float("nan")
+            return None, float("nan"), float("nan")
         at, k = np.unravel_index(int(np.nanargmax(size)), size.shape)
-        return float(self.order[k]), float(self.speed[at]), float(size[at, k])
+        return int(k), float(self.speed[at]), float(size[at, k])
 
     def wave(self, speed: float | None = None) -> OrderWave:
         """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
         spectrum = self.spectrum
         at = 0 if speed is None else int(np.abs(self.speed - speed).argmin())
-        turns = spectrum.common_turns
-        length = 2 * np.pi * float(turns or 10) / self.speed[at]
-        if len(spectrum.order) == 1 and spectrum.frequency[0]:
-            length = 2 * np.pi / spectrum.frequency[0]
+        length = spectrum.period(at) or 2 * np.pi * 10 / self.speed[at]
         cycles = np.abs(spectrum.angular_frequency[at]).max(initial=self.speed[at]) * length / (2 * np.pi)
         time = np.linspace(0.0, length, int(np.ceil(WAVE_POINTS * cycles)) + 1)
         places = spectrum.channels
@@ -254,30 +276,15 @@ class OrderResponse(Judged):
             self.springs, self.inertias,
         )  # fmt: skip
 
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``."""
-        return by_gravity([*_findings(self, unit), *self.remarks])
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
+        return by_gravity([*_findings(self), *self.remarks])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """Amplitudes over (speed, order, element) and their sums over the cycle over (speed, element)."""
-        yield axis("speed", self.speed, "rad/s")
-        yield along("order_number", "order", self.order, "1", "cycles per turn of the input")
-        yield along("order_number", "frequency", self.frequency, "rad/s", "beside the order")
-        yield axis("spring", list(self.springs))
-        yield axis("inertia", list(self.inertias))
-        yield from fields_over("speed order_number spring", self, torque="N*m", twist="rad")
-        yield over("speed order_number inertia", "rotation", self.rotation, "rad")
-        yield from fields_over(
-            "speed spring", self, mean_torque="N*m", peak_torque="N*m", vibratory_torque="N*m", rated_torque="N*m",
-            vibratory_twist="rad", vibratory_stress="Pa", peak_stress="Pa", heat="W",
-        )  # fmt: skip
-        yield from fields_over(
-            "speed inertia", self, rotation_amplitude="rad", speed_fluctuation="rad/s", acceleration="rad/s^2"
-        )
-        yield over("speed", "joint_rotation", self.joint_rotation, "rad")
-        yield over("speed", "linear", self.linear.astype(np.int8))
-        yield over("speed", "cut_off", self.cut_off, "1")
-        yield from remarks(linear_range=LINEAR_RANGE, sum_is_bound=int(self.sum_is_bound))
+        yield from super().declared()
+        yield from attributes(linear_range=LINEAR_RANGE, sum_is_bound=self.sum_is_bound)
 
     def plot(
         self,
@@ -301,69 +308,54 @@ class OrderResponse(Judged):
 
     def table(self, unit: str | None = None) -> list[dict[str, object]]:
         """One row per spring: its largest torques [N m] and its largest order, each at its speed in ``unit``."""
-        unit = unit or self.unit
+        words = self.in_unit(unit).words
         rows: list[dict[str, object]] = []
         for s, spring in enumerate(self.springs):
-            order, speed, size = self.leading_order(spring)
-            factor, vibrates = speed_factor(unit), bool(size > 0)
-            rated = (
-                self._largest("rated torque", self.rated_torque[:, s], factor, unit, "  ") if any(self.rated) else {}
-            )
+            name, speed, size = self.leading(spring)
+            vibrates = name != "none"
+            rated = self._largest("rated torque", self.rated_torque[:, s], words, "  ") if any(self.rated) else {}
             rows.append(
                 {
                     "spring": spring,
-                    **self._largest("peak torque", self.peak_torque[:, s], factor, unit, ""),
-                    **self._largest("vibratory torque", self.vibratory_torque[:, s], factor, unit, " "),
+                    **self._largest("peak torque", self.peak_torque[:, s], words, ""),
+                    **self._largest("vibratory torque", self.vibratory_torque[:, s], words, " "),
                     **rated,
-                    "largest order": order_name(order, self.frequency[self.order == order].max(initial=0.0))
-                    if vibrates
-                    else "none",
+                    "largest order": name,
                     "of it [N m]": size if vibrates else None,
-                    f"at [{unit}]   ": speed * factor if vibrates else None,
+                    f"at [{words.unit}]   ": speed * words.factor if vibrates else None,
                 }
             )
         return rows
 
-    def _largest(self, name: str, column: Array, factor: float, unit: str, apart: str) -> dict[str, object]:
+    def _largest(self, name: str, column: Array, words: Words, apart: str) -> dict[str, object]:
         """Largest of a column over the speeds, and where: heads of tables differ by blanks behind them."""
         value, speed = self.largest(column)
-        return {f"{name} [N m]": value, f"at [{unit}]{apart}": speed * factor}
+        return {f"{name} [N m]": value, f"at [{words.unit}]{apart}": speed * words.factor}
 
     def largest(self, column: Array) -> tuple[float, float]:
         """Largest of values (speed,) and the speed [rad/s] where it is; NaN where none is known."""
-        if not np.any(np.isfinite(column)):
-            return np.nan, np.nan
-        at = int(np.nanargmax(column))
-        return float(column[at]), float(self.speed[at])
+        return largest_over(self.speed, column)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        rows = [self.headline]
+    def _lines(self) -> Iterator[str]:
+        yield self.headline
         for s, spring in enumerate(self.springs):
             column = self.peak_torque[:, s]
             if not np.any(np.isfinite(column)):
-                rows.append(f"  {spring}: no steady state")
+                yield f"  {spring}: no steady state"
                 continue
-            said = [f"torque up to {self._at_most(column, unit)}"]
-            said.append(f"vibratory torque up to {self._at_most(self.vibratory_torque[:, s], unit)}")
+            said = [f"torque up to {self._at_most(column)}"]
+            said.append(f"vibratory torque up to {self._at_most(self.vibratory_torque[:, s])}")
             if self.rated[s]:
-                said.append(f"rated torque, Σ S_f|T|, up to {self._at_most(self.rated_torque[:, s], unit)}")
-            rows.append(f"  {spring}: {'; '.join(said)}{self._led_by(spring, unit)}")
-        rows += [f"  {finding}" for finding in self.findings_in(unit)]
-        return "\n".join(rows)
+                said.append(f"rated torque, Σ S_f|T|, up to {self._at_most(self.rated_torque[:, s])}")
+            yield f"  {spring}: {'; '.join(said)}{self._led_by(spring)}"
 
-    def _at_most(self, column: Array, unit: str) -> str:
+    def _at_most(self, column: Array) -> str:
         value, speed = self.largest(column)
-        return f"{value:.4g} N m at {show_speed(speed, unit)}"
+        return f"{value:.4g} N m at {self.words.speed(speed)}"
 
-    def _led_by(self, spring: str, unit: str) -> str:
-        order, at, size = self.leading_order(spring)
-        if not size > 0:
-            return ""
-        k = int(np.flatnonzero(self.order == order)[0])
-        name = order_name(order, self.frequency[k])
-        return f"; most by one order: {size:.4g} N m of {name} at {show_speed(at, unit)}"
+    def _led_by(self, spring: str) -> str:
+        name, at, size = self.leading(spring)
+        return "" if name == "none" else f"; most by one order: {size:.4g} N m of {name} at {self.words.speed(at)}"
 
 
 def frequency_factor(frequency: Array) -> Array:
@@ -371,24 +363,22 @@ def frequency_factor(frequency: Array) -> Array:
     return np.sqrt(np.maximum(np.abs(frequency) / (2 * np.pi), FREE_FREQUENCY) / FREE_FREQUENCY)
 
 
-def order_name(order: float, frequency: float) -> str:
-    """``order 2``, ``77.7 Hz``, or the sideband of a fixed frequency: ``77.7 Hz -2 per turn``."""
-    if not frequency:
-        return order_words(order)
-    return show_speed(frequency, "Hz") + (f" {order:+.6g} per turn" if order else "")
-
-
-def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
+def _findings(result: OrderResponse) -> Iterable[Finding]:
+    words, spectrum = result.words, result.spectrum
     lost = ~np.all(np.isfinite(result.mean_torque), axis=1) | ~np.all(np.isfinite(result.torque), axis=(1, 2))
     for speed in result.speed[lost][:3]:
         k = np.flatnonzero(~np.all(np.isfinite(result.torque[result.speed == speed][0]), axis=1))
-        which = order_words(result.order[k[0]]) if len(k) else "an excitation"
-        yield Finding(
-            Gravity.DANGER,
-            f"No steady state exists at {show_speed(speed, unit)}: {which} meets a natural frequency without damping.",
-        )
-    lossy = bool(result.spectrum.loss.any())
-    yield from where_unstable(result.speed, result.verdict, unit, lossy=lossy)
+        which = order_name(result.order[k[0]], result.frequency[k[0]]) if len(k) else "an excitation"
+        said = f"No steady state exists at {words.speed(speed)}: {which} meets a natural frequency without damping."
+        yield Finding(Gravity.DANGER, said)
+    for i, k in np.argwhere((spectrum.angular_frequency == 0) & ~lost[:, None])[:3]:
+        name = order_name(spectrum.order_numbers[k], spectrum.frequency[k])
+        away = np.isnan(spectrum.amplitude[i, k, spectrum.channels.deviation]).any()
+        drives = ", which drives the line away from that speed" if away else ""
+        said = f"{name} stands still at {words.speed(result.speed[i])}: it is a constant torque there{drives}."
+        yield Finding(Gravity.CAUTION if away else Gravity.NOTE, said)
+    lossy = bool(spectrum.loss.any())
+    yield from where_unstable(result.speed, result.verdict, words, lossy=lossy)
     if result.sum_is_bound:
         yield Finding(
             Gravity.NOTE,
@@ -396,10 +386,10 @@ def _findings(result: OrderResponse, unit: str) -> Iterable[Finding]:
         )
     if not np.all(result.linear[~lost]):
         beyond = stretches_above(result.speed[~lost], result.joint_rotation[~lost], LINEAR_RANGE)
-        where = ranges_in_words(beyond, unit, digits=3)
+        where = words.ranges(beyond, digits=3)
         yield Finding(
             Gravity.CAUTION,
-            f"A joint's input swings by up to {angle_words(np.nanmax(result.joint_rotation))}, beyond the linear range "
-            f"of {angle_words(LINEAR_RANGE)}, at {where}: read it as resonance, not as an amplitude; "
+            f"A joint's input swings by up to {words.angle(np.nanmax(result.joint_rotation))}, beyond the linear range "
+            f"of {words.angle(LINEAR_RANGE)}, at {where}: read it as resonance, not as an amplitude; "
             "tn.periodic_response gives the true motion.",
         )

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
-from trunnion.equations.topology import LONGEST_PERIOD, common_rate
+from trunnion.laws.harmonic import families, forward, turning
 from trunnion.numerics.cycle_extremes import cycle_extremes
 from trunnion.steady.orders.channels import Channels
 
@@ -34,25 +36,40 @@ class Range(NamedTuple):
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
 
+def _by_frequency(key: Key) -> tuple[float, Fraction]:
+    return key[1], key[0]
+
+
 class OrderSum:
     """Amplitudes by (order, frequency), summed up as they come."""
 
     def __init__(self, cases: int, channels: Channels) -> None:
+        self.channels = channels
         self.amplitude: dict[Key, Complex] = {}
         self.base: dict[Key, Complex] = {}
         self.mean = np.zeros((cases, channels.count))
-        self.zero = np.zeros((cases, channels.count), dtype=complex)
-        self.flat = np.zeros((cases, channels.points), dtype=complex)
+
+    def spectrum(self, speed: Array, cut_off: Array, damping: Array, loss: Array) -> OrderSpectrum:
+        """All of it, at ``speed`` (case,)."""
+        keys = sorted({*self.amplitude, *self.base}, key=_by_frequency)
+        amplitude = np.zeros((len(speed), len(keys), self.channels.count), dtype=complex)
+        base = np.zeros((len(speed), len(keys), self.channels.points), dtype=complex)
+        for j, key in enumerate(keys):
+            amplitude[:, j], base[:, j] = self.amplitude.get(key, 0.0), self.base.get(key, 0.0)
+        return OrderSpectrum(
+            speed=speed, order=tuple(order for order, _ in keys),
+            frequency=np.array([frequency for _, frequency in keys]), amplitude=amplitude, base=base, mean=self.mean,
+            cut_off=cut_off, channels=self.channels, damping=damping, loss=loss,
+        )  # fmt: skip
 
     def add(self, order: Fraction, frequency: float, amplitude: Complex) -> None:
-        """Take in one part; order 0 is the mean, negative orders are folded onto positive ones."""
-        if frequency == 0 and order == 0:
-            self.mean = self.mean + amplitude.real
-        elif frequency == 0 and order < 0:
-            self.add(-order, 0.0, amplitude.conj())
+        """Take in one part; without order and frequency it is the mean, and opposite harmonics are one."""
+        if forward(order, frequency) < 0:
+            order, frequency, amplitude = -order, -frequency, amplitude.conj()
+        if order or frequency:
+            self.amplitude[order, frequency] = self.amplitude.get((order, frequency), 0.0) + amplitude
         else:
-            key = (order, frequency)
-            self.amplitude[key] = self.amplitude.get(key, self.zero) + amplitude
+            self.mean = self.mean + amplitude.real
 
 
 @dataclass(frozen=True)
@@ -76,13 +93,12 @@ class OrderSpectrum:
     damping: Array
     loss: Array
 
-    def at(self, i: int) -> OrderSpectrum:
-        """At speed number ``i`` alone."""
-        one = slice(i, i + 1)
-        damping, loss = (part[one] if len(part) > 1 else part for part in (self.damping, self.loss))
+    def take(self, rows: Places | slice) -> OrderSpectrum:
+        """At some of its speeds."""
+        damping, loss = (part[rows] if len(part) > 1 else part for part in (self.damping, self.loss))
         return replace(
-            self, speed=self.speed[one], amplitude=self.amplitude[one], base=self.base[one], mean=self.mean[one],
-            cut_off=self.cut_off[one], damping=damping, loss=loss,
+            self, speed=self.speed[rows], amplitude=self.amplitude[rows], base=self.base[rows], mean=self.mean[rows],
+            cut_off=self.cut_off[rows], damping=damping, loss=loss,
         )  # fmt: skip
 
     @property
@@ -97,22 +113,34 @@ class OrderSpectrum:
 
     @property
     def angular_frequency(self) -> Array:
-        """ν = KΩ + ω (speed, order) [rad/s]; negative where a sideband of a fixed frequency is."""
-        return self.speed[:, None] * self.order_numbers + self.frequency
+        """KΩ + ν (speed, order) [rad/s], of either sign."""
+        return turning(self.order_numbers, self.frequency, self.speed[:, None])
+
+    @cached_property
+    def families(self) -> list[tuple[list[int], list[int]]]:
+        """Columns that are whole multiples of one harmonic at every speed, and which."""
+        return families(self.keys)
 
     @property
     def common_turns(self) -> Fraction | None:
         """Turns of the input after which everything repeats; None where it does not."""
-        base = None if np.any(self.frequency != 0) else _common_base(self.order)
-        return 1 / base if base else None
+        if not (self.order and self.adds_exactly) or self.frequency.any():
+            return None
+        columns, multiples = self.families[0]
+        return multiples[0] / self.order[columns[0]]
+
+    def period(self, at: int) -> float | None:
+        """Time [s] after which everything repeats at speed number ``at``; None where it does not, or stands still."""
+        if not (self.order and self.adds_exactly):
+            return None
+        columns, multiples = self.families[0]
+        swings = np.abs(self.angular_frequency[at, columns[0]])
+        return 2 * np.pi * multiples[0] / float(swings) if swings else None
 
     @property
     def adds_exactly(self) -> bool:
         """Whether extremes of the sum are those of the motion, not the sum of amplitudes as a bound."""
-        in_time = np.count_nonzero(self.frequency)
-        if in_time:
-            return in_time == len(self.order) == 1
-        return not self.order or self.common_turns is not None
+        return len(self.families) <= 1
 
     def extremes_at(self, channels: slice) -> Range:
         """Extremes (speed, channel) of some channels, mean included."""
@@ -126,68 +154,68 @@ class OrderSpectrum:
     def extremes(self, amplitude: Complex, mean: Array) -> Range:
         """Extremes (speed, channel) of mean (speed, channel) + amplitudes (speed, order, channel).
 
-        With phases over the common period of the orders; what has no common period is added by its amplitudes, a bound.
+        With phases over the period that orders have in common; those that have none are added up, a bound. What stands
+        still at a speed is a constant there.
         """
-        turning = self.frequency == 0
-        orders = tuple(o for o, t in zip(self.order, turning, strict=True) if t)
-        base = _common_base(orders)
-        loose = ~turning if base else np.ones(len(turning), dtype=bool)
-        beside = np.abs(amplitude[:, loose]).sum(axis=1)
-        low = high = np.zeros(mean.shape)
-        if base and orders:
-            index = np.array([int(order / base) for order in orders], dtype=np.int64)
-            rows = np.moveaxis(amplitude[:, turning], 1, 2).reshape(-1, len(orders))
-            low, high = (part.reshape(mean.shape) for part in cycle_extremes(index, rows))
-        return Range(mean + low - beside, mean + high + beside)
+        low, high, turns = mean, mean, self.angular_frequency
+        for columns, multiples in self.families:
+            part = amplitude[:, columns]
+            if len(columns) == 1 and self.frequency[columns[0]]:
+                swing = np.abs(part[:, 0])
+                down, up = -swing, swing
+            else:
+                rows = np.moveaxis(part, 1, 2).reshape(-1, len(columns))
+                index = np.array(multiples, dtype=np.int64)
+                down, up = (found.reshape(mean.shape) for found in cycle_extremes(index, rows))
+            still = turns[:, columns[0]] == 0
+            down[still] = up[still] = part[still].sum(axis=1).real
+            low, high = low + down, high + up
+        return Range(low, high)
 
     def wave(self, at: int, amplitude: Complex, mean: Array, time: Array) -> Array:
         """Values (time, channel) at ``time`` [s] of amplitudes (order, channel) and a mean (channel,) at speed ``at``.
 
         Time counts from zero rotation of the input.
         """
-        turning = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
-        return np.asarray(mean + (turning @ amplitude).real)
+        turned = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
+        return np.asarray(mean + (turned @ amplitude).real)
+
+
+def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
+    """Spectra of one line as one, the speeds of one after those of the other."""
+    first, speeds = parts[0], [len(part.speed) for part in parts]
+    if len(parts) == 1:
+        return first
+    keys = sorted({key for part in parts for key in part.keys}, key=_by_frequency)
+    place = {key: j for j, key in enumerate(keys)}
+    amplitude = np.zeros((sum(speeds), len(keys), first.channels.count), dtype=complex)
+    base = np.zeros((sum(speeds), len(keys), first.channels.points), dtype=complex)
+    for end, part in zip(accumulate(speeds), parts, strict=True):
+        rows, columns = slice(end - len(part.speed), end), [place[key] for key in part.keys]
+        amplitude[rows, columns], base[rows, columns] = part.amplitude, part.base
+
+    def springs(every: list[Array]) -> Array:
+        """One row for all speeds, or a row each."""
+        if all(np.array_equal(one, every[0][:1]) for one in every):
+            return every[0][:1]
+        return np.concatenate([np.broadcast_to(one, (n, one.shape[1])) for one, n in zip(every, speeds, strict=True)])
+
+    return OrderSpectrum(
+        speed=np.concatenate([part.speed for part in parts]),
+        order=tuple(order for order, _ in keys),
+        frequency=np.array([frequency for _, frequency in keys]),
+        amplitude=amplitude,
+        base=base,
+        mean=np.concatenate([part.mean for part in parts]),
+        cut_off=np.concatenate([part.cut_off for part in parts]),
+        channels=first.channels,
+        damping=springs([part.damping for part in parts]),
+        loss=springs([part.loss for part in parts]),
+    )
 
 
 def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
-    """Spectra of one line as one, by rising speed, and where its speeds stood, one spectrum after the other."""
-    first = parts[0]
-    keys = sorted({key for part in parts for key in part.keys}, key=lambda key: (key[1], key[0]))
-    place = {key: j for j, key in enumerate(keys)}
-    speed = np.concatenate([part.speed for part in parts])
-    amplitude = np.zeros((len(speed), len(keys), first.channels.count), dtype=complex)
-    base = np.zeros((len(speed), len(keys), first.channels.points), dtype=complex)
-    begin = 0
-    for part in parts:
-        rows, columns = slice(begin, begin + len(part.speed)), [place[key] for key in part.keys]
-        amplitude[rows, columns], base[rows, columns] = part.amplitude, part.base
-        begin += len(part.speed)
-
-    def together(name: str) -> Array:
-        """Numbers of springs: one row for all speeds, or a row each."""
-        every = [getattr(part, name) for part in parts]
-        if all(np.array_equal(one, every[0][:1]) for one in every):
-            return np.asarray(every[0][:1])
-        rows = [np.broadcast_to(one, (len(part.speed), one.shape[1])) for one, part in zip(every, parts, strict=True)]
-        return np.concatenate(rows)[order]
-
-    order = np.argsort(speed, kind="stable")
-    found = OrderSpectrum(
-        speed=speed[order],
-        order=tuple(key[0] for key in keys),
-        frequency=np.array([key[1] for key in keys]),
-        amplitude=amplitude[order],
-        base=base[order],
-        mean=np.concatenate([part.mean for part in parts])[order],
-        cut_off=np.concatenate([part.cut_off for part in parts])[order],
-        channels=first.channels,
-        damping=together("damping"),
-        loss=together("loss"),
-    )
-    return found, order
-
-
-def _common_base(orders: tuple[Fraction, ...]) -> Fraction | None:
-    """Largest order that all ``orders`` are multiples of; None without orders or with too long a common period."""
-    base = common_rate(orders)
-    return base if base and 1 / base <= LONGEST_PERIOD else None
+    """The same by rising speed, and where its speeds stood before."""
+    whole = stacked(parts)
+    order = np.argsort(whole.speed, kind="stable")
+    return whole.take(order), order

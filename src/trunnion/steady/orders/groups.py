@@ -1,4 +1,4 @@
-"""Excitations sorted by the carrier they share in a line that repeats with b cycles per turn of the input.
+"""Harmonics sorted by the carrier they share in a line that repeats with b cycles per turn of the input.
 
 An order K = κ + mb, 0 ≤ κ < b, gives orders κ + hb only, so that orders of one κ share their matrix. Far-away orders of
 one κ are solved apart, each with the harmonics about itself.
@@ -6,6 +6,7 @@ one κ are solved apart, each with the harmonics about itself.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -13,25 +14,26 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion.arrays import Array, Flags, Integers
-from trunnion.equations.exciters import Exciter
+from trunnion.equations.harmonics import LineHarmonic
+from trunnion.laws.harmonic import turning
 
 
 @dataclass(frozen=True)
 class Group:
     """Excitations about one carrier.
 
-    carrier κ [cycles per turn of the input]; ``frequency`` [rad/s] of those fixed in time, whose carrier it is, else
-    0; ``members`` as (exciter, its m); ``own``: the forcing of the line's own joints, with carrier 0.
+    carrier κ [cycles per turn of the input] and the ``frequency`` ν [rad/s] that all have; ``members`` as (harmonic,
+    its m); ``own``: the forcing of the line's own joints, with carrier 0.
     """
 
     carrier: Fraction
     frequency: float
-    members: tuple[tuple[Exciter, int], ...]
+    members: tuple[tuple[LineHarmonic, int], ...]
     own: bool = False
 
     def carrier_at(self, speed: Array) -> Array:
-        """Its frequency [rad/s] at input speeds."""
-        return np.full(len(speed), self.frequency) if self.frequency else float(self.carrier) * speed
+        """Its frequency κΩ + ν [rad/s] at input speeds."""
+        return turning(float(self.carrier), self.frequency, speed)
 
     def harmonics(self, layers: dict[int, int], reach: int) -> tuple[Integers, Flags]:
         """Harmonics h (h,) about the members and which of them are the outermost (h,); ``layers`` as of ``offsets``."""
@@ -77,18 +79,13 @@ def offsets(rates: set[int], reach: int) -> dict[int, int]:
 OWN = Group(Fraction(0), 0.0, (), own=True)
 
 
-def groups_of(exciters: tuple[Exciter, ...], row: Array, base: Fraction, width: int) -> list[Group]:
-    """Groups of the exciters that have an amplitude in the packed numbers ``row``; orders with more than 2·``width``
-    harmonics between them are apart."""
-    together: dict[tuple[Fraction, float], list[tuple[Exciter, int]]] = {}
-    for exciter in exciters:
-        if exciter.held or row[exciter.amplitude] == 0:
-            continue
-        if exciter.in_time:
-            together.setdefault((Fraction(0), float(row[exciter.frequency])), []).append((exciter, 0))
-        else:
-            m, carrier = divmod(exciter.order, base)
-            together.setdefault((carrier, 0.0), []).append((exciter, int(m)))
+def groups_of(harmonics: Iterable[LineHarmonic], base: Fraction | None, width: int) -> list[Group]:
+    """Groups of the harmonics, whose orders share a carrier where they differ by whole ``base`` (None: where they are
+    equal); those with more than 2·``width`` harmonics between them are apart."""
+    together: dict[tuple[Fraction, float], list[tuple[LineHarmonic, int]]] = {}
+    for one in harmonics:
+        m, carrier = divmod(one.order, base) if base else (0, one.order)
+        together.setdefault((carrier, one.frequency), []).append((one, int(m)))
     found = []
     for (carrier, frequency), members in together.items():
         members.sort(key=lambda member: member[1])

@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import BaseOfExcitation
+from trunnion.equations.harmonics import BaseOfExcitation
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import stiffness_waves
@@ -59,8 +59,8 @@ class OwnOrders:
         self.solved = solved or MotionsBySpeed(assembly.line)
         if self.solved.hindered:
             refuse_own_motion(assembly, f"{self.solved.hindered}: use tn.periodic_response")
-        self.quiet, self.balance = self.solved.quiet, self.solved.balance
-        self.topo = self.quiet.topology
+        self.unexcited, self.balance = self.solved.unexcited, self.solved.balance
+        self.topo = self.unexcited.topology
 
     def at(self, speeds: Array) -> OwnBase:
         """The motions at mean input ``speeds`` (case,) [rad/s].
@@ -108,7 +108,7 @@ class OwnOrders:
 def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
     """X (case, h, n) [rad] at harmonics ``h`` under accelerations ``right`` (case, h, n).
 
-    ``carrier`` (case,) [rad/s] is κΩ, or a frequency fixed in time.
+    ``carrier`` (case,) [rad/s] is κΩ + ν. NaN where nothing resists the motion.
     """
     cases, times, n = own.mass.shape
     s = 1j * (carrier[:, None] + own.rate[:, None] * h)
@@ -126,7 +126,7 @@ def about(own: OwnBase, carrier: Array, h: Integers, right: Complex) -> Complex:
         matrix[:, :size, size] = -column * (unit / np.abs(column).max(axis=1))[:, None]
         matrix[:, size, at : at + n], matrix[:, size, size] = unit[:, None] * own.phase, 0.0
     forced = np.concatenate([right.reshape(cases, size), np.zeros((cases, 1))], axis=1)
-    return np.asarray(np.linalg.solve(matrix, forced[..., None])[:, :size, 0].reshape(cases, len(h), n))
+    return np.asarray(fourier.solved(matrix, forced)[:, :size].reshape(cases, len(h), n))
 
 
 def seen_about(own: OwnBase, topo: Topology, h: Integers, x: Complex) -> Complex:

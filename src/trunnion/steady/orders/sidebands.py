@@ -31,10 +31,9 @@ def spreads(topo: Topology, coefficients: LineCoefficients, turns: Fraction) -> 
     for station, law in zip(topo.joints, coefficients.joints, strict=True):
         for rate in topo.joint_rates(station):
             share[int(rate * turns)] = max(share.get(int(rate * turns), 0.0), law.spread)
-    waves = {wave.compliance: np.abs(wave.share).max(axis=0) for wave in coefficients.waves}
-    for mesh in topo.meshes:
-        for rate, size in zip(mesh.stiffness_rates, waves.get(mesh.compliance, ()), strict=False):
-            share[int(rate * turns)] = max(share.get(int(rate * turns), 0.0), float(size) / 2)
+    for one in (one for wave in coefficients.waves for one in wave.harmonics):
+        rate = abs(int(one.order * turns))
+        share[rate] = max(share.get(rate, 0.0), float(np.max(np.abs(one.amplitude))) / 2)
     bounded = {rate: min(max(one, LEAST_SPREAD), LARGEST_SPREAD) for rate, one in share.items() if rate}
     return {rate: -float(np.log10(one)) for rate, one in bounded.items()}
 

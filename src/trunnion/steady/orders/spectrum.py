@@ -1,7 +1,7 @@
 """The steady response of a line to everything that excites it, as amplitudes by order.
 
-Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ω)t}], K ``order`` and ω ``frequency``; orders
-−K of the sidebands are folded onto K by their conjugates, c_K + conj(c_−K).
+Each order of the result holds the complex amplitude Y of Re[Y e^{i(KΩ + ν)t}], K ``order`` and ν ``frequency``; what
+turns the other way, (−K, −ν), is folded onto it by its conjugate.
 """
 
 from __future__ import annotations
@@ -17,15 +17,12 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import (
+from trunnion.equations.harmonics import (
     BaseOfExcitation,
-    Exciter,
+    MeshError,
     base_of_excitation,
-    exciters,
-    size,
-    tabled_by_speed,
-    torque_on_unknowns,
-    twist_on_unknowns,
+    disk_torques,
+    line_harmonics,
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
@@ -36,7 +33,7 @@ from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.tree_blocks import AT_ONCE
-from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum
+from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
 from trunnion.steady.orders.groups import OWN, Group, SideOrders, groups_of, offsets
 from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
@@ -83,11 +80,10 @@ def order_spectrum(
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
-    shaken = exciters(assembly)
-    numbers = _numbers(assembly, shaken, speed, table)
+    numbers = _numbers(assembly, speed, table)
 
     def solved(*, whole: bool) -> tuple[_Case, OrderSpectrum]:
-        case = _Case(assembly, shaken, statically_twisted, numbers, linearised, rough, motions, whole)
+        case = _Case(assembly, statically_twisted, numbers, linearised, rough, motions, whole)
         return case, _at_all(case, speed, progress)
 
     case, found = solved(whole=False)
@@ -98,40 +94,18 @@ def order_spectrum(
 
 def _at_all(case: _Case, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
     """At every ``speed`` (speed,), batch by batch."""
-    parts: list[tuple[OrderSum, Array]] = []
+    parts: list[OrderSpectrum] = []
     for done in range(0, len(speed), case.batch):
         keep_time()
-        parts.append(case.solved(case.numbers[done : done + case.batch]))
+        parts.append(case.solved(slice(done, done + case.batch)))
         if not done:
-            _require_room(case.assembly, parts[0][0], len(speed))
+            _require_room(parts[0], len(speed))
         if progress:
             progress(min(done + case.batch, len(speed)) / len(speed))
-    channels = case.places
-    keys = sorted({key for total, _ in parts for key in (*total.amplitude, *total.base)}, key=lambda k: (k[1], k[0]))
-    amplitude = np.zeros((len(speed), len(keys), channels.count), dtype=complex)
-    base = np.zeros((len(speed), len(keys), channels.points), dtype=complex)
-    start = 0
-    for total, cut_off in parts:
-        rows = slice(start, start + len(cut_off))
-        for j, key in enumerate(keys):
-            amplitude[rows, j] = total.amplitude.get(key, total.zero)
-            base[rows, j] = total.base.get(key, total.flat)
-        start += len(cut_off)
-    return OrderSpectrum(
-        speed=speed,
-        order=tuple(order for order, _ in keys),
-        frequency=np.array([frequency for _, frequency in keys]),
-        amplitude=amplitude,
-        base=base,
-        mean=np.concatenate([total.mean for total, _ in parts]),
-        cut_off=np.concatenate([cut_off for _, cut_off in parts]),
-        channels=channels,
-        damping=case.springs.damping,
-        loss=case.springs.loss,
-    )
+    return stacked(parts)
 
 
-def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, table: Array | None) -> Array:
+def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
     """The packed numbers (speed, column) to solve, which have a steady base; checked where they are given."""
     numbers = assembly.table(len(speed)) if table is None else table.copy()
     numbers[:, 0] = speed
@@ -143,19 +117,19 @@ def _numbers(assembly: Assembly, shaken: tuple[Exciter, ...], speed: Array, tabl
         raise InputError(
             "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
         )
-    for exciter in shaken:
-        if exciter.in_time and np.ptp(numbers[:, exciter.frequency]) > 0:
-            label = assembly.packed.labels[exciter.frequency]
+    for one in disk_torques(assembly):
+        column = one.columns[2]
+        if column >= 0 and np.ptp(numbers[:, column]) > 0:
+            label = assembly.packed.labels[column]
             raise InputError(
                 "is a frequency of excitation, which is no parameter of the orders", key=label, remedy=remedy
             )
     return numbers
 
 
-def _require_room(assembly: Assembly, first: OrderSum, speeds: int) -> None:
+def _require_room(first: OrderSpectrum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
-    places = channels_of(assembly.topology)
-    numbers = len(set(first.amplitude) | set(first.base)) * (places.count + places.points)
+    numbers = len(first.order) * (first.channels.count + first.channels.points)
     # Complex, and held twice while the parts are put together.
     require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
 
@@ -179,7 +153,6 @@ class _Case:
     def __init__(
         self,
         assembly: Assembly,
-        shaken: tuple[Exciter, ...],
         statically_twisted: bool,
         numbers: Array,
         linearised: bool,
@@ -189,17 +162,17 @@ class _Case:
     ) -> None:
         """With ``whole`` matrices however long the line is."""
         self.linearised, self.rough = linearised, rough
-        self.assembly, self.topo, self.shaken, self.numbers = assembly, assembly.topology, shaken, numbers
+        self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
         self.twisted = statically_twisted
         self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
-        self.row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
+        row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
+        self.acting = [one for one in line_harmonics(assembly, row) if one.acts]
         self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
-        self.loss_in_time = bool(one.loss.any()) and any(e.in_time for e in shaken)
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
         self.own: OwnOrders | None = None
@@ -216,7 +189,10 @@ class _Case:
             self.fall, self.reach = spreads(self.topo, one, self.turns), DECADES
         self.few: Array | None = None
         self.written: dict[float, _Written] = {}
-        smooth = self.alike and not self.loss_in_time and not any(tabled_by_speed(assembly.line, e) for e in shaken)
+        torques = disk_torques(assembly)
+        # A frequency that the speed turns round has a sign, which a loss factor's torque follows.
+        turns_round = bool(one.loss.any()) and any(torque.frequency for torque in torques)
+        smooth = self.alike and not turns_round and not any(torque.law.speeds for torque in torques)
         if self.varies and smooth and self.own is None:
             self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
@@ -224,7 +200,7 @@ class _Case:
         elif self.varies:
             self.batch = self._batch()
         else:
-            self.batch = max(1, MOST_NUMBERS // max(1, len(shaken) * self.topo.size))
+            self.batch = max(1, MOST_NUMBERS // max(1, len(self.acting) * self.topo.size))
         if linearised:
             self.batch = len(numbers)
 
@@ -237,7 +213,7 @@ class _Case:
             sides = SideOrders(offsets(self.rates, int(reach)), int(reach))
         else:
             sides = SideOrders(side_orders(self.fall, reach), OUTERMOST)
-        groups = [OWN, *groups_of(self.shaken, self.row, 1 / self.turns, sides.width)]
+        groups = [OWN, *groups_of(self.acting, 1 / self.turns, sides.width)]
         widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
         return groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
 
@@ -256,8 +232,14 @@ class _Case:
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
         return max(1, MOST_NUMBERS // max(most**2, written))
 
-    def solved(self, table: Array) -> tuple[OrderSum, Array]:
-        """The sum of all responses and the relative size of the outermost harmonics, (case,)."""
+    def solved(self, rows: slice) -> OrderSpectrum:
+        """The sum of all responses at some of the cases."""
+        total, cut_off = self._solved(self.numbers[rows])
+        springs = (part[rows] if len(part) > 1 else part for part in (self.springs.damping, self.springs.loss))
+        return total.spectrum(self.numbers[rows, 0], cut_off, *springs)
+
+    def _solved(self, table: Array) -> tuple[OrderSum, Array]:
+        """That sum, and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
             return self._about_own_motions(self.own.at(table[:, 0]), table)
         if not self.varies:
@@ -277,7 +259,7 @@ class _Case:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
         matrices, base = tree_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
         total = OrderSum(len(table), self.places)
-        groups = groups_of(self.shaken, self.row, Fraction(10**9), 0)
+        groups = groups_of(self.acting, None, 0)
         if groups:
             nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
             sources = [
@@ -288,6 +270,8 @@ class _Case:
             y = straight_response(topo, matrices, co.loss, nu, right, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
+                if topo.free:  # driven away by a constant torque, without bound
+                    seen[at == 0, :, self.places.deviation] = seen[at == 0, :, self.places.point] = np.nan
                 self._gather(total, group, once, seen, error, at[:, None], co, matrices.wave)
         self._add_static(total, co)
         return total
@@ -327,7 +311,9 @@ class _Case:
         if self.along_tree:
             left = places_left(self.topo)
             needed = 16.0 * (8 * n * (matrices * harmonics + nodes * times) + max(AT_ONCE, 4 * left * harmonics**2))
-        element, orders = Counter(e.element for e in self.shaken).most_common(1)[0] if self.shaken else ("driveline", 0)
+        element, orders = (
+            Counter(one.name for one in self.acting).most_common(1)[0] if self.acting else ("driveline", 0)
+        )
         require_memory(
             needed,
             element=element,
@@ -370,7 +356,7 @@ class _Case:
         kept = np.arange(-own.count, own.count + 1)
         for harmonic, part in zip(kept.tolist(), self._harmonics(own.seen, kept).swapaxes(0, 1), strict=True):
             total.add(harmonic / self.turns, 0.0, part)
-        for group in groups_of(self.shaken, self.row, 1 / self.turns, own.count):
+        for group in groups_of(self.acting, 1 / self.turns, own.count):
             carrier = group.carrier_at(speed)
             centres = [m for _, m in group.members]
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
@@ -406,16 +392,15 @@ class _Case:
         (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
         right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
         error = np.zeros((len(base.relative), len(h), len(self.topo.compliances)), dtype=complex)
-        for exciter, m in group.members:
-            at, e = int(np.searchsorted(h, m)), exciter.compliance
-            sizes = size(self.assembly, exciter, table)
-            if e < 0:
-                force = torque_on_unknowns(self.topo, exciter, sizes, base)
-            else:
-                stiffness = co.stiffness[:, e, None] * wave[..., e]
-                torque = (stiffness + 1j * nu[:, at, None] * co.damping[:, e, None]) * sizes[:, None]
-                force = twist_on_unknowns(self.topo, exciter, torque, base.relative)
-                error[:, at, e] += sizes
+        for one, m in group.members:
+            at, size = int(np.searchsorted(h, m)), one.size(self.assembly, table)
+
+            def spring(e: int, turns: Array = nu[:, at, None]) -> Complex:
+                return np.asarray(co.stiffness[:, e, None] * wave[..., e] + 1j * turns * co.damping[:, e, None])
+
+            force = one.forcing(self.topo, size, base, spring)
+            if isinstance(one, MeshError):
+                error[:, at, one.mesh.compliance] += size
             near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
             acted = np.flatnonzero(force.any(axis=(0, 1)))
             over = mass[..., acted] if isinstance(mass, np.ndarray) else mass

@@ -1,10 +1,11 @@
 """Steady response of a line whose equations do not vary: one complex system per order and speed, all at once.
 
-    (−ν² M + iν C + K + i sgn(ν) H) Y = g,   ν = KΩ or a fixed ω,
+    (−w² M + iw C + K + i sgn(w) H) Y = g,   w = KΩ + ν,
 
-with H the part of the stiffness that damps whatever the frequency. The matrix has the pattern of the line's tree, so
-elimination from the leaves solves all orders and speeds together; where that loses figures, bands with exchange of
-pivots do.
+with H the part of the stiffness that damps whatever the frequency. What stands still, w = 0, is a constant torque: it
+drives a line that starts free away, against the loads that go with its speed or else against its inertia, and twists
+it. The matrix has the pattern of the line's tree, so elimination from the leaves solves all orders and speeds together;
+where that loses figures, bands with exchange of pivots do.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array, Complex
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
 from trunnion.numerics.condensation import Plan
 from trunnion.numerics.tree_blocks import TreeMatrix
 
+DRAGGED = 1e-9
+"""Share of the largest damping from which dampers resist the line as a whole: less is rounding."""
 ROUNDING = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 SINGULAR = 1e-13
@@ -28,7 +32,8 @@ def straight_response(
 ) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping.
+    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping. Of a
+    line that starts free and is driven away the deviations are those beside what it turns as a whole.
     With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
     orders, cases, n = right.shape
@@ -56,10 +61,15 @@ def straight_response(
         # Orders are solved together at the first speed, and stand for themselves at the others.
         each = [(part[:, k, :, None] for part in (own, coupling, g)) for k in range(orders)]
         every = [about_first(TreeMatrix(plan, matrices.parent, a, b, []), force) for a, b, force in each]
-        return np.stack([part[..., 0].T for part in every])
-    flat = (n, orders * cases, 1)
-    matrix, b = TreeMatrix(plan, matrices.parent, own.reshape(flat), coupling.reshape(flat), []), g.reshape(flat)
-    return np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
+        y = np.stack([part[..., 0].T for part in every])
+    else:
+        flat = (n, orders * cases, 1)
+        matrix, b = TreeMatrix(plan, matrices.parent, own.reshape(flat), coupling.reshape(flat), []), g.reshape(flat)
+        y = np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
+    for k in np.flatnonzero((frequency == 0).any(axis=1)) if topo.free else ():
+        still = frequency[k] == 0
+        y[k, still] = _driven_away(rigid_rotation(topo), plan, matrices, right[k], linearised)[still]
+    return y
 
 
 def about_first(matrix: TreeMatrix, right: Complex) -> Complex:
@@ -80,3 +90,33 @@ def bounded(matrix: TreeMatrix, right: Complex, x: Complex) -> Complex:
         x[:, force < SINGULAR * np.abs(matrix.own * x).max(axis=(0, 2))] = np.nan
     x[:, force == 0] = 0.0
     return x
+
+
+def _driven_away(turn: Array, plan: Plan, matrices: TreeMatrices, torque: Complex, linearised: bool) -> Complex:
+    """Twists (case, n) under constant ``torque`` (case, n) of a line that turns as ``turn`` (n,): what resists there
+    balances it. With ``linearised`` to first order about the first case."""
+    some = slice(0, 1) if linearised else slice(None)
+    stiffness, damping, mass = (
+        TreeMatrix(plan, matrices.parent, part.own.astype(complex), part.down.astype(complex), [])
+        for part in (matrices.stiffness, matrices.damping, matrices.mass)
+    )
+    whole = np.broadcast_to(turn[:, None, None], stiffness.own.shape).astype(complex)
+    drag, inertia = damping.times(whole), mass.times(whole)
+    drags = np.abs(drag).max(axis=0) > DRAGGED * np.abs(damping.own).max(axis=0)
+    resists = np.where(drags, drag, inertia)[:, some]
+    # Of a line without a torque on the whole it does not matter what is held.
+    held = stiffness.of(some)
+    held.own = held.own.copy()
+    held.own[0] += np.abs(held.own).max(axis=0)
+
+    def twists(acting: Complex) -> Complex:
+        left = acting - resists * np.tensordot(turn, acting, 1) / np.tensordot(turn, resists, 1)
+        x = held.solved(left)
+        return np.asarray(x - whole[:, :1] * np.tensordot(turn, x, 1) / (turn @ turn))
+
+    right = torque.T[..., None].astype(complex)
+    if not linearised:
+        return twists(right)[..., 0].T
+    first = twists(right[:, :1])
+    rest = right - stiffness.times(np.broadcast_to(first, right.shape))
+    return np.asarray(first + twists(rest))[..., 0].T

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from trunnion.arrays import Array, Complex, Places
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.exciters import base_of_excitation, exciters, size, torque_on_unknowns, twist_on_unknowns
+from trunnion.equations.harmonics import base_of_excitation, line_harmonics
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeEntries, TreeMatrices, tree_matrices
@@ -89,18 +89,15 @@ def _excited(
     plain = assembly.coefficients(table, statically_twisted=False, any_frequency=True)
     base = base_of_excitation(topo, co, plain, tau)
     found = np.zeros((len(table), len(tau), topo.size))
-    for one in exciters(assembly):
-        if one.held or not table[:, one.amplitude].any():
-            continue
-        nu = table[:, one.frequency] if one.in_time else float(one.order) * speed
-        sizes, turned = size(assembly, one, table), np.exp(1j * np.outer(nu / speed, tau))
-        if one.compliance < 0:
-            force = torque_on_unknowns(topo, one, sizes, base)
-        else:
-            e = one.compliance
-            carried = co.stiffness[:, e, None] * matrices.wave[..., e] + 1j * (nu * co.damping[:, e])[:, None]
-            force = twist_on_unknowns(topo, one, carried * sizes[:, None], base.relative)
-        found += (force * turned[..., None]).real
+    largest = table[np.abs(table).argmax(axis=0), np.arange(table.shape[1])]
+    for one in (one for one in line_harmonics(assembly, largest) if one.acts):
+        nu = float(one.order) * speed + one.frequency
+
+        def spring(e: int, nu: Array = nu) -> Complex:
+            return np.asarray(co.stiffness[:, e, None] * matrices.wave[..., e] + 1j * (nu * co.damping[:, e])[:, None])
+
+        turned = np.exp(1j * np.outer(nu / speed, tau))
+        found += (one.forcing(topo, one.size(assembly, table), base, spring) * turned[..., None]).real
     return found
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.exciters import quiet
+from trunnion.equations.harmonics import unexcited
 from trunnion.equations.line_system import line_system
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.linear_clutches import with_mean_clutches
@@ -88,7 +88,7 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     InputError : torques that do not balance.
     ComputationError : no motion found.
     """
-    prepared = line_system(assemble(with_mean_clutches(assemble(quiet(line)), speed)), speed)
+    prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
     found = kept_speed_orbit(prepared, tolerance=tolerance)
     orbit = found.orbit

@@ -16,7 +16,7 @@ from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.exciters import quiet
+from trunnion.equations.harmonics import unexcited
 from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
 from trunnion.equations.topology import require_period
@@ -206,21 +206,23 @@ class MotionsBySpeed:
     @cached_property
     def hindered(self) -> str:
         """Why there is no balance of smooth equations for all speeds; empty where there is."""
-        if mean_by_load(self.line) and loaded_by_speed(assemble(quiet(self.line))):
+        if mean_by_load(self.line) and loaded_by_speed(assemble(unexcited(self.line))):
             return "the mean of its clutch changes with the speed besides"
-        if line_system(self.quiet, 1.0).system.regimes is not None:
+        if line_system(self.unexcited, 1.0).system.regimes is not None:
             return "it has stages or play besides"
         return ""
 
     @cached_property
-    def quiet(self) -> Assembly:
+    def unexcited(self) -> Assembly:
         """The line without excitation, clutches that state a motion as their mean."""
-        return assemble(with_mean_clutches(assemble(quiet(self.line)), 1.0))
+        return assemble(with_mean_clutches(assemble(unexcited(self.line)), 1.0))
 
     @cached_property
     def balance(self) -> FreeBalance:
         """What solves them."""
-        return FreeBalance(self.quiet, 2 * np.pi * float(require_period(self.quiet.line, self.quiet.topology)))
+        return FreeBalance(
+            self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
+        )
 
     def at_all(self, speeds: Array) -> FreeMotions:
         """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""

@@ -91,7 +91,7 @@ def torque_driven_orbit(
 
 def closes(line: LineSystem) -> bool:
     """Whether the motion of a free line can close: a frequency in time has no fixed ratio to a speed that is free."""
-    return line.period_turns is not None and not line.time_harmonics
+    return line.period_turns is not None and not line.timed
 
 
 def require_kept_speed(line: LineSystem) -> None:
@@ -124,15 +124,9 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     turn = rigid_rotation(topo)
     others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
     faster = np.concatenate([np.zeros(n), turn, others])
-    column, elements = line.assembly.packed.column, line.assembly.line.elements
+    column = line.assembly.packed.column
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
-    unsteady = [
-        place
-        for _, i in topo.disks
-        for h, _ in enumerate(getattr(elements[i], "excitation", None) or (), start=1)
-        for key in ("amplitude", "quadratic_amplitude")
-        if (place := column(i, f"excitation {h} {key}")) >= 0
-    ]
+    unsteady = [one.columns[0] for one in line.torques]
 
     def at(system: System, x: Array) -> Neutral:
         by_speed = _any(line, system, loads)

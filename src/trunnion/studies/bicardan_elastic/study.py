@@ -23,6 +23,7 @@ from trunnion.studies.bicardan_elastic.published import bicardan_elastic as publ
 from trunnion.studies.shared.result import Comparison, PaperFigure, Reproduction, Row
 
 NAME = "bicardan-elastic"
+SOURCE = "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant, part III, 2007"
 
 
 def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction:
@@ -50,17 +51,13 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
                     partial(draw_paper, rigid)),
     )  # fmt: skip
     return Reproduction(
-        NAME,
-        "Two Hooke's joints and an elastic shaft between them (S2)",
-        "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant, part III, 2007",
-        figures,
-        (_numbers(rigid), _differences(elastic, rigid, stiff)),
-        errata(elastic, rigid, worst, even_rigid),
-        (),
-        conclusions(units),
-        "Torques are those passed on to the load. The paper draws its curves without numbers.",
+        name=NAME, title="Two Hooke's joints and an elastic shaft between them (S2)",
+        source=SOURCE,
+        figures=figures, tables=(_numbers(rigid), _differences(elastic, rigid, stiff)),
+        errata=errata(elastic, rigid, worst, even_rigid), evidence=(), conclusions=conclusions(units),
+        figures_note="Torques are those passed on to the load. The paper draws its curves without numbers.",
         assumed=_assumed(elastic, stiff),
-    )
+    )  # fmt: skip
 
 
 def _assumed(elastic: Kinetostatics, stiff: Kinetostatics) -> Comparison:

@@ -110,11 +110,13 @@ class Element:
 
 
 INPUT = Element(
-    "DIE1", 0.190, 0.130, 0.070, 0.054, 0.098, 0.0076, 1.4645e-5, 0.22, 0.0026, 2550.0, 0.05, False
+    name="DIE1", L_B=0.190, L_A=0.130, R=0.070, d_A=0.054, d_C=0.098, S_B=0.0076, half_sum=1.4645e-5, chi_B=0.22,
+    chi_printed=0.0026, torque=2550.0, torque_nonuniformity=0.05, mill=False,
 )  # fmt: skip
 """Table 1 and 4: the driven input element at the motor."""
 OUTPUT = Element(
-    "DOE3", 0.209, 0.143, 0.077, 0.059, 0.108, 0.0092, 2.1442e-5, 0.24, 0.0027, 2100.0, 0.15, True
+    name="DOE3", L_B=0.209, L_A=0.143, R=0.077, d_A=0.059, d_C=0.108, S_B=0.0092, half_sum=2.1442e-5, chi_B=0.24,
+    chi_printed=0.0027, torque=2100.0, torque_nonuniformity=0.15, mill=True,
 )  # fmt: skip
 """Table 2 and 4: the driven output element at the mill."""
 _ELEMENTS = {"input": INPUT, "output": OUTPUT}

@@ -69,18 +69,14 @@ def double_tripod(points: int, tell: Callable[[float], None]) -> Reproduction:
     opened = {e: opening_depth(e) for e in PARTS}
     beats = {number: (element, ratio, drawn.beats(motions[number])) for number, element, ratio in MOTIONS}
     return Reproduction(
-        NAME,
-        "A double tripod industrial driveshaft (S4)",
-        "Bugaru and Vasile, Applied Sciences 12 (2022) 6182",
-        tuple(figures),
-        (_numbers(), _exponents(), dampings(found), against, _opening(opened)),
-        errata(),
-        evidence,
-        conclusions(found, opened, beats, {e: drawn.turning_beats(e, TURNING[e]) for e in PARTS}),
-        "Lyapunov exponents are of the standard definition: variational equations, natural logarithm.",
-        argument(),
-        assumed=_assumed(),
-    )
+        name=NAME, title="A double tripod industrial driveshaft (S4)",
+        source="Bugaru and Vasile, Applied Sciences 12 (2022) 6182", figures=tuple(figures),
+        tables=(_numbers(), _exponents(), dampings(found), against, _opening(opened)), errata=errata(),
+        evidence=evidence,
+        conclusions=conclusions(found, opened, beats, {e: drawn.turning_beats(e, TURNING[e]) for e in PARTS}),
+        figures_note="Lyapunov exponents are of the standard definition: variational equations, natural logarithm.",
+        argument=argument(), assumed=_assumed(),
+    )  # fmt: skip
 
 
 def _assumed() -> Comparison:

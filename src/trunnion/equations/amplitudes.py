@@ -1,0 +1,67 @@
+"""The laws of a harmonic torque's amplitude: constant, by the square of the disk's speed, or from a table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.driveline.excitation import Excitation
+from trunnion.errors import InputError
+
+BEYOND = 1e-9
+"""Share by which a speed may lie beyond the end of a table, as rounding."""
+
+
+@dataclass(frozen=True)
+class Running:
+    """How a disk runs: ``speed`` (case,) its mean speed [rad/s]; ``torque()`` (case,) the mean torque that it drives
+    with [N m]."""
+
+    speed: Array
+    torque: Callable[[], Array]
+
+
+def amplitude(law: Excitation, number: Array, running: Running) -> Complex:
+    """A e^{iφ} (case,) [N m] of the packed ``number`` (case,) that it follows from, φ what a table adds to the phase.
+
+    Raises
+    ------
+    InputError : a speed or a torque beyond the ends of a table.
+    """
+    return np.asarray(number * LAWS[law.stated_as](law, running)).astype(complex)
+
+
+def where(law: Excitation, running: Running) -> Array:
+    """Where the table of ``law`` is read (case,): at speeds [rad/s] or torques [N m]."""
+    return running.torque() if law.torques else running.speed
+
+
+def beyond(law: Excitation, place: Array) -> Flags:
+    """Which places (case,) lie beyond the ends of its table."""
+    slack = BEYOND * max(abs(point) for point in law.points)
+    return np.asarray(~((place >= law.points[0] - slack) & (place <= law.points[-1] + slack)))
+
+
+def _shape(law: Excitation, running: Running) -> Complex:
+    """A e^{iφ} of a table over its largest |A|, linear between its points."""
+    place, points = where(law, running), np.array(law.points)
+    if np.any(beyond(law, place)):
+        apart = np.maximum(points[0] - place, place - points[-1])
+        worst = place[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
+        asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if law.speeds else f"{worst:.5g} N*m"
+        problem = f"is a table from {law.covers}, which does not cover {asked}"
+        raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
+    phases = np.array(law.phases) if law.phases else np.zeros(len(points))
+    values = np.array(law.amplitudes) * np.exp(1j * phases) / (law.largest or 1.0)
+    return np.asarray(np.interp(place, points, values.real) + 1j * np.interp(place, points, values.imag))
+
+
+LAWS: dict[str, Callable[[Excitation, Running], Complex | Array | float]] = {
+    "amplitude": lambda law, running: 1.0,
+    "quadratic_amplitude": lambda law, running: running.speed**2,
+    "amplitudes": _shape,
+}
+"""A over the packed number, by the key that states it (``driveline.excitation.AMPLITUDES``)."""

@@ -1,0 +1,230 @@
+"""What shakes a line, harmonic by harmonic: torques of disks and transmission errors of meshes.
+
+A harmonic of order K (cycles per turn of the input) and frequency ν acts as Re[g(τ) e^{i(Kτ + νt)}] on the unknowns; g
+repeats with the joints and is constant on a straight line. The torque of a disk follows the base motion of its disk,
+joints' lead and static twist included,
+
+    A cos(k (|R| τ + d̄(τ)) + νt + phase),
+
+so K = k |R| with R the mean speed ratio of the disk, which counts k in its own sense of rotation. Cylinders that fire
+at α_c repeat what is listed once: A becomes A Σ_c e^{−ikα_c}. A transmission error e adds to the twist of its mesh.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.gears import GearPair
+from trunnion.equations.amplitudes import Running, amplitude, where
+from trunnion.equations.coefficients import Assembly, mesh_harmonics
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.loads import mean_loads
+from trunnion.equations.topology import Mesh, Topology
+from trunnion.errors import InputError
+from trunnion.laws.harmonic import Harmonic
+
+Spring = Callable[[int], Complex]
+
+
+@dataclass(frozen=True)
+class BaseOfExcitation:
+    """What harmonics need of the base motion at the input angles asked for.
+
+    relative (case, time, station): r from a group's first station; rotation (case, time, station): deviation of the
+    base motion from uniform rotation [rad].
+    """
+
+    relative: Array
+    rotation: Array
+
+
+def base_of_excitation(
+    topo: Topology, coefficients: LineCoefficients, untwisted: LineCoefficients, tau: Array
+) -> BaseOfExcitation:
+    """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
+    motion = base_motion(topo, coefficients, tau)
+    uniform = base_motion(topo, untwisted.straight, tau)
+    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle)
+
+
+@dataclass(frozen=True)
+class LineHarmonic(Harmonic):
+    """A harmonic of an element, by turns of the line's input and at one row of packed numbers; ``name`` of the element,
+    ``number`` of the harmonic there, from 1."""
+
+    name: str
+    number: int
+
+    @property
+    def acts(self) -> bool:
+        """Whether it moves anything."""
+        return bool(self.amplitude != 0)
+
+    @abstractmethod
+    def size(self, assembly: Assembly, table: Array) -> Complex:
+        """A e^{i phase} (case,) at rows of packed numbers: torque [N m], or transmission error as a twist [rad]."""
+
+    @abstractmethod
+    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
+        """g (case, time, n) [N m] of ``size`` (case,); ``spring``: what a compliance resists its twist with (case,
+        time) [N m/rad]."""
+
+
+@dataclass(frozen=True)
+class DiskTorque(LineHarmonic):
+    """A harmonic torque on the disk at a ``station``: amplitude as its ``law`` makes it of the packed number there, of
+    all ``cylinders`` together.
+
+    columns: of that number, of the phase, and of the frequency (−1 without one); prescribed: a ConstantSpeed gives the
+    rotation that it acts on.
+    """
+
+    columns: tuple[int, ...]
+    station: int
+    law: Excitation
+    cylinders: complex
+    prescribed: bool
+
+    @property
+    def acts(self) -> bool:
+        return super().acts and not self.prescribed
+
+    @property
+    def own_order(self) -> float:
+        """Cycles per turn of the disk."""
+        return self.law.order or 0.0
+
+    def size(self, assembly: Assembly, table: Array) -> Complex:
+        number, phase = table[:, self.columns[0]], table[:, self.columns[1]]
+        try:
+            size = amplitude(self.law, number, self._running(assembly, table))
+        except InputError as error:
+            raise error.but(element=self.name, key=f"excitation {self.number}") from None
+        return np.asarray(size * np.exp(1j * phase) * self.cylinders)
+
+    def place(self, assembly: Assembly, table: Array) -> Array:
+        """Where the table of its amplitude is read (case,): at speeds [rad/s] or torques [N m] of its disk."""
+        return where(self.law, self._running(assembly, table))
+
+    def _running(self, assembly: Assembly, table: Array) -> Running:
+        topo, column = assembly.topology, assembly.packed.column
+        speed = table[:, 0] * abs(float(topo.speed_ratio[self.station]))
+        return Running(speed, lambda: -mean_loads(topo, column, table)[:, self.station])
+
+    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
+        s = self.station
+        sense = float(np.sign(float(topo.speed_ratio[s])))
+        turned = np.exp(1j * self.own_order * sense * base.rotation[..., s])
+        g = np.zeros((*turned.shape, topo.size), dtype=complex)
+        g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
+        return g
+
+    def refuse_change(self) -> None:
+        """Refuse an amplitude by the speed where the speed changes.
+
+        Raises
+        ------
+        InputError : so.
+        """
+        if self.law.varies:
+            raise InputError(
+                "has an amplitude that depends on the speed, which changes here", element=self.name, key="excitation",
+                remedy="give it an amplitude, or use tn.order_response",
+            )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class MeshError(LineHarmonic):
+    """A harmonic of the transmission error of a ``mesh``: what it is along the line of action over the ``radius``
+    [m] of the output gear, a twist [rad]."""
+
+    mesh: Mesh
+    radius: float
+
+    def size(self, assembly: Assembly, table: Array) -> Complex:
+        own = mesh_harmonics(assembly.packed, self.mesh, "transmission_error", table)[self.number - 1]
+        return np.asarray(own.complex_amplitude / self.radius)
+
+    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
+        e = self.mesh.compliance
+        (far, near), station, torque = topo.ends[e], topo.compliances[e].near, spring(e) * size[:, None]
+        g = np.zeros((*torque.shape, topo.size), dtype=complex)
+        if far >= 0:
+            g[..., far] -= torque
+        if near >= 0:
+            g[..., near] += base.relative[..., station] * torque
+        return g
+
+
+def line_harmonics(assembly: Assembly, row: Array | None = None) -> tuple[LineHarmonic, ...]:
+    """Every harmonic torque and transmission error of a line, those of no amplitude included, at a row of packed
+    numbers, by default as described."""
+    values = assembly.packed.values if row is None else row
+    errors = (one for mesh in assembly.topology.meshes for one in mesh_errors(assembly, mesh, values))
+    return (*disk_torques(assembly, row), *errors)
+
+
+def disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTorque, ...]:
+    """The harmonic torques of all disks alone; those as described are made once."""
+    if row is None or np.array_equal(row[1:], assembly.packed.values[1:]):
+        found: tuple[DiskTorque, ...] = assembly.derived(_disk_torques)
+        return found
+    return _disk_torques(assembly, row)
+
+
+def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTorque, ...]:
+    topo, packed = assembly.topology, assembly.packed
+    row = packed.values if row is None else row
+    found = []
+    for s, place in topo.disks:
+        disk = packed.line.elements[place]
+        assert isinstance(disk, Disk)
+        for i, law in enumerate(disk.excitation, start=1):
+            keys = ("amplitude" if law.points else law.stated_as, "phase", "frequency")
+            columns = tuple(packed.column(place, f"excitation {i} {key}") for key in keys)
+            number, phase, frequency = (float(row[column]) if column >= 0 else 0.0 for column in columns)
+            order = Fraction(str(law.order or 0)) * abs(topo.speed_ratio[s])
+            own = packed.line.names[place], i, columns, s, law, cylinders(disk, law), bool(topo.unknown_of[s] < 0)
+            found.append(DiskTorque(order, frequency, number, phase, *own))
+    return tuple(found)
+
+
+def mesh_errors(assembly: Assembly, mesh: Mesh, row: Array) -> tuple[MeshError, ...]:
+    """The harmonics of the transmission error of one mesh, as twists [rad] of its output gear."""
+    pair, name = assembly.line.elements[mesh.element], assembly.line.names[mesh.element]
+    assert isinstance(pair, GearPair)
+    found, radius = mesh_harmonics(assembly.packed, mesh, "transmission_error", row), pair.radii[1]
+    return tuple(
+        MeshError(one.order, one.frequency, float(one.amplitude) / radius, float(one.phase), name, i, mesh, radius)
+        for i, one in enumerate(found, start=1)
+    )
+
+
+def cylinders(disk: Disk, law: Excitation) -> complex:
+    """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 1 where it has none."""
+    if not disk.firing_angles or law.order is None:
+        return 1.0
+    turned = np.exp(-1j * law.order * np.array(disk.firing_angles))
+    if disk.misfiring is not None and law.quadratic_amplitude is None:
+        turned = np.delete(turned, disk.misfiring - 1)
+    return complex(turned.sum())
+
+
+def unexcited(line: Driveline) -> Driveline:
+    """``line`` without excitations of disks and transmission errors."""
+    for name, element in zip(line.names, line.elements, strict=True):
+        if isinstance(element, Disk) and element.excitation:
+            line = line.replace(name, excitation=None, firing_angles=None, misfiring=None)
+        if isinstance(element, GearPair) and element.transmission_error:
+            line = line.replace(name, transmission_error=())
+    return line
