@@ -32,8 +32,8 @@ def spreads(topo: Topology, coefficients: LineCoefficients, turns: Fraction) -> 
         for rate in topo.joint_rates(station):
             share[int(rate * turns)] = max(share.get(int(rate * turns), 0.0), law.spread)
     for one in (one for wave in coefficients.waves for one in wave.harmonics):
-        rate = abs(int(one.order * turns))
-        share[rate] = max(share.get(rate, 0.0), float(np.max(np.abs(one.amplitude))) / 2)
+        cycles = abs(int(one.order * turns))
+        share[cycles] = max(share.get(cycles, 0.0), float(np.max(np.abs(one.amplitude))) / 2)
     bounded = {rate: min(max(one, LEAST_SPREAD), LARGEST_SPREAD) for rate, one in share.items() if rate}
     return {rate: -float(np.log10(one)) for rate, one in bounded.items()}
 
