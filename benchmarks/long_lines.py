@@ -2,7 +2,8 @@
 
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
-``order_response`` at 50 speeds and 3 orders; medians on one thread.
+``order_response`` at 50 speeds and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at
+one speed. Medians on one thread.
 """
 
 from __future__ import annotations
@@ -10,11 +11,12 @@ from __future__ import annotations
 import argparse
 import statistics
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
 import trunnion as tn
+from trunnion.steady.orders import spectrum
 
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
 ORDERS = (1.5, 3.0, 4.5)
@@ -53,7 +55,7 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--most", type=int, default=300)
     asked = parser.parse_args()
-    print("| inertias | straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    print("| inertias | order_response, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
     for n in (10, 20, 50, 100, 300):
         if n <= asked.most:
             straight, bent = (
@@ -61,6 +63,29 @@ def main() -> None:
                 for line in (chain(n, 0), chain(n))
             )
             print(f"| {n} | {straight:.4f} | {bent:.3f} | {TARGETS.get(n, '')} |", flush=True)
+    print("\n| inertias, speeds | as chosen [s] | along the tree | whole matrices |\n|---|---|---|---|")
+    for n, speeds in ((3, 1), (3, 400), (4, 1), (4, 400), (6, 1), (6, 400), (20, 1), (20, 50)):
+        line, at = chain(n), tn.rpm(np.linspace(600.0, 3000.0, speeds))
+        chosen, along, whole = (
+            median(lambda line=line, at=at: tn.order_response(line, at), asked.repeats) for _ in ways()
+        )
+        print(f"| {n}, {speeds} | {chosen:.4f} | {along:.4f} | {whole:.4f} |", flush=True)
+    print("\n| inertias | stability, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    for n in (20, 50, 100, 300):
+        if n <= asked.most:
+            straight, bent = (
+                median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for line in (chain(n, 0), chain(n))
+            )
+            print(f"| {n} | {straight:.3f} | {bent:.3f} | {'0.02, 0.5' if n == 100 else ''} |", flush=True)
+
+
+def ways() -> Iterator[None]:
+    """``order_response`` as the cost model chooses, then always along the tree, then always by whole matrices."""
+    model = spectrum.tree_pays
+    for pays in (model, lambda *asked: True, lambda *asked: False):
+        spectrum.tree_pays = pays  # type: ignore[assignment]
+        yield
+    spectrum.tree_pays = model
 
 
 if __name__ == "__main__":
