@@ -14,6 +14,9 @@ from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
 from trunnion.floquet.propagation import tree_modes
 from trunnion.floquet.propagation.tree_modes import floquet_modes
+from trunnion.floquet.ranges import exponents
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import meetings
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.along import stability_along
 
@@ -129,3 +132,12 @@ def test_along_a_range_as_at_single_speeds() -> None:
     for radius, error, speed in zip(along.radius, along.error, along.speed, strict=True):
         one = tn.stability(line, speed)
         assert abs(radius - one.spectral_radius) <= error + one.error_estimate and error < 1e-9
+
+
+def test_meetings_of_exponents_along_the_tree_and_by_whole_matrices(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Speeds at which modes may grow together, of a line on which both are solved."""
+    span = Span(assemble(uniform(12, 0.05, 0.3)), 60.0, 320.0)
+    along = meetings(span, 60.0, 320.0)[0]
+    monkeypatch.setattr(exponents, "LONG", 10**9)
+    whole = meetings(span, 60.0, 320.0)[0]
+    assert len(along) > 3 and along == pytest.approx(whole, rel=1e-9)
