@@ -39,7 +39,7 @@ def by_the_period(line: tn.Driveline, speed: float) -> Any:
 def test_random_trees_against_the_matrices_of_the_period(seed: int) -> None:
     """The radius within both errors; every multiplier of the one among those of the other."""
     most = 21 if seed in (4, 13) else 120
-    line = random_tree(seed, 20, most)
+    line = random_tree(seed, 20, most, driven=True)
     found = tn.stability(line, SPEED)
     other = by_the_period(line, SPEED)
     assert abs(found.spectral_radius - other.spectral_radius) <= found.error_estimate + other.error_estimate

@@ -14,18 +14,20 @@ from trunnion.numerics.chain.dense_monodromy import propagate
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
+STEEPEST = 0.6
+"""Angle of a joint [rad], at most."""
 ORDER = 2
 """Of the torque that shakes each line: whole orders close with the joints."""
 
 
-def random_tree(seed: int, least: int = 20, most: int = 120, steepest: float = 0.6) -> tn.Driveline:
-    """A driven or free line of ``least`` to ``most`` inertias on up to four branches, with gears, a mesh that varies,
-    bent joints, and damping of 0.1 % to 5 %; one disk is shaken.
+def random_tree(seed: int, least: int = 20, most: int = 120, *, driven: bool = False) -> tn.Driveline:
+    """A ``driven`` line, else one that is driven or free, of ``least`` to ``most`` inertias on up to four branches, with
+    gears, a mesh that varies, bent joints, and damping of 0.1 % to 5 %; one disk is shaken.
 
     A free one has loss factors in place of dampers, as its response has a motion of rigid shafts for a base then.
     """
     rng = np.random.default_rng(seed)
-    count, free = int(rng.integers(least, most + 1)), bool(rng.random() < 0.3)
+    count, free = int(rng.integers(least, most + 1)), bool(rng.random() < 0.3) and not driven
     ratio = 10 ** float(rng.uniform(-3, np.log10(0.05)))
     unit = float(rng.uniform(5e4, 5e5))
     bends = set(rng.choice(np.arange(2, count - 1), size=int(rng.integers(1, 4)), replace=False).tolist())
@@ -52,7 +54,7 @@ def random_tree(seed: int, least: int = 20, most: int = 120, steepest: float = 0
         torque = [{"order": ORDER, "amplitude": 40.0, "phase": 0.3}] if i == shaken else []
         elements.append(tn.Disk(inertia=0.1 * 10 ** float(rng.uniform(-0.4, 0.4)), excitation=torque, name=f"disk {i}"))
         if i in bends and i + 1 < count and i + 1 not in branches:
-            elements.append(tn.HookeJoint(angle=float(rng.uniform(0.1, steepest)), plane=float(rng.uniform(-3, 3))))
+            elements.append(tn.HookeJoint(angle=float(rng.uniform(0.1, STEEPEST)), plane=float(rng.uniform(-3, 3))))
         if i in gears and i + 1 < count and i + 1 not in branches:
             elements.append(tn.Ratio(ratio=[2.0, -1.0, 0.5, -2.0][int(rng.integers(4))]))
     return tn.Driveline(elements)
