@@ -423,7 +423,7 @@ def test_the_report_draws_what_binds(of, limit, label):
     seen = overview(line)
     shown = binding_picture(seen)
     drawn = shown.figure.axes[0]
-    assert drawn.get_ylabel() == label and drawn.get_title().endswith(f"of {of}")
+    assert drawn.get_ylabel() == label and drawn.get_title(loc="left").endswith(f"of {of}")
     assert next(iter(limit)).replace("_", " ") in " ".join(one.get_label() for one in drawn.lines)
     assert shown.caption.startswith(label.partition(" [")[0].capitalize())
 
