@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import pi
 from typing import Any, ClassVar, Self
 
@@ -11,6 +11,8 @@ from pydantic import Field, model_validator
 from trunnion.driveline.elements import Doubt, Element, bore, not_negative, one_way, positive, with_defaults
 from trunnion.driveline.geometry import tube_inertia, tube_stiffness
 from trunnion.driveline.materials import MATERIALS, of_material, without_material
+from trunnion.driveline.parts import Heavy, Part, Sprung
+from trunnion.driveline.parts import Numbers as Numbers
 from trunnion.driveline.quantities import (
     Angle,
     Damping,
@@ -26,9 +28,6 @@ from trunnion.driveline.quantities import (
     optional,
 )
 from trunnion.errors import InputError
-
-Numbers = Callable[[str], Any]
-"""The values of an element's number by its key, one or many."""
 
 
 class Spring(Element):
@@ -58,6 +57,10 @@ class Spring(Element):
     def loss(self) -> float | None:
         """Loss factor η, however stated; None where damping is a coefficient."""
         return self.loss_factor
+
+    def parts(self) -> tuple[Part, ...]:
+        """A spring, and what of its inertia counts to each end."""
+        return (Sprung(), *(Heavy(at, of="end of") for at in (0, 1) if self.moment_of_inertia))
 
     def stiffness_of(self, number: Numbers) -> Any:
         """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
@@ -150,6 +153,11 @@ class Shaft(Spring):
         if self.stiffness is not None:
             return number("stiffness")
         return tube_stiffness(*map(number, ("outer_diameter", "inner_diameter", "length", "shear_modulus")))
+
+    def inertias(self, number: Numbers) -> tuple[Any, ...]:
+        """Half of the tube's at each end."""
+        half = tube_inertia(*map(number, ("outer_diameter", "inner_diameter", "length", "density"))) / 2
+        return half, half
 
     @property
     def moment_of_inertia(self) -> float:

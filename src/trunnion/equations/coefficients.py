@@ -10,13 +10,14 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
+from operator import itemgetter
 from typing import Any, Literal
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.geometry import disk_inertia, tube_inertia
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Spring
@@ -236,17 +237,10 @@ def _stiffness(stiffness: list[Array]) -> Array:
 def _station_inertia(assembly: Assembly, table: Array) -> Array:
     topo, column = assembly.topology, assembly.packed.column
     inertia = np.zeros((len(table), len(topo.stations)))
-    for station, element in topo.disks:
-        if (given := column(element, "inertia")) >= 0:
-            inertia[:, station] += table[:, given]
-        elif column(element, "mass") >= 0:
-            inertia[:, station] += table[:, column(element, "mass")] * table[:, column(element, "radius")] ** 2
-        else:
-            keys = ("outer_diameter", "inner_diameter", "thickness", "density")
-            inertia[:, station] += disk_inertia(*(table[:, column(element, k)] for k in keys))
-    for station, element in topo.tube_ends:
-        keys = ("outer_diameter", "inner_diameter", "length", "density")
-        inertia[:, station] += tube_inertia(*(table[:, column(element, k)] for k in keys)) / 2
+    for element, own in groupby(topo.inertias, itemgetter(1)):
+        moments = assembly.line.elements[element].inertias(lambda key, i=element: table[:, column(i, key)])
+        for station, _, number in own:
+            inertia[:, station] += moments[number]
     return inertia
 
 

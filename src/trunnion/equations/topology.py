@@ -20,10 +20,9 @@ import numpy as np
 
 from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Ratio
+from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.joints import Joint
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.parts import Geared, Heavy, Jointed, Prescribed, Sprung
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
@@ -94,9 +93,10 @@ class Topology:
 
     ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
     where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
-    an exact fraction. ``disks`` and ``tube_ends`` say which inertia sits at which station; ``meshes`` are those that
-    vary with their phase. ``names`` are those of the unknowns; ``points`` are station and name of what is seen to move:
-    each disk where it is, ends of tubes where none is. What follows from these is found once.
+    an exact fraction. ``inertias`` are station, element and number among the element's own of every inertia, ``disks``
+    station and element of those that outer torques act on; ``meshes`` are those that vary with their phase. ``names``
+    are those of the unknowns; ``points`` are station and name of what is seen to move: each disk where it is, what else
+    is heavy where none is. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -105,7 +105,7 @@ class Topology:
     coordinate: tuple[int, ...]
     prescribed: tuple[bool, ...]
     disks: tuple[tuple[int, int], ...]
-    tube_ends: tuple[tuple[int, int], ...]
+    inertias: tuple[tuple[int, int, int], ...]
     speed_ratio: tuple[Fraction, ...]
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
@@ -250,25 +250,29 @@ def require_period(line: Driveline, topo: Topology) -> Fraction:
         varying = [bool(topo.joints), any(mesh.stiffness for mesh in topo.meshes)]
         what = " and ".join(name for name, some in zip(("joints", "meshes"), varying, strict=True) if some)
         for i, element in enumerate(line.elements):
-            if not isinstance(element, Ratio | GearPair) or element.teeth_in is not None:
-                continue
-            if element.fraction.limit_denominator(12) != element.fraction:
+            rounded = [ratio for ratio in _ratios(element) if ratio.limit_denominator(12) != ratio]
+            if rounded and getattr(element, "ratio", None) is not None:
                 raise InputError(
                     f"{what} in front of and behind this ratio are back in phase only after {float(turns):g} "
                     "turns of the input",
                     element=line.names[i],
                     key="ratio",
-                    value=float(element.fraction),
+                    value=float(rounded[0]),
                     remedy="give the tooth numbers, teeth_in and teeth_out, instead of a rounded ratio",
                 )
         raise InputError(
             f"{what} are back in phase only after {float(turns):g} turns of the input "
             f"(at most {LONGEST_PERIOD} are followed)",
-            element=next(n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Ratio | GearPair)),
+            element=next(name for name, element in line.parts if _ratios(element)),
             key="teeth_in/teeth_out",
             remedy=f"study the {what} on each side of the ratio separately",
         )
     return turns
+
+
+def _ratios(element: Element) -> list[Fraction]:
+    """The ratios of an element's gears."""
+    return [part.ratio for part in element.parts() if isinstance(part, Geared)]
 
 
 def behind_joint(stations: Sequence[Station], station: int) -> bool:
@@ -288,7 +292,8 @@ def _fixed(numbers: list[float]) -> Array:
 class LineStations:
     """What the elements of a line come to, in order: its stations with their exact speeds over the input's, and the one
     ``behind`` each element; the springs between groups, the first station of each group and whether its rotation is
-    prescribed; disks and ends of tubes as (station, element)."""
+    prescribed; ``inertias`` as (station, element, number among its own), ``disks`` as (station, element), and what
+    the rotation of an inertia is called."""
 
     stations: list[Station] = field(default_factory=list)
     speed_ratio: list[Fraction] = field(default_factory=list)
@@ -297,7 +302,8 @@ class LineStations:
     reference: list[int] = field(default_factory=list)
     prescribed: list[bool] = field(default_factory=list)
     disks: list[tuple[int, int]] = field(default_factory=list)
-    tube_ends: list[tuple[int, int]] = field(default_factory=list)
+    inertias: list[tuple[int, int, int]] = field(default_factory=list)
+    called: list[str] = field(default_factory=list)
 
     def add(self, before: int, link: Link, element: int, ratio: Fraction, **joint: Any) -> int:
         if link in (Link.ROOT, Link.SHAFT):
@@ -324,39 +330,40 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
     for i, element in enumerate(line.elements):
         parent = line.parents[i]
         here = found.add(-1, Link.ROOT, i, Fraction(1)) if parent is None else found.behind[parent]
-        ratio, turned = found.speed_ratio[here], () if parent is None else planes[parent]
-        if isinstance(element, ConstantSpeed):
-            found.prescribed[found.stations[here].group] = True
-        elif isinstance(element, Disk):
-            found.disks.append((here, i))
-        elif isinstance(element, Spring | PiecewiseShaft | GearPair):
-            near = here
-            if isinstance(element, GearPair):
-                # The output gear where a rigid mesh would hold it, and behind the mesh where it is.
-                ratio /= element.fraction
-                near = found.add(here, Link.RATIO, i, ratio)
-                turned = tuple((joint, by * element.speed_ratio) for joint, by in turned)
-            here = found.add(near, Link.SHAFT, i, ratio)
-            found.compliances.append(Compliance(near, found.stations[here].group, (i,)))
-            if isinstance(element, Spring) and element.moment_of_inertia:
-                found.tube_ends += [(near, i), (here, i)]
-        elif isinstance(element, Ratio):
-            here = found.add(here, Link.RATIO, i, ratio / element.fraction)
-            turned = tuple((joint, by * element.speed_ratio) for joint, by in turned)
-        elif isinstance(element, Joint):
-            if element.orders or even:
-                here = found.add(here, Link.JOINT, i, ratio, orders=element.orders, planes=turned)
-            turned = () if element.orders else (*turned, (i, 1.0))
-        else:
-            raise InputError("is not an element of a driveline", element=line.names[i])
-        found.behind.append(here)
-        planes.append(turned)
+        # Of every coordinate of the element: its station, and the joints that turn the plane behind it.
+        own, turned, heavy = [here], [() if parent is None else planes[parent]], 0
+        for part in element.parts():
+            match part:
+                case Prescribed():
+                    found.prescribed[found.stations[own[0]].group] = True
+                    continue
+                case Heavy(at, of, loaded):
+                    found.inertias.append((own[at], i, heavy))
+                    found.called.append(f"{of} {line.names[i]}".lstrip())
+                    found.disks += [(own[at], i)] if loaded else []
+                    heavy += 1
+                    continue
+                case Geared(ratio, to):
+                    here = found.add(own[to], Link.RATIO, i, found.speed_ratio[own[to]] / ratio)
+                    plane = tuple((joint, by * float(ratio)) for joint, by in turned[to])
+                case Jointed(orders, to):
+                    here, plane = own[to], turned[to]
+                    if orders or even:
+                        here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
+                    plane = () if orders else (*plane, (i, 1.0))
+                case Sprung(to):
+                    here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
+                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,)))
+            own.append(here)
+            turned.append(plane)
+        found.behind.append(own[-1])
+        planes.append(turned[-1])
     return found
 
 
 def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
     """Join massless shafts in series and number the unknowns; refuse points that nothing can accelerate."""
-    heavy = {draft.stations[s].group for s, _ in draft.disks + draft.tube_ends}
+    heavy = {draft.stations[s].group for s, _, _ in draft.inertias}
     heavy |= {g for g, fixed in enumerate(draft.prescribed) if fixed}
     if not any(not draft.prescribed[g] for g in heavy):
         raise InputError("has no inertia that can vibrate", element="driveline", remedy="add a Disk")
@@ -379,11 +386,11 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
         unknown = g in heavy and not draft.prescribed[g]
         coordinate.append(count if unknown else -1)
         count += unknown
-    names = _names(line, draft, coordinate)
+    names = _names(draft, coordinate)
     return Topology(
         stations=tuple(draft.stations), compliances=tuple(compliances), reference=tuple(draft.reference),
         coordinate=tuple(coordinate), prescribed=tuple(draft.prescribed), disks=tuple(draft.disks),
-        tube_ends=tuple(draft.tube_ends), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
+        inertias=tuple(draft.inertias), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
         meshes=tuple(_meshes(line, draft, compliances)), points=tuple(_points(line, draft, coordinate, names)),
     )  # fmt: skip
 
@@ -435,8 +442,10 @@ def _bare(line: Driveline, draft: LineStations, group: int) -> InputError:
     return InputError(problem, element=element, remedy=remedy)
 
 
-def _names(line: Driveline, draft: LineStations, coordinate: list[int]) -> list[str]:
-    """A name per unknown: the first disk of its group, or the shaft end that carries it."""
-    named = {draft.stations[s].group: f"end of {line.names[i]}" for s, i in reversed(draft.tube_ends)}
-    named |= {draft.stations[s].group: line.names[i] for s, i in reversed(draft.disks)}
+def _names(draft: LineStations, coordinate: list[int]) -> list[str]:
+    """A name per unknown: the first disk of its group, or what else carries it."""
+    last_first = [*zip(draft.inertias, draft.called, strict=True)][::-1]
+    disks, named = set(draft.disks), dict[int, str]()
+    for (s, _, _), name in sorted(last_first, key=lambda one: one[0][:2] in disks):
+        named[draft.stations[s].group] = name
     return [named[g] for g, c in enumerate(coordinate) if c >= 0]
