@@ -22,6 +22,7 @@ from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
+from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint

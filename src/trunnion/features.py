@@ -133,7 +133,7 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             *(key for key in UNEVEN if key != "Hooke's joint"),
-            "ratio", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
+            "ratio", "planetary set", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
             "quadratic load", SERIES,
         ),
@@ -199,7 +199,7 @@ _RIGID = dict.fromkeys(
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
-_TUBES = ("tube inertia", "bending stiffness", "ratio", "gear mesh")
+_TUBES = ("tube inertia", "bending stiffness", "ratio", "planetary set", "gear mesh")
 _TUBE = "a tube whirls between its own joints, by its own dimensions"
 _RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a rigid pair in contact")
 _STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"

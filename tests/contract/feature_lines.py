@@ -86,6 +86,14 @@ def meshed(**more: object) -> Change:
     return behind("hub", pair, tn.Disk(inertia=0.05, name="pinion"))
 
 
+def planetary() -> tn.Planetary:
+    """A step down with heavy planets."""
+    return tn.Planetary(
+        teeth_sun=30, teeth_ring=72, input="sun", held="ring", planet_inertia=1e-3, planet_mass=0.8,
+        centre_distance=0.08, name="gears",
+    )  # fmt: skip
+
+
 def tube(**more: float) -> Change:
     return front(tn.Shaft(outer_diameter=0.05, length=0.5, shear_modulus=8e10, density=800.0, name="front", **more))
 
@@ -180,6 +188,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     ),
     **{name: (STRAIGHT_JOINT, jointed(joint.but(name="extra"))) for name, joint in JOINTS.items() if name in OWN},
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
+    "planetary set": (same, behind("hub", planetary())),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
     "impact damping": (

@@ -17,6 +17,7 @@ from trunnion.driveline import (
     Limit,
     LoadCase,
     Operation,
+    Planetary,
     Ratio,
     Schedule,
     Shaft,
@@ -30,6 +31,10 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def planetary(**changes: object) -> Planetary:
+    return Planetary(**{"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"} | changes)
 
 
 def line(*elements, **rest):
@@ -574,6 +579,12 @@ PYTHON = [
     ),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    (lambda: planetary(held="planets"), "Planetary.held = 'planets': is no shaft", '"sun", "carrier", "ring"'),
+    (lambda: planetary(held=["sun", "ring"]), "Planetary.held = ['sun', 'ring']: holds two shafts", 'held = "sun"'),
+    (lambda: planetary(held="sun"), "Planetary.held = 'sun': is the input", "hold carrier or ring"),
+    (lambda: planetary(teeth_ring=30), "Planetary.teeth_ring = 30: leaves no planets", "more teeth than the sun"),
+    (lambda: planetary(planet_mass=1.0), "Planetary.centre_distance: is missing", "or neither"),
+    (lambda: planetary(planet_inertia=0.0), "Planetary.planet_inertia = 0: must be positive", "write for example"),
     # the line
     (lambda: Driveline([]), "driveline: has no elements", "tn.Driveline(["),
     (

@@ -13,6 +13,7 @@ from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionE
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -38,6 +39,7 @@ __all__ = [
     "Operation",
     "Coupling",
     "PiecewiseShaft",
+    "Planetary",
     "Ratio",
     "Schedule",
     "Shaft",

@@ -132,7 +132,7 @@ def _parent(line: Chain, place: int) -> int | None:
         raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
     parent = line.names.index(after)
     if any(isinstance(part, Jointed | Sprung) for part in line.elements[parent].parts()):
-        remedy = "branches leave from a Disk, a ConstantSpeed or a Ratio; put a Disk there"
+        remedy = "branches leave from a Disk, a ConstantSpeed or gears; put a Disk there"
         raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
     return parent
 

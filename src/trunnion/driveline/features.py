@@ -137,6 +137,14 @@ FEATURES = (
     *_OTHER_JOINTS,
     Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
     Feature(
+        "planetary set",
+        (
+            *(f"Planetary.{key}" for key in ("teeth_sun", "teeth_ring", "input", "held")),
+            *(f"Planetary.{key}" for key in ("planets", "planet_inertia", "planet_mass", "centre_distance")),
+            "Planetary.teeth_planet",
+        ),
+    ),
+    Feature(
         "gear mesh",
         (
             "GearPair.mesh_stiffness", "GearPair.teeth_in", "GearPair.teeth_out", "GearPair.module",

@@ -7,6 +7,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 
@@ -26,5 +27,6 @@ KINDS: dict[str, type[Element]] = {
         DoubleCardanJoint,
         Ratio,
         GearPair,
+        Planetary,
     )
 }
