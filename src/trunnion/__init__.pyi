@@ -11,6 +11,7 @@ from trunnion.design.tolerance.study import tolerance_study as tolerance_study
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
+from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline

@@ -5,6 +5,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
@@ -26,6 +27,7 @@ from trunnion.driveline.tolerances import Tolerance
 __all__ = [
     "STARTERS",
     "ConstantSpeed",
+    "Differential",
     "Disk",
     "DoubleCardanJoint",
     "Driveline",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
@@ -28,5 +29,6 @@ KINDS: dict[str, type[Element]] = {
         Ratio,
         GearPair,
         Planetary,
+        Differential,
     )
 }

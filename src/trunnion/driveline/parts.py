@@ -1,7 +1,8 @@
 """What an element is made of, as the one walk along a line reads it (``trunnion.equations.topology``).
 
 An element hangs on the shaft in front of it, which is its coordinate 0. Its parts come in order; those that make a new
-shaft, with a rotation of its own, number it on: 1, 2, … Whatever follows in the line hangs on the last one. Parts say
+shaft number it on: 1, 2, … Whatever follows in the line hangs on the last one, or on one that the element's ``ports``
+name. Parts say
 what is joined to what; numbers that can vary, stiffness, inertia, a joint's law, stay with the element.
 """
 
@@ -57,4 +58,20 @@ class Sprung:
     to: int = 0
 
 
-Part = Prescribed | Heavy | Geared | Jointed | Sprung
+@dataclass(frozen=True)
+class Loose:
+    """A new shaft with a rotation of its own, which on average turns ``speed`` times as fast as coordinate ``to``."""
+
+    to: int = 0
+    speed: Fraction = Fraction(1)
+
+
+@dataclass(frozen=True)
+class Tied:
+    """A new shaft tied rigidly to several: it turns by the sum of ``share`` times what coordinate ``to`` turns by, over
+    all (``to``, ``share``)."""
+
+    of: tuple[tuple[int, Fraction], ...]
+
+
+Part = Prescribed | Heavy | Geared | Jointed | Sprung | Loose | Tied

@@ -157,8 +157,8 @@ def _lowest_elastic_frequency(assembly: Assembly) -> float:
     """
     topo = assembly.topology
     matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    found = frequencies(matrices, free=topo.free)[0]
-    lowest = float(found[1 if topo.free else 0])
+    found = frequencies(matrices, rigid=topo.rigid_count)[0]
+    lowest = float(found[topo.rigid_count])
     # Eigenvalues, the squares, are right to their rounding beside the largest.
     if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
         raise InputError(

@@ -138,7 +138,20 @@ def static_torque(topo: Topology, load: Array) -> Array:
     torque = np.zeros((len(load), len(topo.compliances)))
     if not load.any():
         return torque
+    if topo.sums:
+        return _shared_torque(topo, load)
     for e, behind in enumerate(topo.stations_behind):
         own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
         torque[:, e] = load[:, behind] @ (-np.abs(topo.mean_speeds[behind]) / own)
     return torque
+
+
+def loads_on_unknowns(topo: Topology, load: Array) -> Array:
+    """What loads (case, station) put on the unknowns of a straight line [N m] (case, n), against their rotation."""
+    return np.asarray((load * np.sign(topo.mean_speeds)) @ topo.turning)
+
+
+def _shared_torque(topo: Topology, load: Array) -> Array:
+    """The same where a differential shares the torque of a shaft between its legs: in balance for every unknown."""
+    found = np.linalg.lstsq(topo.elongations.T, -loads_on_unknowns(topo, load).T, rcond=None)[0]
+    return np.asarray(found.T)

@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from trunnion.arrays import Array
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
@@ -34,11 +35,11 @@ HEADROOM = 1.75
 """What stands above a branch: wheels, numbers, a load in two lines."""
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
-    "PiecewiseShaft": 1.25, "Planetary": 0.9,
+    "PiecewiseShaft": 1.25, "Planetary": 0.9, "Differential": 0.9,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (Spring, PiecewiseShaft)
-GEARS = (Ratio, GearPair, Planetary)
+GEARS = (Ratio, GearPair, Planetary, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
@@ -225,6 +226,17 @@ def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, fc=face, hatch=hatch, **look))
 
 
+def _differential(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A case with a crown wheel, and two side gears in it."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.22, 0.22), 0.5, fc="#f7ead0")
+    _box(axes, place.part(-0.34, -0.22), 0.75, fc="#f1d9a7")
+    for side in (1, -1):
+        gear = place.middle + side * 0.25 * _across(place.direction)
+        look: dict[str, Any] = {"fc": "#f1d9a7", "ec": INK, "lw": 1.1, "zorder": 4}
+        axes.add_patch(Ellipse(tuple(gear), 0.22, 0.34, angle=np.rad2deg(place.direction), **look))
+
+
 def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
     centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
@@ -248,6 +260,7 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "Ratio": _ratio,
     "GearPair": _ratio,
     "Planetary": _planetary,
+    "Differential": _differential,
     "PiecewiseShaft": _stages,
 }
 

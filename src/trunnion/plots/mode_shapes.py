@@ -58,7 +58,7 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
 
 
 def _shown(modes: NaturalFrequencies, mode: int, unit: str) -> str:
-    if modes.rigid_body and mode == 0:
+    if mode < modes.rigid_motions:
         return "rigid body"
     if modes.overdamped[mode]:
         return "overdamped"

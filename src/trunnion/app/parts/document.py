@@ -331,6 +331,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "RzeppaJoint": {"angle": "8 deg"},
     "DoubleCardanJoint": {"angle": "20 deg"},
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
+    "Differential": {"teeth_in": 10, "teeth_out": 41},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }
 """What a new element starts with."""

@@ -36,6 +36,8 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
     starts free and is driven away the deviations are those beside what it turns as a whole.
     """
     mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
+    if topo.sums:
+        return _coupled_response((mass, damping, stiffness, loss), frequency, right)
     parent = np.full(topo.size, -1, dtype=np.int64)
     for far, near in topo.ends:
         if far >= 0:
@@ -67,6 +69,23 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
             )
     x[:, force == 0] = 0.0
     return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
+
+
+def _coupled_response(parts: tuple[Array, ...], frequency: Array, right: Complex) -> Complex:
+    """The same where masses couple unknowns, order by order and speed by speed."""
+    mass, damping, stiffness, loss = parts
+    w, found = frequency[..., None, None], np.zeros_like(right)
+    matrix = stiffness - w**2 * mass + 1j * (w * damping + np.sign(w) * loss)
+    for at in np.argwhere(right.any(axis=2)):
+        one = tuple(at)
+        try:
+            found[one] = np.linalg.solve(matrix[one], right[one])
+        except np.linalg.LinAlgError:
+            found[one] = np.nan
+        holds = np.abs(matrix[one]) @ np.abs(found[one])
+        if np.abs(right[one]).max() < SINGULAR * holds.max():
+            found[one] = np.nan
+    return found
 
 
 def straight_about_first(
