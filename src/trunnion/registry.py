@@ -21,7 +21,7 @@ class Analysis:
     sentence : what it answers, as ``trunnion --help`` says.
     features : the row of ``trunnion.features.ROWS`` that says how it treats each feature of a line; "" where it takes
         no line.
-    pictures : what draws its results, by class and method of the result.
+    pictures : what draws its results, by class and method of the result or of what it is a kind of.
     command : the function of the command of the same name; "" without one.
     view : the view of the application, of ``VIEWS``, that shows it; "" where none does.
     """
@@ -198,8 +198,8 @@ ANALYSES = (
         "A motion in time, of a driveline or of a reference system (duffing, lorenz, …).",
         features="motion",
         pictures={
-            "Simulation.plot": "trunnion.plots.motion:draw_history",
-            "Simulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
+            "SystemSimulation.plot": "trunnion.plots.motion:draw_history",
+            "SystemSimulation.plot_portrait": "trunnion.plots.motion:draw_portrait",
             "LineSimulation.plot": "trunnion.plots.motion:draw_line_history",
             "LineSimulation.plot_order_map": "trunnion.plots.order_map:draw",
         },
@@ -253,24 +253,17 @@ ANALYSES = (
         "frequency_response",
         "Frequency response with folds, jumps and stability, by one method or several.",
         features="branch",
-        pictures={
-            "FrequencyResponse.plot": "trunnion.plots.frequency_response:draw_response",
-            "ApproximateResponse.plot": "trunnion.plots.frequency_response:draw_response",
-        },
+        pictures={"ResponseCurves.plot": "trunnion.plots.frequency_response:draw_response"},
         command="trunnion.cli.rattle:frequency_response",
         view="motion",
     ),
-    Analysis(
-        "compare_responses",
-        "The same frequency response by several methods.",
-        pictures={"ResponseComparison.plot": "trunnion.plots.frequency_response:draw_response"},
-    ),
+    Analysis("compare_responses", "The same frequency response by several methods."),
     Analysis(
         "sweep",
         "Settled motion step by step, up and down: swing, contact, impacts and rattle index, with jumps.",
         features="stages",
         pictures={
-            "Sweep.plot": "trunnion.plots.frequency_response:draw_sweep",
+            "OscillatorSweep.plot": "trunnion.plots.frequency_response:draw_sweep",
             "LineSweep.plot": "trunnion.plots.frequency_response:draw_line_sweep",
         },
         command="trunnion.cli.rattle:sweep",

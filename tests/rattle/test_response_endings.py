@@ -11,11 +11,11 @@ from gears import HALF_GAP, dead_zone, gear_pair
 import trunnion as tn
 from trunnion.errors import InputError
 from trunnion.motion.orbits import harmonic_balance as balance_module
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.frequency_response import compare_responses, frequency_response, methods_of
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.integration.integration import End
 from trunnion.plots.frequency_response import draw_sweeps

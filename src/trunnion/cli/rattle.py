@@ -173,8 +173,8 @@ def sweep(
 
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.staged_line import staged_line
-    from trunnion.motion.orbits.free_play import require_forced
-    from trunnion.motion.orbits.piecewise_branch import check_range
+    from trunnion.motion.orbits.frequency_response import require_forced
+    from trunnion.motion.orbits.periodic_branch import check_range
     from trunnion.plots.frequency_response import draw_line_sweeps, draw_sweeps
 
     if isinstance(subject, tn.System):

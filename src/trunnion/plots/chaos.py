@@ -15,7 +15,7 @@ from trunnion.arrays import Array
 from trunnion.motion.chaos.bifurcation_diagram import BifurcationDiagram
 from trunnion.motion.chaos.certify_chaos import ChaosCertificate
 from trunnion.motion.chaos.lyapunov_map import LyapunovMap, LyapunovSweep
-from trunnion.motion.chaos.lyapunov_result import LyapunovSpectrum
+from trunnion.motion.chaos.lyapunov_spectrum import LyapunovSpectrum
 from trunnion.motion.chaos.poincare_map import PoincareMap
 from trunnion.numerics.integration.integration import integrate
 from trunnion.plots.motion import pair_of_states

@@ -12,8 +12,7 @@ from matplotlib.colors import ListedColormap
 from trunnion.arrays import Array
 from trunnion.motion.orbits.basins import Basins
 from trunnion.motion.orbits.frequency_response import ResponseComparison
-from trunnion.motion.orbits.jumps import abrupt_changes
-from trunnion.motion.orbits.piecewise_sweep import LineSweep, Sweep
+from trunnion.motion.orbits.sweep import LineSweep, OscillatorSweep, Sweep, abrupt_changes
 from trunnion.plots.style import FAINT, INK, SMALL, key_below, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
 
@@ -144,7 +143,7 @@ def _arrow_entry(axes: Axes, colour: str) -> None:
 
 
 def draw_sweeps(
-    sweeps: Sequence[Sweep], axes: Axes | None = None, *, length: str = "", unit: str | None = None
+    sweeps: Sequence[OscillatorSweep], axes: Axes | None = None, *, length: str = "", unit: str | None = None
 ) -> Axes:
     """Half peak-to-peak of sweeps, coloured by what is touched (full going up, hollow going down), jumps marked."""
     axes = axes or new_axes(7.2, 4.4)
@@ -177,7 +176,7 @@ def draw_line_sweeps(
     return axes
 
 
-def _draw_sweep_marks(axes: Axes, one: Sweep | LineSweep, x: Array, size: Array, contact: Sequence[str]) -> None:
+def _draw_sweep_marks(axes: Axes, one: Sweep, x: Array, size: Array, contact: Sequence[str]) -> None:
     """``x`` and ``size`` (points,) in the picture's units, with the contact of each point."""
     axes.plot(x, size, color="#bbbbbb", lw=0.8, zorder=1)
     for kind, colour in CONTACTS.items():
@@ -247,7 +246,7 @@ def draw_response(
     return draw_responses(responses, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
-def draw_sweep(sweep: Sweep, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
+def draw_sweep(sweep: OscillatorSweep, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
     """``draw_sweeps`` of one."""
     return draw_sweeps([sweep], axes, length=length, unit=unit)
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from trunnion.errors import InputError
-from trunnion.motion.linearity.linearity_result import LinearityCheck
+from trunnion.motion.linearity.linearity_check import LinearityCheck
 from trunnion.plots.style import ACCENT, INK, SMALL, TEXT, VERMILION, label_axes, new_axes
 from trunnion.results.speeds import show_speed
 

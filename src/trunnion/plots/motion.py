@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 
 from trunnion.driveline.quantities import TORQUE, shown
 from trunnion.motion.orbits.periodic_response import PeriodicResponse
-from trunnion.motion.simulation.line_simulation import LineSimulation
-from trunnion.motion.simulation.simulation import Simulation
+from trunnion.motion.simulation.simulation import LineSimulation, SystemSimulation
 from trunnion.plots.style import (
     COLOURS,
     curve_style,
@@ -34,7 +33,7 @@ DENSE = 400
 """Cycles beyond which a history is drawn as its envelope."""
 
 
-def draw_history(result: Simulation, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
+def draw_history(result: SystemSimulation, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
     """States over time; all of them, or those named."""
     axes = axes or new_axes(7.2, 4.0)
     names, states_shown = states or result.system.states, state_axes(result.system)
@@ -52,7 +51,7 @@ def draw_history(result: Simulation, axes: Axes | None = None, *, states: tuple[
 
 
 def draw_portrait(
-    result: Simulation, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0
+    result: SystemSimulation, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0
 ) -> Axes:
     """One state over another, from ``from_time`` on; by default the second over the first."""
     axes = axes or new_axes(5.2, 4.6)

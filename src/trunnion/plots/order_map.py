@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 
-from trunnion.motion.simulation.line_simulation import LineSimulation
 from trunnion.motion.simulation.order_map import OrderMap, order_map
+from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.plots.style import colour_bar, label_axes, new_axes
 from trunnion.results.speeds import speed_factor
 

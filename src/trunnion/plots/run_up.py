@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trunnion.motion.passing.run_up_result import RunUp
+from trunnion.motion.passing.run_up import RunUp
 from trunnion.plots.style import COLOURS, FAINT, headed, key_below, label_axes, new_axes
 from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed, speed_factor
 from trunnion.results.verdict import Verdict

@@ -16,5 +16,6 @@ else:  # what draws takes long to load, and results are drawn seldom
 
 def drawing(result: object, method: str) -> Callable[..., Any]:
     """The function that draws ``method`` of ``result``. A result knows no picture; pictures know results."""
-    found: Callable[..., Any] = found_at(PICTURES[f"{type(result).__name__}.{method}"])
+    keys = (f"{kind.__name__}.{method}" for kind in type(result).__mro__)
+    found: Callable[..., Any] = found_at(PICTURES[next(key for key in keys if key in PICTURES)])
     return found

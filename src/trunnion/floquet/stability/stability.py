@@ -279,7 +279,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
         set_aside=1,
-        extra_torque=motion.extra_torque,
+        extra_torque=orbit.values[-1],
         speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
     )
 

@@ -18,11 +18,11 @@ from trunnion.motion.chaos.chaos_subject import (
     as_system,
     first_starts,
     tilted_frame,
+    usual_time,
     values_of,
     whole_number,
 )
-from trunnion.motion.chaos.lyapunov_result import shear_bound
-from trunnion.motion.simulation.long_motion import usual_time
+from trunnion.motion.chaos.lyapunov_spectrum import shear_bound
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory

@@ -17,8 +17,15 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
-from trunnion.motion.chaos.chaos_subject import as_system, first_starts, turns, whole_number
-from trunnion.motion.simulation.long_motion import failure, motion_size, usual_time
+from trunnion.motion.chaos.chaos_subject import (
+    as_system,
+    failure,
+    first_starts,
+    motion_size,
+    turns,
+    usual_time,
+    whole_number,
+)
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, over

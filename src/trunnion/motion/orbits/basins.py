@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.motion.orbits.exact_map import OscillatorMap
-from trunnion.motion.orbits.exact_orbit_result import PiecewiseOrbit
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit, refuse_unbounded
+from trunnion.motion.orbits.exact_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import Axes, drawing

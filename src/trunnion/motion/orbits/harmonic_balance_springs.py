@@ -20,10 +20,11 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
-from trunnion.motion.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.motion.orbits.branch import STEP
-from trunnion.motion.orbits.piecewise_branch import begun_within
+from trunnion.motion.orbits.harmonic_balance import Series, SeriesBranch, balanced
+from trunnion.motion.orbits.periodic_branch import begun_within
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.chain.exponential_monodromy import exponential
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow, once
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
@@ -301,19 +302,12 @@ class _Balance(Series):
         one, two = (self._tangent_matrix(rows, middle + side * GAUSS * h) for side in (-1, 1))
         dt = (h / omega)[:, None, None]
         generator = 0.5 * dt * (one + two) + (np.sqrt(3.0) / 12) * dt**2 * (two @ one - one @ two)
-        eye = np.broadcast_to(np.eye(2 * n), generator.shape)
-        squarings = max(0, int(np.ceil(np.log2(max(np.abs(generator).sum(axis=2).max(), 1e-300) / 0.25))))
-        small = generator / 2**squarings
-        steps_ = eye.copy()
-        for order in range(10, 0, -1):
-            steps_ = eye + small @ steps_ / order
-        for _ in range(squarings):
-            steps_ = steps_ @ steps_
-        while len(steps_) > 1:
-            if len(steps_) % 2:
-                steps_ = np.concatenate([steps_, np.eye(2 * n)[None]])
-            steps_ = steps_[1::2] @ steps_[::2]
-        return np.asarray(steps_[0])
+        passed = exponential(generator)
+        while len(passed) > 1:
+            if len(passed) % 2:
+                passed = np.concatenate([passed, np.eye(2 * n)[None]])
+            passed = passed[1::2] @ passed[::2]
+        return np.asarray(passed[0])
 
     def _tangent_matrix(self, rows: Array, phases: Array) -> Array:
         s, n = self.system, self.n

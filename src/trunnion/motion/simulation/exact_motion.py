@@ -20,8 +20,8 @@ from trunnion.equations.sliders import beyond_capacity
 from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
-from trunnion.motion.simulation.simulation import positive_time
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
+from trunnion.motion.simulation.simulate import positive_time
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.systems.regimes import SLACK
@@ -208,7 +208,7 @@ def exact_motion(
     reached = shown <= run.time
     return ExactMotion(
         prepared, first, start_time, shown[reached], run.states[reached], run.shown_stages[reached],
-        stage_events(prepared, run), run.state, run.time, _outcome(prepared, run),
+        stage_events(prepared, run.events), run.state, run.time, _outcome(prepared, run),
     )  # fmt: skip
 
 
@@ -238,15 +238,10 @@ def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
     return line.within_limits(state)
 
 
-def stage_events(line: StagedLine, run: StagedPassage) -> StageEvents:
-    """The events of a passage."""
-    spring, stage = run.events[:, 1].astype(np.int64), run.events[:, 2].astype(np.int64)
-    return StageEvents(run.events[:, 0], spring, stage, line.sides[spring, stage], run.events[:, 3])
-
-
-def first_stages(line: StagedLine, state: Array) -> Integers:
-    """Stage of every spring (m,) at a state."""
-    return stages_of(line.flow(), state)
+def stage_events(line: StagedLine, events: Array) -> StageEvents:
+    """The events (count, 5) of a passage."""
+    spring, stage = events[:, 1].astype(np.int64), events[:, 2].astype(np.int64)
+    return StageEvents(events[:, 0], spring, stage, line.sides[spring, stage], events[:, 3])
 
 
 def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from trunnion.arrays import Array
 from trunnion.motion.chaos.lyapunov_map import LyapunovSweep
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.motion.simulation.simulation import Simulation, simulate_system
+from trunnion.motion.simulation.simulate import simulate_system
+from trunnion.motion.simulation.simulation import SystemSimulation
 from trunnion.plots.style import ACCENT, COLOURS, FAINT, INK, SMALL, TITLE, VERMILION, head, label_axes
 from trunnion.studies.double_tripod.estimator import printed_estimator
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
@@ -39,7 +40,7 @@ def frequency_figure(element: str) -> Figure:
     return figure
 
 
-def motion_of(element: str, damping_ratio: float) -> Simulation:
+def motion_of(element: str, damping_ratio: float) -> SystemSimulation:
     """A motion of (25) or (26) from rest without twist, until it has settled."""
     system = DoubleTripod(damping_ratio=damping_ratio).system(element, phase="own")
     p = system.parameters
@@ -47,7 +48,7 @@ def motion_of(element: str, damping_ratio: float) -> Simulation:
     return simulate_system(system, max(HISTORY, settled) + SETTLED, tolerance=1e-9)
 
 
-def beats(motion: Simulation) -> int:
+def beats(motion: SystemSimulation) -> int:
     """How often the swing per natural period rises again by more than RISE of the first, while the start dies out."""
     p = motion.system.parameters
     period = 2 * np.pi / p["natural_frequency"]
@@ -79,7 +80,7 @@ RISE = 0.02
 """Share of the first swing by which an envelope must rise again to count as beating."""
 
 
-def motion_figure(motion: Simulation, title: str) -> Figure:
+def motion_figure(motion: SystemSimulation, title: str) -> Figure:
     """The paper's panels (a) to (d), φ and φ̇ over time, both in space with time, and the portrait; beside them what is
     left once the start has died out, at its own scale."""
     figure = _blank(10.0, 7.2)

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from trunnion.arrays import Array
 from trunnion.motion.orbits.basins import Basins
 from trunnion.motion.orbits.frequency_response import FrequencyResponse, ResponseComparison
-from trunnion.motion.orbits.piecewise_sweep import Sweep
+from trunnion.motion.orbits.sweep import OscillatorSweep
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse
 from trunnion.plots.frequency_response import DASHED, draw_basins, draw_responses
 from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, TITLE, VERMILION, label_axes, new_axes
@@ -76,7 +76,7 @@ def _rising(response: ApproximateResponse) -> tuple[Array, Array]:
     return response.frequency[order], response.amplitude[order]
 
 
-def index_figure(up: Sweep, down: Sweep) -> Figure:
+def index_figure(up: OscillatorSweep, down: OscillatorSweep) -> Figure:
     """Rattle index over frequency, swept both ways."""
     axes = new_axes(8.0, 4.4)
     for one, shape, colour in ((up, "^-", VERMILION), (down, "v-", ACCENT)):

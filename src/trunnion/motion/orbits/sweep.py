@@ -1,14 +1,16 @@
 """A piecewise linear oscillator, or a driveline, on the bench: a value raised or lowered step by step.
 
 Each step goes on from where the last one ended, settles and is then measured. Also the rattle index, what the impacts
-of a period amount to, over frequency.
+of a period amount to, over frequency; and jumps: changes between neighbours that those beside them do not announce.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar, overload
+from functools import partial
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,16 +22,13 @@ from trunnion.equations.clutch_capacity import refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
-from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
-from trunnion.motion.orbits.jumps import jumps
-from trunnion.motion.orbits.piecewise_branch import line_over
-from trunnion.motion.orbits.piecewise_orbit import CONTACT, contacts_of, refuse_unbounded
-from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.motion.orbits.exact_map import ExactMap, LineMap, OscillatorMap
+from trunnion.motion.orbits.exact_orbit import NUMBERS, Displacement, TorqueRange, fields_of, refuse_unbounded
+from trunnion.motion.orbits.periodic_branch import line_over
+from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
-from trunnion.numerics.piecewise_linear.piecewise import COLUMNS
-from trunnion.numerics.piecewise_linear.staged_flow import kernel
-from trunnion.results.declared import Described, Held, Result, axis, ending, fields_over, over, remarks
+from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
@@ -39,62 +38,95 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 if TYPE_CHECKING:
     import xarray as xr
 
-Place = TypeVar("Place", OscillatorMap, LineMap)
-Seen = TypeVar("Seen")
-Torques = tuple[Array, Array, Array, tuple[SpringContact, ...]]
-"""Lowest and highest torque of every spring, the state that they follow from, and the contacts."""
 LEAST, MOST, SAME, MEASURED = 20, 2000, 1e-11, 64
 """Periods of a step at least and at most; change per period that counts as settled; periods measured otherwise."""
 BYTES_A_STEP = 128.0
 """What one frequency holds for each number of the state."""
-NUMBERS = ("lowest", "highest", "mean", "peak_to_peak", "impacts", "impact_energy", "impact_impulse", "settled")
+CONTACTS = ("none", "one-sided", "two-sided")
+JUMP, ABRUPT = 0.25, 2.0
+"""A change between neighbours is a jump if it is this share of the larger swing and that many times those beside."""
+STEEPENING = 4.0
+"""How many times steeper the flank of a resonance may get from step to step of a coarse grid."""
 
 
 @dataclass(frozen=True, repr=False)
-class Sweep(Result):
-    """Steady motion over frequency, in the order it was swept.
+class Sweep(ABC):
+    """Steady motions over a value, in the order it was swept.
 
-    frequency (points,); lowest, highest, mean of x (points,); contact (points,) of none, one-sided, two-sided;
-    impacts, impact_energy Σ m v²/2 and impact_impulse Σ m |v| per period (points,); settled (points,): whether the
-    motion repeats every period; periods (points,): run until then; state (points, 2) at phase zero.
+    value (points,) [rad/s]; settled (points,): whether the motion repeats every period; periods (points,): run until
+    then; state (points, states) at phase zero.
     """
 
-    oscillator: PiecewiseOscillator
-    frequency: Array
-    lowest: Array
-    highest: Array
-    mean: Array
-    contact: tuple[str, ...]
-    impacts: Array
-    impact_energy: Array
-    impact_impulse: Array
+    value: Array
     settled: Flags
     periods: Integers
     state: Array
     outcome: Outcome
 
     @property
-    def peak_to_peak(self) -> Array:
-        """Highest minus lowest (points,)."""
-        return self.highest - self.lowest
+    @abstractmethod
+    def swings(self) -> Array:
+        """Peak-to-peak (points, curves) of what is looked at."""
+
+    @property
+    @abstractmethod
+    def unit(self) -> str:
+        """What its values read in."""
 
     @property
     def up(self) -> bool:
-        """Whether the frequency was raised."""
-        return bool(self.frequency[-1] >= self.frequency[0])
+        """Whether the value was raised."""
+        return bool(self.value[-1] >= self.value[0])
 
     @property
     def jumps(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of neighbouring frequencies between which the swing changes abruptly, in the order swept."""
-        return jumps(self.frequency, self.peak_to_peak)
+        """Pairs of neighbouring values between which any swing changes abruptly, in the order swept."""
+        found = sorted({i for swing in self.swings.T for i in abrupt_changes(swing)})
+        return tuple((float(self.value[i]), float(self.value[i + 1])) for i in found)
+
+    @property
+    def _direction(self) -> str:
+        return "up" if self.up else "down"
+
+    def _head(self, name: str, what: str, unit: str) -> str:
+        low, high = self.value[[0, -1]] * speed_factor(unit)
+        return (
+            f"sweep {self._direction} of {name}, {len(self.value)} {what} from {low:.6g} to {high:.6g} {unit}, "
+            f"{int((~self.settled).sum())} without a motion of one period"
+        )
+
+    def _jumps(self, unit: str) -> str:
+        factor = speed_factor(unit)
+        return f"jumps: {', '.join(f'{a * factor:.6g} → {b * factor:.6g}' for a, b in self.jumps) or 'none'}"
+
+
+@dataclass(frozen=True, repr=False)
+class OscillatorSweep(Displacement[Array], Sweep, Described):
+    """Steady motion of an oscillator over frequency (points,) [rad/s].
+
+    contact (points,) of none, one-sided, two-sided; state (points, 2): x and x′.
+    """
+
+    oscillator: PiecewiseOscillator
+    contact: tuple[str, ...]
+
+    @property
+    def frequency(self) -> Array:
+        """Frequencies (points,) [rad/s]."""
+        return self.value
+
+    @property
+    def swings(self) -> Array:
+        """Peak-to-peak of x (points, 1)."""
+        return self.peak_to_peak[:, None]
 
     def declared(self) -> Iterator[Held]:
         """Extremes, impacts and contact over frequency."""
         yield axis("frequency", self.frequency, "rad/s")
-        yield from fields_over("frequency", self, **dict.fromkeys(NUMBERS, ""))
+        yield from fields_over("frequency", self, **dict.fromkeys((*NUMBERS, "settled"), ""))
         yield over("frequency", "contact", np.array(self.contact, dtype=str))
         yield over("frequency", "periods", self.periods)
-        yield from remarks(oscillator=self.oscillator.name, direction="up" if self.up else "down")
+        yield from remarks(oscillator=self.oscillator.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
@@ -106,39 +138,27 @@ class Sweep(Result):
         """What its frequencies read in: Hz, or rad/s for equations of one's own."""
         return frequency_unit(self.oscillator.speed_unit)
 
-    def __str__(self) -> str:
-        best, factor = int(np.nanargmax(self.peak_to_peak)), speed_factor(self.unit)
-        low, high, largest = (self.frequency[i] * factor for i in (0, -1, best))
-        rough = int((~self.settled).sum())
-        kinds = ", ".join(f"{self.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
+    def describe(self, unit: str | None = None) -> str:
+        """What was found, frequencies in ``unit``."""
+        unit, best = unit or self.unit, int(np.nanargmax(self.peak_to_peak))
         return (
-            f"sweep {'up' if self.up else 'down'} of {self.oscillator.name}, {len(self.frequency)} frequencies from "
-            f"{low:.6g} to {high:.6g} {self.unit}, {rough} without a motion of one period\n"
-            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at {largest:.6g}; "
-            f"jumps: {_in_words(self.jumps, self.unit)}\n"
-            f"  contact: {kinds}; {self.outcome}"
+            f"{self._head(self.oscillator.name, 'frequencies', unit)}\n"
+            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at "
+            f"{self.frequency[best] * speed_factor(unit):.6g}; {self._jumps(unit)}\n"
+            f"  contact: {', '.join(f'{self.contact.count(k)} {k}' for k in CONTACTS)}; {self.outcome}"
         )
 
 
 @dataclass(frozen=True, repr=False)
-class LineSweep(Described):
-    """Steady motions of a line, in the order it was swept.
+class LineSweep(TorqueRange, Sweep, Described):
+    """Steady motions of a line over its speed, or the common frequency of excitation in time.
 
-    value (points,) [rad/s]: speed, or common frequency of excitation in time; torque_low, torque_high (points, spring)
-    [N m]; contacts (points of spring contacts), per period of the excitation where settled, else over the periods
-    measured; settled (points,): whether the motion repeats every period; periods (points,): run until then; state
-    (points, 2m).
+    torque_low, torque_high (points, spring) [N m]; contacts (points of spring contacts), per period of the excitation
+    where settled, else over the periods measured; state (points, 2m).
     """
 
     line: StagedLine
-    value: Array
-    torque_low: Array
-    torque_high: Array
     contacts: tuple[tuple[SpringContact, ...], ...] = field(repr=False)
-    settled: Flags
-    periods: Integers
-    state: Array
-    outcome: Outcome
 
     @property
     def springs(self) -> tuple[str, ...]:
@@ -146,19 +166,9 @@ class LineSweep(Described):
         return self.line.springs
 
     @property
-    def torque_peak_to_peak(self) -> Array:
-        """Highest minus lowest torque (points, spring) [N m]."""
-        return self.torque_high - self.torque_low
-
-    @property
-    def up(self) -> bool:
-        """Whether the value was raised."""
-        return bool(self.value[-1] >= self.value[0])
-
-    @property
-    def jumps(self) -> tuple[tuple[float, float], ...]:
-        """Pairs of neighbouring values between which the torque of any spring changes abruptly, in the order swept."""
-        return jumps(self.value, *self.torque_peak_to_peak.T)
+    def swings(self) -> Array:
+        """Peak-to-peak torques (points, spring) [N m]."""
+        return self.torque_peak_to_peak
 
     def swing_of(self, spring: str) -> Array:
         """Peak-to-peak torque of one spring (points,) [N m].
@@ -196,7 +206,7 @@ class LineSweep(Described):
             values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
             yield over(f"{clock} staged_spring", name, values.reshape(len(self.value), len(staged)), unit)
         yield from fields_over(clock, self, settled="", periods="")
-        yield from remarks(driveline=self.line.name, direction="up" if self.up else "down")
+        yield from remarks(driveline=self.line.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
@@ -212,7 +222,7 @@ class LineSweep(Described):
     def describe(self, unit: str | None = None) -> str:
         """What was found, speeds in ``unit``, by default that of the description."""
         unit = unit or self.unit
-        rough, value = int((~self.settled).sum()), self.value * speed_factor(unit)
+        value = self.value * speed_factor(unit)
         rows = []
         for e, name in enumerate(self.springs):
             swing = self.torque_peak_to_peak[:, e]
@@ -220,23 +230,24 @@ class LineSweep(Described):
             rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
         for row in zip(*self.contacts, strict=True):
             kinds = [contact.contact for contact in row]
-            told = ", ".join(f"{kinds.count(k)} {k}" for k in ("none", "one-sided", "two-sided") if k in kinds)
+            told = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
             worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
             impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
             rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
-        return "\n".join(
-            [
-                f"sweep {'up' if self.up else 'down'} of {self.line.name}, {len(value)} steps from "
-                f"{value[0]:.6g} to {value[-1]:.6g} {unit}, {rough} without a motion of one period",
-                *rows,
-                f"  jumps: {_in_words(self.jumps, unit)}; {self.outcome}",
-            ]
-        )
+        return "\n".join([self._head(self.line.name, "steps", unit), *rows, f"  {self._jumps(unit)}; {self.outcome}"])
 
 
-def _in_words(jumps: Sequence[tuple[float, float]], unit: str) -> str:
-    factor = speed_factor(unit)
-    return ", ".join(f"{a * factor:.6g} → {b * factor:.6g}" for a, b in jumps) or "none"
+def abrupt_changes(swing: Array) -> list[int]:
+    """Places i where a response (points,) changes abruptly from i to i + 1."""
+    change = np.abs(np.diff(swing))
+    if len(change) < 3:
+        return []
+    # At an end both neighbours stand on one side, so that a flank which goes on beyond it looks like a jump.
+    left = np.concatenate([change[2:3], change[:-2], STEEPENING * change[-2:-1]])
+    right = np.concatenate([STEEPENING * change[1:2], change[2:], change[-3:-2]])
+    usual = np.maximum(left, right)
+    abrupt = (change > JUMP * np.maximum(swing[:-1], swing[1:])) & (change > ABRUPT * usual)
+    return [int(i) for i in np.flatnonzero(abrupt)]
 
 
 @overload
@@ -248,7 +259,7 @@ def sweep(
     least: int = LEAST,
     most: int = MOST,
     same: float = SAME,
-) -> Sweep: ...
+) -> OscillatorSweep: ...
 @overload
 def sweep(
     oscillator: Driveline | Assembly,
@@ -271,7 +282,7 @@ def sweep(
     least: int = LEAST,
     most: int = MOST,
     same: float = SAME,
-) -> Sweep | LineSweep:
+) -> OscillatorSweep | LineSweep:
     """Steady motions over ``frequencies`` in the order given: rising for an up-sweep, falling for a down-sweep.
 
     Parameters
@@ -287,7 +298,7 @@ def sweep(
 
     Returns
     -------
-    Sweep; of a driveline LineSweep with the torques of its springs.
+    Sweep of an oscillator's x, or of the torques of a driveline's springs.
 
     Raises
     ------
@@ -304,117 +315,49 @@ def sweep(
     needed = BYTES_A_STEP * states * len(omegas)
     require_memory(needed, key="frequencies", value=len(omegas), remedy="ask for fewer frequencies")
     if isinstance(oscillator, Driveline | Assembly):
-        return _of_line(oscillator, omegas, start, speed, least, most, same)
-    refuse_speed(oscillator.name, speed)
-    for omega in omegas:
-        refuse_unbounded(oscillator.but(frequency=float(omega)))
-    first = np.array([oscillator.equilibrium(), 0.0] if start is None else start, dtype=float)
-    maps = [OscillatorMap(float(omega), 1, oscillator) for omega in omegas]
+        maps, state, lost, result = _line(oscillator, omegas, start, speed)
+    else:
+        maps, state, lost, result = _oscillator(oscillator, omegas, start, speed)
+    settled, periods = np.zeros(len(omegas), dtype=bool), np.zeros(len(omegas), dtype=np.int64)
+    rows, outcome = list[dict[str, Any]](), Outcome(True, "swept", "every step was run")
+    for i, place in enumerate(maps):
+        found = place.steady(state, least, most, same)
+        settled[i], periods[i] = found.repeats, found.periods
+        # Over one period where the motion repeats, else over many.
+        measured = (
+            replace(place, periods=1 if found.repeats else MEASURED).measured(found.state) if found.done else None
+        )
+        if measured is None:
+            outcome = Outcome(False, "chatter", lost.format(place.value))
+            break
+        rows.append(measured[0])
+        state = measured[1]
+    rows += [maps[0].unmeasured] * (len(omegas) - len(rows))
+    columns = {name: [row[name] for row in rows] for name in fields_of(result.func, rows[0])}
+    seen = {name: tuple(c) if isinstance(c[0], str | tuple) else np.array(c) for name, c in columns.items()}
+    return result(value=omegas, settled=settled, periods=periods, outcome=outcome, **seen)
+
+
+Bench = tuple[Sequence[ExactMap], Array, str, partial[Any]]
+"""Maps by value, the state to begin with, what is said where a motion cannot be followed, and the result to be."""
+
+
+def _oscillator(o: PiecewiseOscillator, values: Array, start: ArrayLike | None, speed: float | str | None) -> Bench:
+    refuse_speed(o.name, speed)
+    for omega in values:
+        refuse_unbounded(o.but(frequency=float(omega)))
+    first = np.array([o.equilibrium(), 0.0] if start is None else start, dtype=float)
     lost = "the motion at ω = {:g} crosses too often in a period; raise damping"
-    steps = _stepped(maps, first, least, most, same, _measured, lost)
-    rows = np.full((len(omegas), len(COLUMNS)), np.nan)
-    for row, seen in zip(rows, steps.seen, strict=False):
-        row[:] = list(seen.values())
-    column = dict(zip(COLUMNS, rows.T, strict=True))
-    sides = [CONTACT[int(c)] if np.isfinite(c) else "none" for c in column["contact"]]
-    return Sweep(
-        oscillator=oscillator,
-        frequency=omegas,
-        lowest=column["low"],
-        highest=column["high"],
-        mean=column["mean"],
-        contact=tuple(contact_state(s) for s in sides),
-        impacts=column["impacts"],
-        impact_energy=oscillator.inertia * column["energy"],
-        impact_impulse=oscillator.inertia * column["impulse"],
-        settled=steps.settled,
-        periods=steps.periods,
-        state=np.stack([column["x"], column["v"]], axis=1),
-        outcome=steps.outcome,
-    )
+    return [OscillatorMap(float(omega), 1, o) for omega in values], first, lost, partial(OscillatorSweep, oscillator=o)
 
 
-def _measured(place: OscillatorMap, state: Array) -> tuple[dict[str, float], Array] | None:
-    row = place.measure(state)
-    return (row, np.array([row["x"], row["v"]])) if row else None
-
-
-def _of_line(
-    line: Driveline | Assembly,
-    values: Array,
-    start: ArrayLike | None,
-    speed: float | str | None,
-    least: int,
-    most: int,
-    same: float,
-) -> LineSweep:
+def _line(line: Driveline | Assembly, values: Array, start: ArrayLike | None, speed: float | str | None) -> Bench:
     prepared = line_over(line, float(values[0]), speed)
     for value in values if prepared.sliders and not prepared.turns else ():
         refuse_overload(prepared.assembly, prepared.speed_at(float(value)))
     maps = [LineMap(float(value), 1, prepared) for value in values]
-    first = start_state(prepared, start)[maps[0].kept]
     lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"
-    steps = _stepped(maps, first, least, most, same, _watched, lost)
-    count, springs = len(values), len(prepared.springs)
-    low, high = np.full((2, count, springs), np.nan)
-    states = np.full((count, 2 * prepared.size), np.nan)
-    names = [prepared.springs[e] for e in prepared.staged]
-    nothing = tuple(SpringContact(name, np.zeros(0), np.nan, "none", np.zeros(0), np.nan) for name in names)
-    contacts = [nothing] * count
-    for i, seen in enumerate(steps.seen):
-        low[i], high[i], states[i], contacts[i] = seen
-    return LineSweep(prepared, values, low, high, tuple(contacts), steps.settled, steps.periods, states, steps.outcome)
-
-
-def _watched(
-    place: LineMap, state: Array
-) -> tuple[tuple[Array, Array, Array, tuple[SpringContact, ...]], Array] | None:
-    run, start, k = place.watched(state), place.whole(state), kernel()
-    if not run.done:
-        return None
-    seen = run.seen[: len(place.line.springs)]
-    contacts = contacts_of(place, start, run)
-    return (seen[:, k.TORQUE_LOW], seen[:, k.TORQUE_HIGH], start, contacts), run.state[place.kept]
-
-
-class _Steps(NamedTuple, Generic[Seen]):
-    """Whether each step settled and after how many periods, both (points,), and what was seen of those run."""
-
-    settled: Flags
-    periods: Integers
-    seen: list[Seen]
-    outcome: Outcome
-
-
-def _stepped(
-    maps: Sequence[Place],
-    start: Array,
-    least: int,
-    most: int,
-    same: float,
-    measure: Callable[[Place, Array], tuple[Seen, Array] | None],
-    lost: str,
-) -> _Steps[Seen]:
-    """Every map from where the one before it ended, measured over one period where the motion repeats, else over many.
-
-    measure : (map, state at phase zero) → what is seen over its periods, and the state after them; None where it cannot
-    be followed, of which ``lost`` is said with the value.
-    """
-    steps = _Steps[Seen](
-        np.zeros(len(maps), dtype=bool), np.zeros(len(maps), dtype=np.int64), [],
-        Outcome(True, "swept", "every step was run"),
-    )  # fmt: skip
-    state = start
-    for i, place in enumerate(maps):
-        found = place.steady(state, least, most, same)
-        steps.settled[i], steps.periods[i] = found.repeats, found.periods
-        over = replace(place, periods=1 if found.repeats else MEASURED)
-        measured = measure(over, found.state) if found.done else None
-        if measured is None:
-            return steps._replace(outcome=Outcome(False, "chatter", lost.format(place.value)))
-        steps.seen.append(measured[0])
-        state = measured[1]
-    return steps
+    return maps, start_state(prepared, start)[maps[0].kept], lost, partial(LineSweep, line=prepared)
 
 
 def rattle_index(
