@@ -588,7 +588,7 @@ PYTHON = [
     (lambda: planetary(held=None, output="sun"), "Planetary.output = 'sun': is the input", "write carrier or ring"),
     (
         lambda: planetary(held=None, output="carrier", free_speed=-30 / 72),
-        "Planetary.free_speed = -0.4166666666666667: lets the output stand still",
+        "Planetary.free_speed = -0.416667: lets the output stand still",
         "hold the carrier",
     ),
     (lambda: Differential(ratio=0), "Differential.ratio = 0: must not be zero", "over that of the case"),
