@@ -120,7 +120,9 @@ _NOT_FOLLOWED = dict.fromkeys(
     ("dry friction", ONE_MOTION), "sliders change between sticking and slipping, which is not followed"
 )
 TIED = "shafts tied to two others"
-_TREES = {TIED: "follows lines that branch, and none whose shaft is tied to two others"}
+_TREES = dict.fromkeys(
+    (TIED, "closed loop"), "follows lines that branch, and none whose shaft is tied to two others or closes a loop"
+)
 _FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _UNANSWERED = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"}
 _BASE = {

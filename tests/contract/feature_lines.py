@@ -185,12 +185,23 @@ OWN = {one.key for one in FEATURES}
 CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
 
 
+def looped(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
+    """The same with a second shaft beside the rear one, from the hub to the load."""
+    line = unbent(line) if straight else line
+    place, last = line.index("load"), line.elements[-1].name
+    second = tn.Shaft(stiffness=4e3, damping=3, name="second", after="hub", to="load")
+    onward = [e.but(after="load") if i == 0 else e for i, e in enumerate(line.elements[place + 1 :])]
+    return line.but(elements=[*line.elements[: place + 1], second, *onward]) if last else line
+
+
 def excited(change: Change) -> Change:
     return lambda line: change(line).replace("load", excitation=[{"order": 2, "amplitude": 5.0}])
 
 
 OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("resonance_speeds", "shafts tied to two others"): (same, lambda line: tied(line, straight=False)),
+    ("resonance_speeds", "closed loop"): (same, lambda line: looped(line, straight=False)),
+    ("optimise", "closed loop"): (excited(unbent), excited(looped)),
     ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
 }
 """Where an analysis asks about something else than the lines below have."""
@@ -221,6 +232,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
     "planetary set": (same, behind("hub", planetary())),
     "shafts tied to two others": (unbent, tied),
+    "closed loop": (unbent, looped),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
     "impact damping": (

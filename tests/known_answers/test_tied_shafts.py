@@ -1,4 +1,4 @@
-"""Differentials and planetary sets of which no shaft is held, against equations with a multiplier for every contact."""
+"""Differentials, free planetary sets and loops, against equations with a multiplier for every contact."""
 
 from __future__ import annotations
 
@@ -75,9 +75,65 @@ def test_a_port_that_is_none_is_refused() -> None:
 def test_bent_joints_beside_it_are_refused() -> None:
     line = tn.Driveline([*car().elements[:2], tn.Disk(inertia=0.01), tn.HookeJoint(angle=0.2), *car().elements[2:]])
     for ask in (lambda one: tn.order_response(one, [60.0]), lambda one: tn.stability(one, 60.0)):
-        with pytest.raises(tn.InputError, match="has bent joints beside a differential"):
+        with pytest.raises(tn.InputError, match="has bent joints beside a differential or a loop"):
             ask(line)
     assert "joint angles zero" in str(tn.natural_frequencies(line))
+
+
+def parallel(ratio: float = 1.0, joint: float = 0.0) -> tn.Driveline:
+    """Two shafts side by side between a hub and a load, one behind gears."""
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Shaft(stiffness=1e4, damping=1.0, name="front"),
+            tn.Disk(inertia=0.02, name="hub"),
+            tn.HookeJoint(angle=joint),
+            tn.Shaft(stiffness=9e3, damping=2.0, name="first"),
+            tn.Disk(inertia=1.2, load_torque=50.0, name="load", excitation=[{"order": 3, "amplitude": 5.0}]),
+            tn.Ratio(ratio=ratio, after="hub", name="gears"),
+            tn.Disk(inertia=0.03, name="gear"),
+            tn.Shaft(stiffness=7e3, damping=3.0, to="load", name="second"),
+        ]
+    )
+
+
+def test_a_loop_shares_torque_by_stiffness() -> None:
+    """By hand: both shafts twist alike; and they are one shaft of the sum of their stiffness and damping."""
+    line = parallel()
+    found = tn.order_response(line, [40.0, 90.0])
+    np.testing.assert_allclose(found.mean_torque, 2 * [[-50.0, -50 * 9 / 16, -50 * 7 / 16]], rtol=1e-12)
+    one = tn.Driveline(
+        [
+            *line.elements[:2],
+            tn.Disk(inertia=0.05, name="hub"),
+            tn.Shaft(stiffness=1.6e4, damping=5.0, name="both"),
+            line.elements[5],
+        ]
+    )
+    together = tn.order_response(one, [40.0, 90.0])
+    np.testing.assert_allclose(found.torque[..., 1] + found.torque[..., 2], together.torque[..., 1], rtol=1e-10)
+    np.testing.assert_allclose(
+        tn.stability(line, 60.0).spectral_radius, tn.stability(one, 60.0).spectral_radius, rtol=1e-8
+    )
+    frequencies = (tn.natural_frequencies(this).frequency for this in (line, one))
+    np.testing.assert_allclose(*frequencies, rtol=1e-11)
+    high = [tn.assess(this.but(limits=[tn.Limit(of="front", max_torque=70)]), (30.0, 120.0)) for this in (line, one)]
+    values = [next(c.value for c in each.checks if c.name == "max torque of front") for each in high]
+    np.testing.assert_allclose(*values, rtol=1e-7)
+    crossings = [
+        [c.speed for c in tn.campbell_diagram(this, np.linspace(20, 400, 40)).crossings] for this in (line, one)
+    ]
+    np.testing.assert_allclose(*crossings, rtol=1e-9)
+
+
+def test_a_loop_that_does_not_close_is_refused() -> None:
+    said = r"^second\.to = 'load': closes a loop whose ratios do not: .* 0\.4 % apart.* 1\.43 deg with every turn"
+    with pytest.raises(tn.InputError, match=said):
+        tn.natural_frequencies(parallel(ratio=1.004))
+    with pytest.raises(tn.InputError, match="second.to = 'laod': is not an earlier element; did you mean load"):
+        parallel().replace("second", to="laod")
+    with pytest.raises(tn.InputError, match="bent joints beside a differential or a loop"):
+        tn.order_response(parallel(joint=0.2), [50.0])
 
 
 @pytest.mark.parametrize("seed", range(200))
@@ -93,8 +149,16 @@ def test_random_lines(seed: int) -> None:
         return
     response = tn.order_response(line, [50.0])
     twists = model.twists(drawn.shaken[1], TORQUE, FREQUENCY)
-    largest = np.abs(response.twist[0]).max(axis=0, initial=0.0)  # none where the drive holds what is shaken
+    found = np.abs(response.twist[0]).max(axis=0, initial=0.0)  # none where the drive holds what is shaken
+    largest = [found[response.springs.index(name)] for name in drawn.springs]
     np.testing.assert_allclose(largest, twists, rtol=1e-9, atol=1e-9 * twists.max() + 1e-15)
+
+
+def test_random_lines_hold_loops() -> None:
+    drawn = (
+        Drawn(rng, int(rng.integers(2, 9)), bool(rng.integers(2))) for rng in map(np.random.default_rng, range(200))
+    )
+    assert sum(one.loops > 0 for one in drawn) > 40
 
 
 @pytest.mark.parametrize("seed", range(0, 40, 5))

@@ -4,6 +4,7 @@ own, every contact of teeth a constraint and a multiplier for each."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 
 import numpy as np
 from scipy.linalg import eigh, null_space
@@ -76,8 +77,10 @@ class Drawn:
     """A line drawn at random, ``free`` or behind a ConstantSpeed, with its ``model``; the last disk is shaken."""
 
     def __init__(self, rng: np.random.Generator, parts: int, free: bool) -> None:
-        self.rng, self.model, self.elements = rng, Model(), list[object]()
+        self.rng, self.model, self.elements, self.loops = rng, Model(), list[object](), 0
+        self.springs: list[str] = []
         start = self.model.shaft()
+        self.speeds = {start: Fraction(1)}
         self.tips: list[tuple[str | None, int]] = []
         if free:
             self._disk("start", start, None, drive_share=1.0)
@@ -87,7 +90,7 @@ class Drawn:
             self.tips = [("start", start)]
             self._spring(0)
         for number in range(1, parts):
-            kind = rng.choice(["spring", "spring", "ratio", "held", "free", "differential"])
+            kind = rng.choice(["spring", "spring", "ratio", "held", "free", "differential", "loop"])
             getattr(self, f"_{kind}")(number)
         self.shaken = self.tips[-1]
 
@@ -112,13 +115,16 @@ class Drawn:
     def _spring(self, number: int) -> None:
         after, near = self._tip()
         far, k, c = self.model.shaft(), self._size(1e3, 1e5), self._size(0.1, 5.0)
+        self.speeds[far] = self.speeds[near]
         self.elements.append(tn.Shaft(stiffness=k, damping=c, name=f"shaft {number}", after=after))
         self.model.springs.append((near, far, k, c))
+        self.springs.append(f"shaft {number}")
         self._disk(f"disk {number}", far, None)
 
     def _ratio(self, number: int) -> None:
         after, near = self._tip()
         out, ratio = self.model.shaft(), float(self.rng.choice([0.5, 2.0, 3.5, -1.5]))
+        self.speeds[out] = self.speeds[near] / Fraction(str(ratio))
         self.elements.append(tn.Ratio(ratio=ratio, name=f"gears {number}", after=after))
         self.model.ties.append({near: 1.0, out: -ratio})
         self._disk(f"disk {number}", out, None)
@@ -137,6 +143,9 @@ class Drawn:
         ]
         name = f"set {number}"
         fixed = {"held": third} if held else {"output": driven}
+        weight = {"sun": Fraction(sun), "ring": Fraction(ring), "carrier": Fraction(-sun - ring)}
+        self.speeds[place[third]] = self.speeds[near] * (0 if held else 1)
+        self.speeds[place[driven]] = self.speeds[near] * (-weight[drives] / weight[driven] if held else 1)
         self.elements.append(
             tn.Planetary(
                 teeth_sun=sun,
@@ -156,6 +165,25 @@ class Drawn:
         else:
             self._disk(f"third {number}", place[third], f"{name}.{third}")
 
+    def _loop(self, number: int) -> None:
+        """A spring between any two disks that turn alike, on average."""
+        pairs = [
+            (a, b) for i, a in enumerate(self.tips) for b in self.tips[i + 1 :] if self._speed(a) == self._speed(b)
+        ]
+        if not pairs:
+            return self._spring(number)
+        (after, near), (to, far) = pairs[int(self.rng.integers(len(pairs)))]
+        k, c = self._size(1e3, 1e5), self._size(0.1, 5.0)
+        self.elements.append(tn.Shaft(stiffness=k, damping=c, name=f"shaft {number}", after=after, to=to))
+        self.model.springs.append((near, far, k, c))
+        self.springs.append(f"shaft {number}")
+        self.loops += 1
+        return None
+
+    def _speed(self, tip: tuple[str | None, int]) -> Fraction:
+        """Mean speed of a disk over the first one's."""
+        return self.speeds[tip[1]]
+
     def _held(self, number: int) -> None:
         self._set(number, held=True)
 
@@ -167,6 +195,7 @@ class Drawn:
         case, left, right = self.model.shaft(), self.model.shaft(), self.model.shaft()
         ratio, inertia, name = float(self.rng.choice([1.0, 3.0, -4.1])), self._size(0.01, 0.2), f"diff {number}"
         self.model.inertia[case] += inertia
+        self.speeds |= dict.fromkeys((left, right), self.speeds[near] / Fraction(str(ratio)))
         self.model.ties += [{near: 1.0, case: -ratio}, {case: 2.0, left: -1.0, right: -1.0}]
         self.elements.append(tn.Differential(ratio=ratio, inertia=inertia, name=name, after=after))
         self._disk(f"left {number}", left, None)

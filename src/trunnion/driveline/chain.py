@@ -113,6 +113,7 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
 def wrong_places(line: Chain) -> Iterator[InputError]:
     """Names twice, branches from nowhere, drives in mid-line."""
     wrong = [*_wrong_names(line.names), *problems_of(partial(_parent, line, i) for i in range(len(line.elements)))]
+    wrong += list(_wrong_loops(line))
     yield from wrong
     if not wrong:
         yield from _wrong_ends(line)
@@ -124,6 +125,14 @@ def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
             places = [str(i) for i, n in enumerate(names, start=1) if n == name]
             some = f"{', '.join(places[:3])} and {count - 3} more" if count > 4 else " and ".join(places)
             yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
+
+
+def _wrong_loops(line: Chain) -> Iterator[InputError]:
+    for i, (name, element) in enumerate(line.parts):
+        to = getattr(element, "to", None)
+        if to is not None and to not in line.names[:i]:
+            remedy = nearest(to, line.names[:i])
+            yield InputError("is not an earlier element", element=name, key="to", value=to, remedy=remedy)
 
 
 def _parent(line: Chain, place: int) -> tuple[int | None, int]:

@@ -145,6 +145,7 @@ FEATURES = (
             "Planetary.teeth_planet",
         ),
     ),
+    Feature("closed loop", _of_springs("to")),
     Feature(
         "shafts tied to two others",
         (

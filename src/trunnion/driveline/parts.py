@@ -53,9 +53,11 @@ class Jointed:
 
 @dataclass(frozen=True)
 class Sprung:
-    """A new shaft that the element's spring joins to coordinate ``to``."""
+    """A new shaft that the element's spring joins to coordinate ``to``; where it ``closes`` a loop, no new one, but the
+    shaft behind the element of that name."""
 
     to: int = 0
+    closes: str | None = None
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
 
 def on_rotations(topo: Topology, parts: Array) -> Array:
     """What resists the acceleration or the speed of stations (case, station) as the unknowns feel it (case, n, n)."""
-    if topo.sums:
+    if topo.graph:
         return np.asarray((topo.turning.T * parts[:, None, :]) @ topo.turning)
     found = np.zeros((len(parts), topo.size, topo.size))
     found[:, np.arange(topo.size), np.arange(topo.size)] = topo.on_unknowns(parts)

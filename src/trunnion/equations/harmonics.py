@@ -125,7 +125,7 @@ class DiskTorque(LineHarmonic):
         s = self.station
         sense = float(np.sign(float(topo.speed_ratio[s])))
         turned = np.exp(1j * self.own_order * sense * base.rotation[..., s])
-        if topo.sums:
+        if topo.graph:
             return np.asarray((sense * size[:, None] * turned)[..., None] * topo.turning[s])
         g = np.zeros((*turned.shape, topo.size), dtype=complex)
         g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
@@ -160,7 +160,7 @@ class MeshError(LineHarmonic):
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         e = self.mesh.compliance
         (far, near), station, torque = topo.ends[e], topo.compliances[e].near, spring(e) * size[:, None]
-        if topo.sums:
+        if topo.graph:
             return np.asarray(-torque[..., None] * topo.elongations[e])
         g = np.zeros((*torque.shape, topo.size), dtype=complex)
         if far >= 0:

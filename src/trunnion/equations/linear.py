@@ -60,7 +60,7 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
-    if topo.sums:
+    if topo.graph:
         return _straight_matrices(topo, coefficients, len(tau))
     motion = base_motion(topo, coefficients, tau)
     cases, times, n = (*motion.angle.shape[:2], topo.size)
@@ -134,8 +134,8 @@ def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: in
     varying = "bent joints" if any(law.uneven for law in coefficients.joints) else "meshes of varying stiffness"
     if varying == "bent joints" or coefficients.waves:
         raise InputError(
-            f"has {varying} beside a differential: what they do to its legs is not followed", element="driveline",
-            remedy="take them without, at angle 0, or both legs as one shaft behind a Ratio",
+            f"has {varying} beside a differential or a loop: what they do there is not followed", element="driveline",
+            remedy="take them without, at angle 0, or both legs or ways round as one shaft",
         )  # fmt: skip
     found = loaded_matrices(topo, coefficients, coefficients.speed)
     cases = len(coefficients.speed)

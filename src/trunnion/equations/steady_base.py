@@ -72,7 +72,7 @@ def require_balance(assembly: Assembly, table: Array) -> None:
 
 def _require_equal_legs(assembly: Assembly, table: Array) -> None:
     topo = assembly.topology
-    if not topo.sums:
+    if not topo.graph:
         return
     load = mean_loads(topo, assembly.packed.column, table)
     felt, legs = loads_on_unknowns(topo, load), topo.rigid[:, int(topo.free) :]
@@ -80,25 +80,25 @@ def _require_equal_legs(assembly: Assembly, table: Array) -> None:
     if left > BALANCED * np.abs(load).max(initial=0.0) * np.abs(legs).max(initial=0.0):
         raise InputError(
             "drives legs whose loads differ, so that they turn faster and faster against each other",
-            element=assembly.line.names[topo.stations[topo.sums[0]].element], key="load_torque",
+            element=assembly.line.names[topo.knot], key="load_torque",
             remedy="give both legs the same load behind their own ratios",
         )  # fmt: skip
 
 
 def require_tree(assembly: Assembly, what: str) -> None:
-    """Refuse a line with a differential, which ``what`` does not follow.
+    """Refuse a line with a differential or a loop, which ``what`` does not follow.
 
     Raises
     ------
     InputError : so.
     """
     topo = assembly.topology
-    if topo.sums:
+    if topo.graph:
+        problem, both = ("ties one shaft to two others", "legs") if topo.sums else ("closes a loop", "ways round")
         raise InputError(
-            f"ties one shaft to two others, which {what} not follow",
-            element=assembly.line.names[topo.stations[topo.sums[0]].element],
-            remedy="take both legs as one shaft behind a Ratio; natural frequencies and order response are available",
-        )
+            f"{problem}, which {what} not follow", element=assembly.line.names[topo.knot],
+            remedy=f"take both {both} as one shaft; natural frequencies and order response are available",
+        )  # fmt: skip
 
 
 def require_share(assembly: Assembly) -> None:

@@ -27,6 +27,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
+from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
@@ -71,11 +72,12 @@ class Station:
 
 @dataclass(frozen=True)
 class Compliance:
-    """Shaft(s) in series from a station to the first station of another group."""
+    """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop."""
 
     near: int
     far_group: int
     shafts: tuple[int, ...]
+    far: int | None = None
 
 
 @dataclass(frozen=True)
@@ -138,6 +140,17 @@ class Topology:
         return tuple(s for s, station in enumerate(self.stations) if station.link is Link.SUM)
 
     @cached_property
+    def graph(self) -> bool:
+        """Whether it is no tree: a shaft is tied to two others, or springs close a loop."""
+        return bool(self.sums) or any(c.far is not None for c in self.compliances)
+
+    @cached_property
+    def knot(self) -> int:
+        """The element that makes it a graph."""
+        closing = (c.shafts[-1] for c in self.compliances if c.far is not None)
+        return self.stations[self.sums[0]].element if self.sums else next(closing)
+
+    @cached_property
     def turning(self) -> Array:
         """Rotation of every station per rotation of every unknown (station, n), joints straight."""
         found = np.zeros((len(self.stations), self.size))
@@ -157,7 +170,7 @@ class Topology:
         """Rotations of the unknowns (n, k) that twist nothing, joints straight; first, where it can, that of the whole
         line by one at its input."""
         whole = self.mean_speeds[self.firsts][:, None] if self.free else np.zeros((self.size, 0))
-        if not self.sums:
+        if not self.graph:
             return _fixed(whole)
         _, size, basis = np.linalg.svd(np.vstack([self.elongations, whole.T]))
         still = basis[int(np.sum(size > RANK * size.max(initial=1.0))) :].T
@@ -244,8 +257,8 @@ class Topology:
     @cached_property
     def elongations(self) -> Array:
         """Twist of every compliance per rotation of every unknown (compliance, n), joints straight."""
-        if self.sums:
-            far_ends = [self.reference[c.far_group] for c in self.compliances]
+        if self.graph:
+            far_ends = [self.reference[c.far_group] if c.far is None else c.far for c in self.compliances]
             return _fixed(self.turning[far_ends] - self.turning[[c.near for c in self.compliances]])
         found = np.zeros((len(self.compliances), self.size))
         for e, (far, near) in enumerate(self.ends):
@@ -404,6 +417,10 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     if orders or even:
                         here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = Plane() if orders else (*plane, (i, 1.0))
+                case Sprung(to, closes) if closes is not None:
+                    here, plane = coordinates[line.index(closes)][-1]
+                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
+                    _require_closed(line, found, i, own[to], here)
                 case Sprung(to):
                     here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
                     found.compliances.append(Compliance(own[to], found.stations[here].group, (i,)))
@@ -418,6 +435,21 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
         found.behind.append(own[-1])
         coordinates.append([*zip(own, turned, strict=True)])
     return found
+
+
+def _require_closed(line: Driveline, found: LineStations, element: int, near: int, far: int) -> None:
+    """Refuse a loop round which the ratios do not come out: its springs would wind up with every turn."""
+    apart = found.speed_ratio[far] - found.speed_ratio[near]
+    if apart:
+        spring = line.elements[element]
+        assert isinstance(spring, Spring)
+        turns = [float(found.speed_ratio[s]) for s in (near, far)]
+        raise InputError(
+            f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
+            f"input, {100 * abs(turns[1] / turns[0] - 1):.3g} % apart, and wind it up by "
+            f"{360 * abs(float(apart)):.3g} deg with every turn", element=line.names[element], key="to",
+            value=spring.to, remedy="check the ratios on both ways round",
+        )  # fmt: skip
 
 
 def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
@@ -437,13 +469,13 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
         into = [c for c in compliances if c.far_group == g]
         out = [c for c in compliances if draft.stations[c.near].group == g]
         plain = sum(s.group == g for s in draft.stations) == 1
-        if not (plain and len(into) == 1 and len(out) == 1):
+        if not (plain and len(into) == 1 and len(out) == 1 and into[0].far is None):
             loose = draft.stations[draft.reference[g]].link is Link.LOOSE
             raise _bare_leg(line, draft, g) if loose else _bare(line, draft, g)
         _refuse_bare_law(line, (*into[0].shafts, *out[0].shafts))
         compliances.remove(into[0])
         place = compliances.index(out[0])
-        compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts)
+        compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts, out[0].far)
     compliances.sort(key=lambda c: c.far_group)
     coordinate, count = [], 0
     for g in range(len(draft.reference)):

@@ -100,6 +100,9 @@ def draw(line: Driveline) -> Figure:
     for place, parent in zip(places, line.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
+        if isinstance(place.element, Spring) and place.element.to is not None:
+            closed = places[line.index(place.element.to)]
+            _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
 

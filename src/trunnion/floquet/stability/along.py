@@ -101,7 +101,7 @@ def stability_along(
         return _about_own_motions(assembly, speed, motions)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
-    small = assembly.topology.size <= LARGEST_DENSE or bool(assembly.topology.sums)
+    small = assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph
     return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
 
 

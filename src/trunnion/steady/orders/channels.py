@@ -56,7 +56,7 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     places = channels_of(topo)
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
     at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
-    if topo.sums:
+    if topo.graph:
         seen[..., places.twist], seen[..., places.deviation] = x @ topo.elongations.T, x
         seen[..., places.joint_input.start :] = x @ topo.turning[at].T
         return seen

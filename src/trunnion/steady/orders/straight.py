@@ -36,7 +36,7 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
     starts free and is driven away the deviations are those beside what it turns as a whole.
     """
     mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
-    if topo.sums:
+    if topo.graph:
         return _coupled_response((mass, damping, stiffness, loss), frequency, right)
     parent = np.full(topo.size, -1, dtype=np.int64)
     for far, near in topo.ends:
