@@ -13,7 +13,7 @@ import trunnion
 
 PUBLIC = sorted(trunnion.__all__)
 FUNCTIONS = [name for name in PUBLIC if inspect.isfunction(getattr(trunnion, name))]
-DESCRIBED = ("trunnion.motion.linearity.", "trunnion.motion.perturbation.", "trunnion.systems.")
+DESCRIBED = ("trunnion.motion.", "trunnion.steady.", "trunnion.systems.")
 """Rooms in which every public function has both; one is added as its last function gets them."""
 IN_FULL = [name for name in FUNCTIONS if getattr(trunnion, name).__module__.startswith(DESCRIBED)]
 RUNNER = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE, verbose=False)

@@ -247,12 +247,20 @@ def certify_chaos(
 
     Parameters
     ----------
-    subject, periods, duration, speed, start, starts, transient, tolerance : as for ``lyapunov_spectrum``.
+    subject : a ``System``, or a ``Driveline`` at ``speed``.
+    periods : forcing periods to average exponents over; by default as ``lyapunov_spectrum`` does.
+    duration : instead of ``periods`` [s].
+    speed : input speed of a driveline [rad/s], by default its operating speed.
+    start : a state (n,), or several (starts, n); by default the system's own and neighbours of it.
+    starts : how many motions to follow.
     section : of the map of an autonomous system; by default the mean of the state that moves most.
     points : of the map.
-    sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the
-        forcing frequency or speed by ± 10 %; False for none.
+    transient : periods to let pass before averaging; by default 500.
+    sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the forcing
+        frequency or speed by ± 10 %; False for none.
+    tolerance : error allowed per step.
     within : seconds that it may take; what is known by then is judged, and the reasons say what ended it.
+    progress : called as progress(share done).
 
     Returns
     -------
@@ -261,6 +269,14 @@ def certify_chaos(
     Raises
     ------
     InputError : as ``lyapunov_spectrum`` and ``poincare_map``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.certify_chaos(duffing, 300, starts=1, points=300, sweep=False)
+    >>> str(found.verdict)
+    'regular'
     """
     system = as_system(subject, speed)
     request = _sweep_request(system, sweep)

@@ -237,24 +237,39 @@ def lyapunov_spectrum(
 
     Parameters
     ----------
-    subject : a ``System``, or a ``Driveline`` at ``speed`` [rad/s].
-    periods : forcing periods to average over; or ``duration`` [s]. By default as many as it takes to know the
-        largest exponent to ``precision`` (width of its interval over its size), from 4096 to 131072.
+    subject : a ``System``, or a ``Driveline`` at ``speed``.
+    periods : forcing periods to average over. By default as many as it takes to know the largest exponent to
+        ``precision``, from 4096 to 131072.
+    duration : instead of ``periods`` [s].
+    speed : input speed of a driveline [rad/s], by default its operating speed.
     start : a state (n,), or several (starts, n); by default the system's own and neighbours of it.
     starts : how many motions to follow, in parallel; they are compared.
     exponents : how many, the largest first; by default all.
     transient : periods to let pass before averaging; by default 500.
+    precision : width of the interval of the largest exponent over its size, to reach where neither ``periods`` nor
+        ``duration`` is given.
     tolerance : error allowed per step.
+    progress : called as progress(share done).
 
     Returns
     -------
-    LyapunovSpectrum: ``exponents`` and ``half_width`` [1/s], ``sum`` beside ``divergence``, what each start
-    gave, the history of convergence, and an ``outcome``.
+    LyapunovSpectrum: ``exponents`` and ``half_width`` [1/s], ``sum`` beside ``divergence``, what each start gave, the
+    history of convergence, and an ``outcome``.
 
     Raises
     ------
-    InputError : no start, a wrong count or duration, both ``periods`` and ``duration``, periods of an
-        autonomous system.
+    InputError : no start, a wrong count or duration, both ``periods`` and ``duration``, periods of an autonomous
+        system.
+
+    Examples
+    --------
+    A damped motion that settles: both exponents are half of minus the damping, 0.05.
+
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.lyapunov_spectrum(duffing, 200, starts=1)
+    >>> found.exponents.round(3), round(float(found.sum), 6)
+    (array([-0.025, -0.025]), -0.05)
     """
     system = as_system(subject, speed)
     count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)

@@ -286,27 +286,35 @@ def piecewise_orbit(
     periods: int = 1,
     settle: bool = True,
 ) -> PiecewiseOrbit | ExactOrbit:
-    """The periodic motion near ``start``, stable or not.
+    """The exact periodic motion near ``start``, stable or not, of a piecewise linear oscillator or a driveline.
 
     Parameters
     ----------
-    oscillator : or a driveline that ``exact_motion`` takes.
-    start : x and x′ near it at phase zero, by default rest at the static equilibrium; of a driveline twists and rates
-        (2m,) as in ``exact_motion``.
-    speed : of a driveline as in ``exact_motion``.
+    oscillator : a ``PiecewiseOscillator``, or a driveline that ``exact_motion`` takes.
+    start : x and x′ near it at phase zero, by default rest at the static equilibrium; of a driveline twists [rad] and
+        rates [rad/s] (2m,) as in ``exact_motion``.
+    speed : of a driveline [rad/s], as in ``exact_motion``.
     periods : forcing periods in one period of the motion.
     settle : where shooting fails, let 50 and then 500 periods pass and shoot again.
 
     Returns
     -------
-    An orbit whose ``outcome`` says whether it was found; otherwise its numbers are NaN. Of a driveline an
-    ``ExactOrbit``.
+    PiecewiseOrbit, or of a driveline ExactOrbit. Its ``outcome`` says whether a motion was found; otherwise its numbers
+    are NaN.
 
     Raises
     ------
     InputError : a start that is not two finite numbers; an undamped linear resonance; a driveline that has no exact
         motion, no excitation or none with a common period, or a clutch that carries more than it holds; a start beyond
         what friction holds.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> orbit = tn.piecewise_orbit(gap)
+    >>> str(orbit.verdict), round(orbit.peak_to_peak, 4), orbit.impacts
+    ('stable', 6.5652, 2.0)
     """
     periods = checked_periods(periods)
     if isinstance(oscillator, Driveline | Assembly):

@@ -229,36 +229,52 @@ def frequency_response(
     fit_range: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> FrequencyResponse:
-    """The frequency response between two frequencies by one method.
+    """The frequency response between two frequencies by one method, with folds, jumps and stability.
+
+    What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
+    ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
+    ``multiple_scales``.
 
     Parameters
     ----------
-    system : a piecewise oscillator; a ``SecondOrder`` system, by harmonic balance; a system forced at its parameter
-        ``frequency``; or a driveline over its input speed.
-    low, high : [rad/s].
+    system : a ``PiecewiseOscillator``; a ``SecondOrder`` system, by harmonic balance; a ``System`` forced at its
+        parameter ``frequency``; or a ``Driveline`` over its input speed.
+    low, high : ends of the range [rad/s].
     method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
         "shooting" (default of drivelines with backlash or stages, the only one of those that start free) for the
         others; "exact" also for a driveline that ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
     begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.
-    start : near the first motion: a state, or of harmonic balance a series; of sweeps the first start.
+    start : near the first motion: a state (n,), or of harmonic balance a series (n, 2H + 1); of sweeps the first start.
     periods : forcing periods in one of the motion.
     longest_step : of the continuation, over the range and over the size of the motion.
     most_points : of the continuation.
     tolerance : of the integration (shooting).
-    harmonics, tail : how many, or how small the last ones have to be (harmonic balance).
-    points : frequencies of a sweep; least, most : forcing periods at each.
-    epsilon, fit_range : of multiple scales and averaging.
+    harmonics : how many (harmonic balance).
+    tail : how small the last harmonics have to be, over the largest (harmonic balance).
+    points : frequencies of a sweep.
+    least, most : forcing periods of a sweep at each frequency.
+    epsilon : of multiple scales and averaging.
+    fit_range : of multiple scales and averaging, in units of x.
     progress : called with the share done (exact, shooting; the others do not call it).
 
-    What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
-    ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
-    ``multiple_scales``.
+    Returns
+    -------
+    FrequencyResponse: half peak-to-peak over ``frequency`` (points,) [rad/s], and the method's own result as
+    ``detail``.
 
     Raises
     ------
     InputError : an unknown method, an argument that the method does not take, or what it refuses itself.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> found = tn.frequency_response(gap, 0.85, 0.95)
+    >>> [round(frequency, 5) for frequency in found.folds()]
+    [0.92749]
     """
     known = methods_of(system)
     chosen = method or known[0]
@@ -298,7 +314,31 @@ def compare_responses(
     methods: Sequence[str] = METHODS,
     options: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> ResponseComparison:
-    """The same response by several methods; ``options``: arguments of ``frequency_response`` by method."""
+    """The same frequency response by several methods, side by side.
+
+    Parameters
+    ----------
+    system : a ``PiecewiseOscillator``.
+    low, high : ends of the range [rad/s].
+    methods : some of ``METHODS``; by default all.
+    options : further arguments of ``frequency_response``, by method.
+
+    Returns
+    -------
+    ResponseComparison: peaks, folds and the seconds that each method took, and a picture of all curves.
+
+    Raises
+    ------
+    InputError : what ``frequency_response`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> found = tn.compare_responses(gap, 0.85, 0.95, methods=["exact", "averaging"])
+    >>> list(found.responses)
+    ['exact', 'averaging']
+    """
     more = options or {}
     return ResponseComparison(
         {name: frequency_response(system, low, high, method=name, **more.get(name, {})) for name in methods}

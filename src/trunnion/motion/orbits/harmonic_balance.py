@@ -224,20 +224,36 @@ def harmonic_balance(
 
     Parameters
     ----------
-    line, parameter, low, high, begin, speed, periods, longest_step, most_points : as in ``periodic_branch``;
-        ``periods`` > 1 gives subharmonic motions, an isolated branch is followed from a ``start`` on it.
-    start : a state near the first motion at t = 0, or its series (n, 2H + 1).
+    line : a ``Driveline`` whose speed is prescribed (or its ``Assembly``), or a forced ``System``.
+    parameter : of a line its path ("speed", "HookeJoint 1.angle", a ``Parameter``); of a system its name.
+    low, high : ends of the range, in SI units.
+    begin : where the first motion is sought, by default at ``low``; from inside the range the branch is followed both
+        ways.
+    start : a state (n,) near the first motion at t = 0, or its series (n, 2H + 1); so isolated branches are reached.
+    speed : input speed [rad/s] of a line, where it is not the parameter.
+    periods : forcing periods in one period of the motion; more than 1 gives subharmonic motions.
     harmonics : number of harmonics H of the motion's own period; by default as many as bring the last ones below
         ``tail`` times the motion everywhere on the branch (at most 256; the outcome says if these are too few).
-    tail : 1e-6 by default, 1e-4 for systems with regimes.
+    tail : last harmonics over the largest; 1e-6 by default, 1e-4 for systems with regimes.
+    longest_step : largest step of the parameter, as a share of its range.
+    most_points : points after which the branch ends.
 
     Returns
     -------
-    A branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no points.
+    HarmonicBalance, a branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no
+    points.
 
     Raises
     ------
     InputError : an unknown parameter, a reversed range, an autonomous system, a number of harmonics below 1.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> branch = tn.harmonic_balance(duffing, "frequency", 0.8, 1.2, harmonics=5, longest_step=0.05)
+    >>> branch.rows.shape[1:], branch.outcome.kind
+    ((2, 11), 'followed')
     """
     if harmonics is not None and not 1 <= harmonics <= 10_000:
         raise InputError("must be a whole number of at least 1", key="harmonics", value=harmonics)

@@ -72,20 +72,39 @@ def balance_springs(
     longest_step: float = 0.01,
     most_points: int = 4000,
 ) -> SpringBalance:
-    """The frequency response by harmonic balance.
+    """The frequency response of masses on nonlinear springs by harmonic balance.
 
     Parameters
     ----------
-    low, high, begin : frequencies ω [rad/s]; followed both ways from ``begin``, by default ``low``.
+    system : a ``SecondOrder`` system of n unknowns.
+    low, high : ends of the range of forcing frequencies ω [rad/s].
     harmonics : H; by default doubled from 10 · ``periods`` until the last two are below ``tail`` of the largest on the
         whole branch, at most 160.
+    begin : frequency [rad/s] to begin at, by default ``low``; the branch is followed both ways from it.
     start : series (n, 2H₀ + 1) near the first motion, by default the linear response; so isolated and subharmonic
         branches are reached.
     periods : forcing periods in one of the motion.
+    tail : the last two harmonics over the largest.
+    longest_step : largest step of the frequency, as a share of its range.
+    most_points : points after which the branch ends.
+
+    Returns
+    -------
+    SpringBalance, a branch of the unknowns; its ``outcome`` says where it ended.
 
     Raises
     ------
     InputError : a range that does not rise, fewer harmonics than the force has, a start of another shape.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> one, force = np.eye(1), np.array([0.2])
+    >>> spring = tn.cubic_spring([1.0], cubic=0.1)
+    >>> system = tn.SecondOrder(one, 0.1 * one, one, (spring,), np.zeros(1), ((1, force, 0 * force),))
+    >>> branch = tn.balance_springs(system, 0.8, 1.3, harmonics=5)
+    >>> round(float(branch.peak_to_peak.max()), 3)
+    3.618
     """
     first = begun_within(low, high, begin)
     needed = periods * max(k for k, _, _ in system.harmonics)

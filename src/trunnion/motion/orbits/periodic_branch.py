@@ -162,25 +162,36 @@ def periodic_branch(
 
     Parameters
     ----------
+    line : a ``Driveline`` (or its ``Assembly``), or a forced ``System``.
     parameter : of a line its path ("speed", "HookeJoint 1.angle", a ``Parameter``); of a system its name.
     low, high : ends of the range, in SI units.
-    begin : where the first motion is sought, by default at ``low``; from inside the range the branch is followed
-        both ways.
-    start : a state near that motion.
+    begin : where the first motion is sought, by default at ``low``; from inside the range the branch is followed both
+        ways.
+    start : a state (n,) near that motion.
     speed : input speed [rad/s] of a line, where it is not the parameter.
     periods : forcing periods in one period of the motion.
-    longest_step : largest step of the parameter, as a share of its range; two special points closer together than
-        a step may be missed.
+    tolerance : error allowed per step of the integration.
+    longest_step : largest step of the parameter, as a share of its range; two special points closer together than a
+        step may be missed.
+    most_points : points after which the branch ends.
     progress : called as progress(share done).
 
     Returns
     -------
-    A branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no points.
+    PeriodicBranch; its ``outcome`` says where it ended. If no motion was found at ``begin`` it has no points.
 
     Raises
     ------
     InputError : an unknown parameter, a reversed range, an autonomous system; a line that starts free whose torques do
         not balance, or for motions of several periods.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> branch = tn.periodic_branch(duffing, "frequency", 0.8, 1.2, longest_step=0.05)
+    >>> bool(branch.stable.all()), branch.curves, branch.outcome.kind
+    (True, ('x', 'v'), 'followed')
     """
     # The parameter's scale makes its largest step the one asked for, whatever a state's may be.
     over = system_over(line, parameter, low, high, begin, speed, longest_step / STEP, free=True)
@@ -259,25 +270,35 @@ def piecewise_branch(
 
     Parameters
     ----------
-    oscillator : or a driveline that ``exact_motion`` takes, over its speed, or over the common frequency of its
-        excitations where those are in time.
-    begin : frequency to begin at, ``low`` by default; the branch is followed both ways from it.
+    oscillator : a ``PiecewiseOscillator``; or a driveline that ``exact_motion`` takes, over its speed, or over the
+        common frequency of its excitations where those are in time.
+    low, high : ends of the range [rad/s].
+    begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.
     start : x and x′ at phase zero near the first motion; so isolated branches are reached. Of a driveline as in
         ``exact_motion``.
-    speed : of a driveline excited in time, where a viscous load depends on it.
+    speed : of a driveline excited in time [rad/s], where a viscous load depends on it.
     periods : forcing periods of the motion; 2 follows a motion of twice the period.
     longest_step : of the continuation, over the frequency range and over the size of the gap or of the motion.
+    most_points : points after which the branch ends.
     progress : called as progress(share done).
 
     Returns
     -------
-    PeriodicBranch with the curve "x", of a driveline the torques of its springs; where nothing was found at
+    PeriodicBranch with the curve "x", of a driveline the torques [N m] of its springs; where nothing was found at
     ``begin`` it has no points and says so.
 
     Raises
     ------
-    InputError : a range that does not rise, a frequency outside it, an undamped linear resonance; a driveline
-        without exact motion, or excited both by its rotation and in time.
+    InputError : a range that does not rise, a frequency outside it, an undamped linear resonance; a driveline without
+        exact motion, or excited both by its rotation and in time.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> branch = tn.piecewise_branch(gap, 0.85, 0.95)
+    >>> [(point.kind, round(point.parameter, 5)) for point in branch.special]
+    [('fold', 0.92749)]
     """
     first = begun_within(low, high, begin)
     if isinstance(oscillator, Driveline | Assembly):

@@ -275,23 +275,34 @@ def periodic_response(
 
     Parameters
     ----------
-    line : a driveline, or a ``System``.
+    line : a ``Driveline`` (or its ``Assembly``), or a ``System``.
     speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, its mean speed,
         kept by the disks with a drive_share; where none has one, a guess of the speed that its torques lead to.
-    start : a state near the motion (2n,); by default that of rigid shafts.
+    start : a state near the motion (2n,): deviations from uniform rotation [rad], then their rates [rad/s]; by default
+        that of rigid shafts.
     period : of an autonomous ``System``, a guess [s].
     periods : of the excitation in one period of the motion (a subharmonic of that order).
+    tolerance : error allowed per step of the integration.
     settle : integrate some hundred periods where shooting fails from ``start``.
     compare : also linearise, and say how far off that is.
 
     Returns
     -------
-    A result whose ``outcome`` says whether a periodic motion was found.
+    PeriodicResponse, of a ``System`` PeriodicOrbit; its ``outcome`` says whether a periodic motion was found.
 
     Raises
     ------
     InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time; a
         clutch that carries more than its friction holds and no spring takes; a start beyond what its friction holds.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> found = tn.periodic_response(line, 20.0)
+    >>> str(found.verdict), found.torque_peak_to_peak.round(2)
+    ('stable', array([35.06]))
     """
     if isinstance(line, System):
         if speed is not None:

@@ -285,25 +285,37 @@ def sweep(
 ) -> OscillatorSweep | LineSweep:
     """Steady motions over ``frequencies`` in the order given: rising for an up-sweep, falling for a down-sweep.
 
+    Each step begins with the motion in which the last one ended, as on a test bench, and so stays on a branch until it
+    jumps.
+
     Parameters
     ----------
-    oscillator : or a driveline that ``exact_motion`` takes, which is swept over its speed, or over the common
-        frequency of its excitations where those are in time.
+    oscillator : a ``PiecewiseOscillator``, or a driveline that ``exact_motion`` takes, which is swept over its speed,
+        or over the common frequency of its excitations where those are in time.
     frequencies : (points,) [rad/s]; of a driveline speeds, where its excitation turns with it.
     start : state at the first: x and x′, by default rest at the static equilibrium; of a driveline as in
         ``exact_motion``.
-    speed : of a driveline excited in time, where a viscous load depends on it.
-    least, most : periods of every step.
+    speed : of a driveline excited in time [rad/s], where a viscous load depends on it.
+    least : periods of every step, at least.
+    most : periods of every step, at most.
     same : relative change of the state per period below which, three times running, a motion counts as settled.
 
     Returns
     -------
-    Sweep of an oscillator's x, or of the torques of a driveline's springs.
+    OscillatorSweep of an oscillator's x, or LineSweep of the torques [N m] of a driveline's springs.
 
     Raises
     ------
     InputError : frequencies that are not positive, an undamped linear resonance among them; a driveline without exact
         motion, excited both by its rotation and in time, or with a clutch that carries more than it holds.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> up = tn.sweep(gap, [0.6, 0.7, 0.8])
+    >>> up.peak_to_peak.round(3), up.contact
+    (array([5.291, 6.565, 9.123]), ('two-sided', 'two-sided', 'two-sided'))
     """
     omegas = np.ascontiguousarray(np.atleast_1d(np.asarray(frequencies, dtype=float)))
     if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
@@ -369,9 +381,33 @@ def rattle_index(
     most: int = MOST,
     same: float = SAME,
 ) -> xr.Dataset:
-    """Impulse and energy of the impacts per period over ``frequencies`` [rad/s], swept up and down as ``sweep`` does.
+    """Impulse and energy of the impacts in a forcing period over frequency, swept up and down as ``sweep`` does.
 
-    Dataset with impact_energy [m v²] and impact_impulse [m v], dimensions (direction, frequency); 0 without impacts.
+    Parameters
+    ----------
+    oscillator : a ``PiecewiseOscillator`` of inertia m.
+    frequencies : (points,) [rad/s]; sorted here.
+    start : x and x′ at the first of each sweep, by default rest at the static equilibrium.
+    least : periods of every step, at least.
+    most : periods of every step, at most.
+    same : relative change of the state per period below which, three times running, a motion counts as settled.
+
+    Returns
+    -------
+    xarray.Dataset with impact_energy [m v²], impact_impulse [m v] and the number of impacts, dimensions (direction,
+    frequency); 0 without impacts.
+
+    Raises
+    ------
+    InputError : what ``sweep`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> index = tn.rattle_index(gap, [0.6, 0.7])
+    >>> index.impact_energy.sel(direction="up").values.round(3)
+    array([1.768, 4.01 ])
     """
     import xarray as xr
 

@@ -248,26 +248,41 @@ def run_up(
 ) -> RunUp:
     """Run a line from speed ``first`` to ``last`` at an acceleration that sets in smoothly and then stays.
 
-    Parameters
-    ----------
-    first, last : input speeds [rad/s], numbers or texts with a unit; a lower ``last`` runs down.
-    acceleration : its magnitude [rad/s²].
-    ramp : time [s] over which the acceleration sets in; by default three periods of the slowest mode, at most until
-        half of the speed range is passed; 0 for at once.
-    steady : number of speeds, at least, at which the steady periodic motion is computed for comparison; 0 leaves
-        it out.
-    within : seconds that it may take; the run is given as far as it came by then, and ``ended`` says what is left out.
-
     The run begins on the periodic motion at ``first`` where there is one, otherwise without twist (a line that starts
     free: twisted by its mean torques). A line that starts free and is behind at the end is followed further, its drives
     holding their last torque, until it reaches the last speed or hangs: ``outcome.kind`` is "reached", "captured",
     "short of torque", "stalled" or "undecided". Where it was behind on the way, another run at another tolerance must
     end alike.
 
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+    first, last : input speeds [rad/s], numbers or texts with a unit; a lower ``last`` runs down.
+    acceleration : its magnitude [rad/s²].
+    ramp : time [s] over which the acceleration sets in; by default three periods of the slowest mode, at most until
+        half of the speed range is passed; 0 for at once.
+    steady : number of speeds, at least, at which the steady periodic motion is computed for comparison; 0 leaves it
+        out.
+    tolerance : error allowed per step.
+    within : seconds that it may take; the run is given as far as it came by then, and ``ended`` says what is left out.
+
+    Returns
+    -------
+    RunUp: torque of every shaft [N m] over time and speed, its largest value, and the steady response beside it.
+
     Raises
     ------
     InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a line that
         starts free without a drive_share; more than 20 000 turns.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> run = tn.run_up(line, 15.0, 35.0, acceleration=20.0, steady=0)
+    >>> run.outcome.kind, round(float(max(abs(run.upper).max(), abs(run.lower).max())), 1)
+    ('reached', 76.8)
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
     check(first, last, acceleration)

@@ -168,14 +168,15 @@ def exact_motion(
 
     Parameters
     ----------
+    line : a ``Driveline`` or its ``Assembly``.
     duration : [s]; by default up to the last of ``times``.
     speed : mean input speed [rad/s], by default that of the line's operation; only where meshes, orders or viscous
         loads depend on it.
     start : twists [rad] of all springs, then their rates [rad/s], (2m,); by default the line turning uniformly, every
-        disk where rigid shafts would hold it. Sliders start as if last without twist, or as the deflections behind
-        the twists say.
+        disk where rigid shafts would hold it. Sliders start as if last without twist, or as the deflections behind the
+        twists say.
     start_time : time of the start [s].
-    times : rising times to be reported; by default 1025 over the whole run.
+    times : (points,) [s], rising, to be reported; by default 1025 over the whole run.
     most_events : changes of stage after which the run ends.
 
     Returns
@@ -186,6 +187,17 @@ def exact_motion(
     ------
     InputError : a line that has no exact motion, or starts free and leaves the speed that its excitation turns with; no
         duration, a start of the wrong size, times outside the run.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> motor = tn.Disk(inertia=0.05, excitation=[{"order": 2, "amplitude": 20.0}])
+    >>> play = tn.PiecewiseShaft(breakpoints=[-0.02, 0.02], stiffnesses=[2e4, 0.0, 2e4], damping=1.0)
+    >>> drive = [tn.ConstantSpeed(), tn.Shaft(stiffness=3e4, damping=1.5), motor]
+    >>> line = tn.Driveline([*drive, play, tn.Disk(inertia=0.2, load_torque=4.0)])
+    >>> run = tn.exact_motion(line, 0.5, speed=60.0)
+    >>> run.twist.shape, round(float(run.torque_high[1]), 3)
+    ((1025, 2), 1.086)
     """
     prepared = staged_line(line, speed)
     refuse_lost_speed(prepared)

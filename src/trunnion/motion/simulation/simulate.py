@@ -80,33 +80,46 @@ def simulate(
     longest_step: float = np.inf,
     dense: bool = True,
 ) -> SystemSimulation | LineSimulation:
-    """Integrate a line, or any system, in time.
+    """Integrate a driveline, or any system, in time.
 
     Parameters
     ----------
-    duration : [s]; or ``turns`` of a driveline's input, its own where the line starts free; or ``periods`` of a
-    system's forcing; or up to the last of
-        ``times``.
-    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``. A line that
-        starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and what
-        accelerates its inertia along a profile; ``input_speed`` and ``turns`` tell how it really turns.
+    system : a ``Driveline`` (or its ``Assembly``), or a ``System``.
+    duration : length of the motion [s]; or one of ``turns``, ``periods`` and ``times`` instead.
+    turns : of a driveline's input, its own where the line starts free; the motion ends when they are made.
+    speed : input speed of a driveline [rad/s], by default the file's operating speed; or a ``SpeedProfile``. A line
+        that starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and
+        what accelerates its inertia along a profile; ``input_speed`` and ``turns`` of the result tell how it really
+        turns.
+    periods : of a system's forcing.
     start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
         default the line without twist; of a system (n,), by default its own.
     start_time : of a system [s]; the phase of its forcing.
-    times : at which states are wanted (rising) [s]; by default every step of a system, and of a driveline evenly.
-    events : zeros to locate; some may stop the run.
+    times : (points,) [s], rising, at which states are wanted, the last of which may end the motion; by default every
+        step of a system, and of a driveline evenly.
+    events : zeros to locate (``Event``); some may stop the run.
     tolerance : error allowed per step, relative to the scale of a state + |x|.
-    most_steps, longest_step : of the integration; ``longest_step`` [s] of a system.
+    most_steps : steps after which the run ends.
+    longest_step : of a system [s].
     dense : keep what ``at`` and ``times`` need, 8n numbers a step.
 
     Returns
     -------
-    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+    LineSimulation or SystemSimulation; its ``outcome`` says how it ended, and a failure keeps what was computed.
 
     Raises
     ------
     InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
         excitation by the speed on a line that starts free and leaves the speed it begins with.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> run = tn.simulate(line, speed=20.0, turns=30)
+    >>> run.torque.shape[1], round(float(run.torque[-200:].max()), 2)
+    (1, 17.55)
     """
     if isinstance(system, System):
         _refuse("belongs to a driveline", "leave it out", turns=turns, speed=speed)
