@@ -130,7 +130,7 @@ def test_a_loop_that_does_not_close_is_refused() -> None:
     said = r"^second\.to = 'load': closes a loop whose ratios do not: .* 0\.4 % apart.* 1\.43 deg with every turn"
     with pytest.raises(tn.InputError, match=said):
         tn.natural_frequencies(parallel(ratio=1.004))
-    with pytest.raises(tn.InputError, match="second.to = 'laod': is not an earlier element; did you mean load"):
+    with pytest.raises(tn.InputError, match="second.to = 'laod': is not an earlier element; did you mean .load."):
         parallel().replace("second", to="laod")
     with pytest.raises(tn.InputError, match="bent joints beside a differential or a loop"):
         tn.order_response(parallel(joint=0.2), [50.0])
