@@ -188,10 +188,9 @@ CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
 def looped(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
     """The same with a second shaft beside the rear one, from the hub to the load."""
     line = unbent(line) if straight else line
-    place, last = line.index("load"), line.elements[-1].name
+    place = line.index("load") + 1
     second = tn.Shaft(stiffness=4e3, damping=3, name="second", after="hub", to="load")
-    onward = [e.but(after="load") if i == 0 else e for i, e in enumerate(line.elements[place + 1 :])]
-    return line.but(elements=[*line.elements[: place + 1], second, *onward]) if last else line
+    return line.but(elements=[*line.elements[:place], second, *line.elements[place:]])
 
 
 def excited(change: Change) -> Change:
