@@ -92,7 +92,7 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales as mult
 from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
-from trunnion.plots.layout import sketch as sketch
+from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction

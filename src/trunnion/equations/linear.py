@@ -21,6 +21,7 @@ would.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -62,12 +63,39 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
     if topo.graph:
         return _straight_matrices(topo, coefficients, len(tau))
-    motion = base_motion(topo, coefficients, tau)
-    cases, times, n = (*motion.angle.shape[:2], topo.size)
-    speed = coefficients.speed[:, None]
+    cases, times, n = len(coefficients.speed), len(tau), topo.size
     # Each entry lies in one piece over time, which is how it is filled.
-    mass, damping, stiffness = (np.zeros((n, n, cases, times)).transpose(2, 3, 0, 1) for _ in range(3))
+    mass, damping, stiffness = (np.zeros((n, n, cases, times)) for _ in range(3))
     forcing = np.zeros((cases, times, n))
+    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing)
+    mass, damping, stiffness = (part.transpose(2, 3, 0, 1) for part in (mass, damping, stiffness))
+    return LineMatrices(mass, damping, stiffness, forcing, ratio, wave)
+
+
+class Entries(Protocol):
+    """Entries of a matrix by row and column, each (case, time), that numbers are added to in place."""
+
+    def __getitem__(self, place: tuple[int, int]) -> Array: ...
+
+    def __setitem__(self, place: tuple[int, int], values: Array) -> None: ...
+
+
+def put_entries(
+    topo: Topology,
+    coefficients: LineCoefficients,
+    tau: Array,
+    mass: Entries,
+    damping: Entries,
+    stiffness: Entries,
+    forcing: Array,
+) -> tuple[Array, Array]:
+    """Add the equations at input angles ``tau`` [rad] to matrices and ``forcing`` (case, time, n), which are zero.
+
+    Returns ratio and wave as of ``LineMatrices``.
+    """
+    motion = base_motion(topo, coefficients, tau)
+    cases, times = motion.angle.shape[:2]
+    speed = coefficients.speed[:, None]
     ratio_seen, wave = np.zeros((cases, times, len(topo.compliances))), stiffness_waves(topo, coefficients, tau)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
     loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
@@ -80,7 +108,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         w, w1 = motion.speed[..., ref] * speed, motion.acceleration[..., ref] * speed**2
         inertia = coefficients.inertia[:, s, None]
         if s == ref and not loaded[s]:  # r = 1
-            mass[..., i, i] += inertia
+            mass[i, i] += inertia
             forcing[..., i] -= inertia * w1
             continue
         load = coefficients.load[:, s, None]
@@ -92,9 +120,9 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         load = load * sense + (viscous + quadratic * np.abs(v)) * v
         carried = load - coefficients.not_carried[:, s, None] * sense
         j, j1, j2 = inertia * r**2, 2 * inertia * r * r1, 2 * inertia * (r1**2 + r * r2)
-        mass[..., i, i] += j
-        damping[..., i, i] += j1 * w + r**2 * growth
-        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
+        mass[i, i] += j
+        damping[i, i] += j1 * w + r**2 * growth
+        stiffness[i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
     for e, (compliance, (far, near)) in enumerate(zip(topo.compliances, topo.ends, strict=True)):
         ref = topo.reference[topo.group_of(compliance.near)]
@@ -109,19 +137,19 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
             r_dot = r1 * motion.speed[..., ref] * speed
         ratio_seen[..., e] = r
         if far >= 0:
-            damping[..., far, far] += c
-            stiffness[..., far, far] += k
+            damping[far, far] += c
+            stiffness[far, far] += k
             forcing[..., far] -= torque
         if near >= 0:
-            damping[..., near, near] += c * r**2
-            stiffness[..., near, near] += k * r**2 + c * r * r_dot - r1 * torque
+            damping[near, near] += c * r**2
+            stiffness[near, near] += k * r**2 + c * r * r_dot - r1 * torque
             forcing[..., near] += r * torque
         if far >= 0 and near >= 0:
-            damping[..., far, near] -= c * r
-            damping[..., near, far] -= c * r
-            stiffness[..., far, near] -= k * r + c * r_dot
-            stiffness[..., near, far] -= k * r
-    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, wave)
+            damping[far, near] -= c * r
+            damping[near, far] -= c * r
+            stiffness[far, near] -= k * r + c * r_dot
+            stiffness[near, far] -= k * r
+    return ratio_seen, wave
 
 
 def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: int) -> LineMatrices:

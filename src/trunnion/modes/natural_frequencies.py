@@ -138,8 +138,8 @@ class NaturalFrequencies(Result):
         return f"decays at {slow} and {fast} 1/s"
 
     def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
-        """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
-        return drawing(self, "plot")(self, unit=unit, drive=drive)
+        """Mode shapes side by side; see ``pictures.modes.mode_shapes``."""
+        return drawing(self, "plot")(self, unit=unit, drive=drive).figure
 
     def _lines(self) -> Iterator[str]:
         many = len(self.undamped_frequency)

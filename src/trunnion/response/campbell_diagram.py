@@ -188,7 +188,7 @@ class CampbellDiagram(Result):
         frequency_unit: str = "Hz",
         operating: Operation | None = None,
     ) -> Axes:
-        """Modes with their margin over speed, excitation lines, crossings; see ``plots.campbell_diagram.draw``."""
+        """Modes with their margin over speed, excitation lines, crossings; see ``pictures.campbell_diagram``."""
         return drawing(self, "plot")(self, axes, unit=unit, frequency_unit=frequency_unit, operating=operating)
 
 

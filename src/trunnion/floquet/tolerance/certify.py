@@ -83,7 +83,7 @@ class StabilityCertificate(Result):
         return low.min(axis=0), high.max(axis=0)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """What is proved and what is left open; see ``plots.certificate.draw``."""
+        """What is proved and what is left open; see ``pictures.design.certificate``."""
         return drawing(self, "plot")(self, axes)
 
     def _lines(self) -> Iterator[str]:

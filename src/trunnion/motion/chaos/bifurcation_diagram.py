@@ -60,7 +60,7 @@ class BifurcationDiagram(Result):
         yield from about(self.system, self.outcome, **remarks)
 
     def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
-        """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
+        """One state over the parameter; see ``pictures.chaos.bifurcations``."""
         return drawing(self, "plot")(self, axes, state=state)
 
     def __str__(self) -> str:

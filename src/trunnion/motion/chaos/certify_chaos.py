@@ -211,7 +211,7 @@ class ChaosCertificate(Result):
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
-        return drawing(self, "plot")(self)
+        return drawing(self, "plot")(self).figure
 
     def __str__(self) -> str:
         what = {"": ""}.get(self.kind, f", {self.kind}")

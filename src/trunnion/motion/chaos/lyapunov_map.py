@@ -114,7 +114,7 @@ class LyapunovMap(Result):
         yield from about(self.system, self.outcome, **effort)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
+        """The map in colour, white at 0; see ``pictures.chaos.lyapunov_map``."""
         return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:

@@ -93,7 +93,7 @@ class PoincareMap(Result):
         )  # fmt: skip
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
-        """One state over another; see ``trunnion.plots.chaos.draw_map``."""
+        """One state over another; see ``pictures.chaos.poincare_map``."""
         return drawing(self, "plot")(self, axes, x=x, y=y, points=points)
 
     def __str__(self) -> str:

@@ -208,7 +208,7 @@ class LinearityCheck(Result):
         yield from ending(self.nonlinear.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str | None = None, unit: str | None = None) -> Axes:
-        """Both amplitudes of every order of one spring; see ``trunnion.plots.linearity``."""
+        """Both amplitudes of every order of one spring; see ``pictures.motion.linearity``."""
         return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:

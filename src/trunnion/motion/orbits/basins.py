@@ -49,7 +49,7 @@ class Basins(Result):
         yield over("attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str))
 
     def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
-        """Map of the starts; see ``trunnion.plots.frequency_response``."""
+        """Map of the starts; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length)
 
     def __str__(self) -> str:

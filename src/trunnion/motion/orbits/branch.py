@@ -164,7 +164,7 @@ class PeriodicBranch(Result):
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
-        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
+        """Response curve with its jumps; see ``pictures.frequency_response.branch``."""
         return drawing(self, "plot")(self, axes, curve=curve, unit=unit, jumps=jumps)
 
     @property

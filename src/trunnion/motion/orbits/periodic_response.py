@@ -229,11 +229,11 @@ class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
         yield remark("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
-        """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
+        """Torque of every shaft over one period; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, unit=unit)
 
     def plot_orders(self, axes: Axes | None = None, *, highest: float = 12.0) -> Axes:
-        """Torque amplitude of every order; see ``trunnion.plots.motion``."""
+        """Torque amplitude of every order; see ``pictures.motion``."""
         return drawing(self, "plot_orders")(self, axes, highest=highest)
 
     def describe(self, unit: str | None = None) -> str:

@@ -130,7 +130,7 @@ class OscillatorSweep(Displacement[Array], Sweep, Described):
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
-        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        """Half peak-to-peak over frequency; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length, unit=unit)
 
     @property
@@ -210,7 +210,7 @@ class LineSweep(TorqueRange, Sweep, Described):
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
-        """Torque of one spring over speed; see ``trunnion.plots.frequency_response.draw_line_sweeps``."""
+        """Torque of one spring over speed; see ``pictures.frequency_response.line_sweep``."""
         return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
 
     @property

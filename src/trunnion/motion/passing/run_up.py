@@ -189,7 +189,7 @@ class RunUp(Described):
         yield from remarks(ended=self.ended)
 
     def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
-        """Envelope against the steady response; see ``trunnion.plots.run_up``."""
+        """Envelope against the steady response; see ``pictures.motion.run_up``."""
         return drawing(self, "plot")(self, axes, shaft=shaft, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:

@@ -50,7 +50,7 @@ class ResponseCurves:
         jumps: bool = True,
         top: float | None = None,
     ) -> Axes:
-        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
+        """Half peak-to-peak over frequency; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 

@@ -169,11 +169,11 @@ class SystemSimulation(Simulation, Result):
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
-        """Time histories; see ``trunnion.plots.motion``."""
+        """Time histories; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, states=states)
 
     def plot_portrait(self, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0) -> Axes:
-        """One state over another; see ``trunnion.plots.motion``."""
+        """One state over another; see ``pictures.motion``."""
         return drawing(self, "plot_portrait")(self, axes, x=x, y=y, from_time=from_time)
 
     def __str__(self) -> str:
@@ -362,13 +362,13 @@ class LineSimulation(Simulation, OfShafts, Described):
         yield from remarks(tolerance=self.tolerance, steps=self.steps)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
-        """Torques over time; see ``trunnion.plots.motion``."""
+        """Torques over time; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, shafts=shafts, unit=unit)
 
     def plot_order_map(
         self, axes: Axes | None = None, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = ""
     ) -> Axes:
-        """Torque spectrum over time or speed; see ``trunnion.plots.order_map``."""
+        """Torque spectrum over time or speed; see ``pictures.motion.map_of_orders``."""
         return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
 
     def describe(self, unit: str | None = None) -> str:

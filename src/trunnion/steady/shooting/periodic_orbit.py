@@ -175,7 +175,7 @@ class PeriodicOrbit(IntegratedOrbit, Result):
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
-        """Portrait of the orbit; see ``trunnion.plots.motion``."""
+        """Portrait of the orbit; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, x=x, y=y)
 
     @property
