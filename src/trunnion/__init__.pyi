@@ -11,6 +11,7 @@ from trunnion.design.tolerance.study import tolerance_study as tolerance_study
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
+from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
@@ -22,6 +23,7 @@ from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
+from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint

@@ -10,6 +10,7 @@ from trunnion import assess
 from trunnion.driveline import (
     ConstantSpeed,
     Coupling,
+    Differential,
     Disk,
     Driveline,
     HookeJoint,
@@ -17,6 +18,7 @@ from trunnion.driveline import (
     Limit,
     LoadCase,
     Operation,
+    Planetary,
     Ratio,
     Schedule,
     Shaft,
@@ -30,6 +32,10 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def planetary(**changes: object) -> Planetary:
+    return Planetary(**{"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"} | changes)
 
 
 def line(*elements, **rest):
@@ -574,6 +580,24 @@ PYTHON = [
     ),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    (lambda: planetary(held="planets"), "Planetary.held = 'planets': is no shaft", '"sun", "carrier", "ring"'),
+    (lambda: planetary(held=["sun", "ring"]), "Planetary.held = ['sun', 'ring']: holds two shafts", 'held = "sun"'),
+    (lambda: planetary(held="sun"), "Planetary.held = 'sun': is the input", "hold carrier or ring"),
+    (lambda: planetary(held=None), "Planetary.held: is missing", 'hold carrier or ring, or write output = "carrier"'),
+    (lambda: planetary(output="ring"), "Planetary.output = 'ring': is held", "leave one of the two out"),
+    (lambda: planetary(held=None, output="sun"), "Planetary.output = 'sun': is the input", "write carrier or ring"),
+    (
+        lambda: planetary(held=None, output="carrier", free_speed=-30 / 72),
+        "Planetary.free_speed = -0.416667: lets the output stand still",
+        "hold the carrier",
+    ),
+    (lambda: Differential(ratio=0), "Differential.ratio = 0: must not be zero", "over that of the case"),
+    (lambda: Differential(teeth_in=10), "Differential.teeth_out: is missing beside teeth_in", "needed are teeth_in"),
+    (lambda: Differential(ratio=4.1, teeth_in=10), "Differential.teeth_in = 10: stands beside ratio", "leave out"),
+    (lambda: Differential(inertia=-1), "Differential.inertia = -1: must be positive", "write for example"),
+    (lambda: planetary(teeth_ring=30), "Planetary.teeth_ring = 30: leaves no planets", "more teeth than the sun"),
+    (lambda: planetary(planet_mass=1.0), "Planetary.centre_distance: is missing", "or neither"),
+    (lambda: planetary(planet_inertia=0.0), "Planetary.planet_inertia = 0: must be positive", "write for example"),
     # the line
     (lambda: Driveline([]), "driveline: has no elements", "tn.Driveline(["),
     (

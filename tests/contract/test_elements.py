@@ -13,6 +13,7 @@ from trunnion.driveline import (
     Clutch,
     ConstantSpeed,
     Coupling,
+    Differential,
     Disk,
     Driveline,
     GearPair,
@@ -21,6 +22,7 @@ from trunnion.driveline import (
     LoadCase,
     Operation,
     PiecewiseShaft,
+    Planetary,
     Ratio,
     RzeppaJoint,
     Shaft,
@@ -49,6 +51,8 @@ PARTS = [
     Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="5 kN*m", heat_rating="350 W"),
     Disk(mass="2.2 t", radius="0.35 m"),
     Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
+    Planetary(teeth_sun=30, teeth_ring=72, input="sun", held="ring", planet_mass="0.8 kg", centre_distance="80 mm"),
+    Differential(teeth_in=10, teeth_out=41, inertia="0.05 kg*m^2"),
 ]
 WITH_STAGES = [
     RzeppaJoint(
@@ -255,6 +259,9 @@ def test_a_line_introduces_itself():
         "  Coupling 1       stiffness 35 kN*m/rad, relative damping 1.13, nominal torque 5000 N*m, heat rating 350 W",
         "  Disk 1           269.5 kg*m^2, mass 2200 kg, radius 350 mm",
         "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg*m^2, material steel",
+        "  Planetary 1      teeth sun 30, teeth ring 72, input sun, held ring, planet mass 0.8 kg, "
+        "centre distance 80 mm",
+        "  Differential 1   teeth in 10, teeth out 41, inertia 0.05 kg*m^2",
     ]
 
 

@@ -5,6 +5,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
@@ -13,6 +14,7 @@ from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionE
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -25,6 +27,7 @@ from trunnion.driveline.tolerances import Tolerance
 __all__ = [
     "STARTERS",
     "ConstantSpeed",
+    "Differential",
     "Disk",
     "DoubleCardanJoint",
     "Driveline",
@@ -38,6 +41,7 @@ __all__ = [
     "Operation",
     "Coupling",
     "PiecewiseShaft",
+    "Planetary",
     "Ratio",
     "Schedule",
     "Shaft",

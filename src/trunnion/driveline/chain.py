@@ -9,7 +9,8 @@ from typing import Any
 
 from pydantic import SerializeAsAny
 
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Element
+from trunnion.driveline.parts import Jointed, Sprung
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.record import Name, Record
 from trunnion.driveline.refusals import nearest
@@ -48,7 +49,12 @@ class Chain(Record):
     @cached_property
     def parents(self) -> tuple[int | None, ...]:
         """Index of the element each one follows: the one named in ``after``, or the previous; first None."""
-        return tuple(_parent(self, i) for i in range(len(self.elements)))
+        return tuple(_parent(self, i)[0] for i in range(len(self.elements)))
+
+    @cached_property
+    def hangs_on(self) -> tuple[int, ...]:
+        """Coordinate among the ``parts`` of the element each one follows; −1 is the last."""
+        return tuple(_parent(self, i)[1] for i in range(len(self.elements)))
 
     def index(self, name: str) -> int:
         """Place of the element called `name`; InputError with the nearest name where there is none."""
@@ -110,6 +116,7 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
 def wrong_places(line: Chain) -> Iterator[InputError]:
     """Names twice, branches from nowhere, drives in mid-line."""
     wrong = [*_wrong_names(line.names), *problems_of(partial(_parent, line, i) for i in range(len(line.elements)))]
+    wrong += list(_wrong_loops(line))
     yield from wrong
     if not wrong:
         yield from _wrong_ends(line)
@@ -123,20 +130,36 @@ def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
             yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
 
 
-def _parent(line: Chain, place: int) -> int | None:
+def _wrong_loops(line: Chain) -> Iterator[InputError]:
+    for i, (name, element) in enumerate(line.parts):
+        to = getattr(element, "to", None)
+        if to is not None and to not in line.names[:i]:
+            remedy = nearest(to, line.names[:i])
+            yield InputError("is not an earlier element", element=name, key="to", value=to, remedy=remedy)
+
+
+def _parent(line: Chain, place: int) -> tuple[int | None, int]:
+    """The element that one follows, and the coordinate there; −1 is the last."""
     after, name = line.elements[place].after, line.names[place]
     if after is None:
-        return place - 1 if place else None
+        return place - 1 if place else None, -1
+    owner, _, port = after.rpartition(".")
+    if after not in line.names and owner in line.names[:place]:
+        ports = line.elements[line.names.index(owner)].ports
+        if port not in ports:
+            offered = nearest(port, [f"{owner}.{one}" for one in ports]) if ports else f"write {owner} alone"
+            raise InputError("names no shaft", element=name, key="after", value=after, remedy=offered)
+        return line.names.index(owner), ports[port]
     where: dict[str, Any] = {"element": name, "key": "after", "value": after}
     if after not in line.names[:place]:
         if after in line.names:
             raise InputError("does not come earlier", **where, remedy=f"move {name} behind {after}")
         raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
     parent = line.names.index(after)
-    if not isinstance(line.elements[parent], Disk | ConstantSpeed | Ratio):
-        remedy = "branches leave from a Disk, a ConstantSpeed or a Ratio; put a Disk there"
+    if any(isinstance(part, Jointed | Sprung) for part in line.elements[parent].parts()):
+        remedy = "branches leave from a Disk, a ConstantSpeed or gears; put a Disk there"
         raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
-    return parent
+    return parent, -1
 
 
 def _wrong_ends(line: Chain) -> Iterator[InputError]:

@@ -18,6 +18,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from trunnion.driveline.excitation import Excitations
 from trunnion.driveline.geometry import disk_inertia
 from trunnion.driveline.materials import MATERIALS, of_material, without_material
+from trunnion.driveline.parts import Geared, Heavy, Numbers, Part, Prescribed
 from trunnion.driveline.quantities import (
     RATIO,
     Angle,
@@ -71,9 +72,27 @@ class Element(Record):
         return ()
 
     @property
+    def ports(self) -> dict[str, int]:
+        """Coordinates among its ``parts`` on which elements may hang, by name: ``after = "differential.right"``."""
+        return {}
+
+    @property
     def kind(self) -> str:
         """The class name: what ``type`` says in a file."""
         return type(self).__name__
+
+    def parts(self) -> tuple[Part, ...]:
+        """What it is made of, see ``trunnion.driveline.parts``."""
+        raise InputError("is not an element of a driveline", element=self.name or self.kind)
+
+    def inertias(self, number: Numbers) -> tuple[Any, ...]:
+        """Moment of inertia [kg m²] of every ``Heavy`` among its parts, for the values of its numbers, one or many."""
+        return ()
+
+    @property
+    def inertia_values(self) -> tuple[float, ...]:
+        """The same as described."""
+        return tuple(float(one) for one in self.inertias(lambda key: getattr(self, key)))
 
     def doubts(self) -> Iterator[Doubt]:
         """What is accepted with a remark."""
@@ -89,6 +108,10 @@ class ConstantSpeed(Element):
 
     The speed itself belongs to the analysis (or to the file's ``[operation]``), not to the driveline.
     """
+
+    def parts(self) -> tuple[Part, ...]:
+        """A rotation that is given."""
+        return (Prescribed(),)
 
 
 _ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
@@ -179,15 +202,22 @@ class Disk(Element):
             remedy = "write orders; a torque fixed in time has no cylinders"
             raise InputError("repeat orders, not a frequency", key="firing_angles", remedy=remedy)
 
+    def parts(self) -> tuple[Part, ...]:
+        """An inertia on which outer torques act."""
+        return (Heavy(loaded=True),)
+
+    def inertias(self, number: Numbers) -> tuple[Any, ...]:
+        """As stated, or from the mass or the geometry."""
+        if self.inertia is not None:
+            return (number("inertia"),)
+        if self.mass is not None:
+            return (number("mass") * number("radius") ** 2,)
+        return (disk_inertia(*map(number, ("outer_diameter", "inner_diameter", "thickness", "density"))),)
+
     @property
     def moment_of_inertia(self) -> float:
         """Polar moment [kg m²], as stated or from the geometry or the mass."""
-        if self.inertia is not None:
-            return self.inertia
-        if self.mass is not None and self.radius is not None:
-            return self.mass * self.radius**2
-        assert self.outer_diameter and self.thickness and self.density and self.inner_diameter is not None
-        return disk_inertia(self.outer_diameter, self.inner_diameter, self.thickness, self.density)
+        return self.inertia_values[0]
 
 
 MOST_TEETH = 100_000
@@ -226,6 +256,10 @@ class Ratio(Element):
         if self.ratio == 0:
             raise InputError("must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed")
         return self
+
+    def parts(self) -> tuple[Part, ...]:
+        """Gears alone."""
+        return (Geared(self.fraction),)
 
     @property
     def fraction(self) -> Fraction:

@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, Teeth, not_negative, positive
+from trunnion.driveline.parts import Geared, Part, Sprung
 from trunnion.driveline.quantities import (
     DEGREE,
     Angle,
@@ -215,6 +216,10 @@ class GearPair(Element):
             key = "backlash" if self.backlash else "angular_backlash"
             problem = f"is {self.total_backlash:.3g} m along the line of action, as wide as teeth"
             yield (key, problem, 'write "0.1 mm" or "0.1 deg", say: a number alone is in metres or radians')
+
+    def parts(self) -> tuple[Part, ...]:
+        """The output gear where a rigid mesh would hold it, and behind the mesh where it is."""
+        return Geared(self.fraction), Sprung(to=1)
 
     @property
     def fraction(self) -> Fraction:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, field_validator, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, positive
+from trunnion.driveline.parts import Jointed, Part
 from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Length, Maybe, optional
 from trunnion.driveline.record import one_of
 from trunnion.errors import InputError
@@ -39,6 +40,10 @@ class Joint(Element):
         """Orders of its unevenness in cycles per turn of its own shaft, multiples left out; empty where there is none
         at any angle."""
         return ()
+
+    def parts(self) -> tuple[Part, ...]:
+        """A joint."""
+        return (Jointed(self.orders),)
 
     def law(self, number: Numbers) -> JointLaw:
         """How it passes rotation on, ``number(key)`` being the values of its numbers; without orders unchanged."""

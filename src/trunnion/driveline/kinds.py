@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 
@@ -26,5 +28,7 @@ KINDS: dict[str, type[Element]] = {
         DoubleCardanJoint,
         Ratio,
         GearPair,
+        Planetary,
+        Differential,
     )
 }

@@ -11,9 +11,8 @@ from math import inf, isfinite
 
 from trunnion.driveline.chain import Chain
 from trunnion.driveline.elements import ConstantSpeed, Disk
-from trunnion.driveline.gears import GearPair
+from trunnion.driveline.parts import Sprung
 from trunnion.driveline.shafts import Shaft, Spring
-from trunnion.driveline.stages import PiecewiseShaft
 
 HELD, SERIES = "excitation of a held disk", "unlike damping in series"
 ALIKE = 1e-9
@@ -83,7 +82,7 @@ def _groups(line: Chain) -> list[int]:
     """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
     group: list[int] = []
     for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
-        elastic = isinstance(element, Spring | PiecewiseShaft | GearPair)
+        elastic = any(isinstance(part, Sprung) for part in element.parts())
         group.append(i if parent is None or elastic else group[parent])
     return group
 

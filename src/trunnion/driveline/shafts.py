@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import pi
 from typing import Any, ClassVar, Self
 
@@ -11,6 +11,8 @@ from pydantic import Field, model_validator
 from trunnion.driveline.elements import Doubt, Element, bore, not_negative, one_way, positive, with_defaults
 from trunnion.driveline.geometry import tube_inertia, tube_stiffness
 from trunnion.driveline.materials import MATERIALS, of_material, without_material
+from trunnion.driveline.parts import Heavy, Part, Sprung
+from trunnion.driveline.parts import Numbers as Numbers
 from trunnion.driveline.quantities import (
     Angle,
     Damping,
@@ -25,10 +27,8 @@ from trunnion.driveline.quantities import (
     Torque,
     optional,
 )
+from trunnion.driveline.record import Name
 from trunnion.errors import InputError
-
-Numbers = Callable[[str], Any]
-"""The values of an element's number by its key, one or many."""
 
 
 class Spring(Element):
@@ -41,6 +41,7 @@ class Spring(Element):
         default=None, description="at which the loss factor holds; by default at all"
     )
     fork_offset: Angle = optional(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+    to: Name | None = Field(default=None, description="earlier element to which the far end closes a loop")
 
     @model_validator(mode="after")
     def _damped_one_way(self) -> Self:
@@ -58,6 +59,10 @@ class Spring(Element):
     def loss(self) -> float | None:
         """Loss factor η, however stated; None where damping is a coefficient."""
         return self.loss_factor
+
+    def parts(self) -> tuple[Part, ...]:
+        """A spring, and what of its inertia counts to each end."""
+        return (Sprung(closes=self.to), *(Heavy(at, of="end of") for at in (0, 1) if self.moment_of_inertia))
 
     def stiffness_of(self, number: Numbers) -> Any:
         """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
@@ -101,6 +106,7 @@ class Shaft(Spring):
         time refuse it. A relative damping ψ (loss per cycle over elastic energy) is η = ψ/2π.
     fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
         the angle of the fork from the joint plane.
+    to : earlier element, behind which the far end closes a loop; what follows says where it hangs by ``after``.
     outer_diameter, inner_diameter, length : of the tube [m]; inner_diameter = 0 is a solid bar.
     material : of the tube, by name: gives each of the next four that is not stated.
     shear_modulus : G [Pa].
@@ -150,6 +156,11 @@ class Shaft(Spring):
         if self.stiffness is not None:
             return number("stiffness")
         return tube_stiffness(*map(number, ("outer_diameter", "inner_diameter", "length", "shear_modulus")))
+
+    def inertias(self, number: Numbers) -> tuple[Any, ...]:
+        """Half of the tube's at each end."""
+        half = tube_inertia(*map(number, ("outer_diameter", "inner_diameter", "length", "density"))) / 2
+        return half, half
 
     @property
     def moment_of_inertia(self) -> float:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, not_negative
+from trunnion.driveline.parts import Part, Sprung
 from trunnion.driveline.quantities import ANGLE, Angle, Damping, Several, Stiffness, optional, parse
 from trunnion.driveline.record import as_tuple, one_of
 from trunnion.errors import InputError
@@ -57,6 +58,10 @@ class PiecewiseShaft(Element):
         BeforeValidator(one_of(LAWS, "is unknown", 'write "always" or "in contact"')),
     ] = Field(default="always", description='when it damps: "always", or "in contact", not in the softest stage')
     fork_offset: Angle = optional(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+
+    def parts(self) -> tuple[Part, ...]:
+        """A spring."""
+        return (Sprung(),)
 
     @classmethod
     def symmetric(cls, stages: Iterable[tuple[Any, Any]], **more: Any) -> PiecewiseShaft:

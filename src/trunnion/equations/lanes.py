@@ -159,7 +159,7 @@ def _rows(columns: Sequence[Array], cases: int) -> Array:
 
 def _members(topo: Topology, by_speed: frozenset[int]) -> list[int]:
     """Stations with inertia in groups whose inertia depends on the angle or that carry loads by speed, by unknown."""
-    heavy = sorted({s for s, _ in topo.disks + topo.tube_ends})
+    heavy = sorted({s for s, _, _ in topo.inertias})
     chosen = {topo.group_of(s) for s in heavy if s in by_speed or behind_joint(topo.stations, s)}
     members = [s for s in heavy if topo.group_of(s) in chosen and topo.unknown_of[s] >= 0]
     return sorted(members, key=lambda s: topo.unknown_of[s])

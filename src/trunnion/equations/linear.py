@@ -26,12 +26,13 @@ from typing import Protocol
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
+from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
+from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 
@@ -60,6 +61,8 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
+    if topo.graph:
+        return _straight_matrices(topo, coefficients, len(tau))
     cases, times, n = len(coefficients.speed), len(tau), topo.size
     # Each entry lies in one piece over time, which is how it is filled.
     mass, damping, stiffness = (np.zeros((n, n, cases, times)) for _ in range(3))
@@ -149,6 +152,38 @@ def put_entries(
     return ratio_seen, wave
 
 
+def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: int) -> LineMatrices:
+    """The same of a straight line whose shafts are tied to several others: M couples what they share.
+
+    Raises
+    ------
+    InputError : bent joints, or meshes whose stiffness varies.
+    """
+    varying = "bent joints" if any(law.uneven for law in coefficients.joints) else "meshes of varying stiffness"
+    if varying == "bent joints" or coefficients.waves:
+        raise InputError(
+            f"has {varying} beside a differential or a loop: what they do there is not followed", element="driveline",
+            remedy="take them without, at angle 0, or both legs or ways round as one shaft",
+        )  # fmt: skip
+    found = loaded_matrices(topo, coefficients, coefficients.speed)
+    cases = len(coefficients.speed)
+
+    def lasting(part: Array) -> Array:
+        return np.broadcast_to(part[:, None], (cases, times, *part.shape[1:]))
+
+    still, ratio = np.zeros((cases, topo.size)), np.ones((cases, len(topo.compliances)))
+    matrices = (found.inertia, found.damping, found.stiffness, still, ratio, ratio)
+    return LineMatrices(*(lasting(part) for part in matrices))
+
+
+def over_mass(matrices: LineMatrices, part: Array) -> Array:
+    """M⁻¹ times a matrix (case, time, n, n)."""
+    own = np.einsum("ctii->cti", matrices.mass)
+    if np.count_nonzero(matrices.mass) > np.count_nonzero(own):
+        return np.asarray(np.linalg.solve(matrices.mass, part))
+    return np.asarray(part * (1 / own)[..., None])
+
+
 def periodic_linear_system(
     assembly: Assembly, table: Array, *, statically_twisted: bool = True
 ) -> PeriodicLinearSystem:
@@ -170,23 +205,20 @@ def periodic_linear_system(
         m = line_matrices(topo, coefficients, np.asarray(tau, dtype=float))
         return Matrices(m.mass[0], m.damping[0] / speed, m.stiffness[0] / speed**2, m.forcing[0] / speed**2)
 
-    aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
+    aligned = frequencies(aligned_matrices(topo, coefficients), rigid=topo.rigid_count)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
     fastest = float(max(topo.rates, default=0))
     return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
-    """States (x, dx/dτ) as columns (2n, k) that a straight free line keeps for ever: multipliers exactly 1.
+    """States (x, dx/dτ) as columns (2n, k) that a straight line keeps for ever: multipliers exactly 1.
 
-    A turn of the whole line always; a change of its speed where no load depends on the speed. Without bent joints
-    only; k is 0 for a driven line.
+    A turn of a free line as a whole always, and of the legs of a differential against each other; a change of such a
+    speed where no load depends on the speed. Without bent joints only; k is 0 for a driven line without differentials.
     """
-    n = topo.size
-    if not topo.free:
-        return np.zeros((2 * n, 0))
-    turn = rigid_rotation(topo)
-    kept = np.zeros((2 * n, 2))
-    kept[:n, 0], kept[n:, 1] = turn, turn
+    n, turns = topo.size, topo.rigid
+    kept = np.zeros((2 * n, 2 * turns.shape[1]))
+    kept[:n, 0::2], kept[n:, 1::2] = turns, turns
     constant = not (coefficients.viscous.any() or coefficients.quadratic.any())
-    return kept if constant else kept[:, :1]
+    return kept if constant else kept[:, 0::2]

@@ -36,19 +36,20 @@ class LineModes:
 
 
 def line_modes(damping: Array, stiffness: Array, loss: Array, rigid: Array | None = None) -> LineModes:
-    """Modes of a line of unit masses; ``rigid`` (n,): how it turns as a whole, where it can."""
+    """Modes of a line of unit masses; ``rigid`` (n, k): rotations that twist nothing, that of the whole line first."""
     if rigid is None:
         squares, basis = np.linalg.eigh(stiffness)
     else:  # taken out of the matrices, whose double eigenvalue 0 rounding would part
-        first, *others = np.linalg.qr(rigid[:, None], mode="complete")[0].T
-        rest = np.array(others).reshape(-1, len(rigid)).T
+        first, rest = np.split(np.linalg.qr(rigid, mode="complete")[0], [rigid.shape[1]], axis=1)
         squares, own = np.linalg.eigh(rest.T @ stiffness @ rest)
-        squares, basis = np.append(0.0, squares), np.column_stack([first, rest @ own])
+        squares, basis = np.append(np.zeros(rigid.shape[1]), squares), np.column_stack([first, rest @ own])
     undamped = np.sqrt(np.maximum(squares, 0.0))
     pairs = 1j * undamped[:, None] * np.array([1.0, -1.0])
     shapes = basis.astype(complex)
     if damping.any() or loss.any():
-        start = int(rigid is not None and not _brakes(damping, basis[:, 0]))
+        start = 0
+        while rigid is not None and start < rigid.shape[1] and not _brakes(damping, basis[:, start]):
+            start += 1
         kept = basis[:, start:]
         pairs[start:], own = _pairs(
             kept.T @ damping @ kept, np.diag(squares[start:]), kept.T @ loss @ kept, RIGID * float(undamped.max())

@@ -16,9 +16,11 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from trunnion.arrays import Array
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.shafts import Shaft, Spring
 from trunnion.driveline.stages import PiecewiseShaft
@@ -34,10 +36,11 @@ HEADROOM = 1.75
 """What stands above a branch: wheels, numbers, a load in two lines."""
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
-    "PiecewiseShaft": 1.25,
+    "PiecewiseShaft": 1.25, "Planetary": 0.9, "Differential": 0.9,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (Spring, PiecewiseShaft)
+GEARS = (Ratio, GearPair, Planetary, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
@@ -98,6 +101,9 @@ def draw(line: Driveline) -> Figure:
     for place, parent in zip(places, line.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
+        if isinstance(place.element, Spring) and place.element.to is not None:
+            closed = places[line.index(place.element.to)]
+            _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
 
@@ -206,6 +212,35 @@ def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
 
 
+def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A ring above and below, planets on the sun; what is held is hatched."""
+    element = place.element
+    assert isinstance(element, Planetary)
+    sun = 0.75 * element.teeth_sun / element.teeth_ring
+    planet = (0.75 - sun) / 2
+    _bar(axes, place.start, place.end)
+    look: dict[str, Any] = {"ec": INK, "lw": 1.1, "zorder": 3, "angle": np.rad2deg(place.direction)}
+    wheels = [(0.0, sun, "sun")]
+    for side in (1, -1):
+        wheels += [(side * (sun + planet), planet, "carrier"), (side * 0.82, 0.07, "ring")]
+    for offset, radius, shaft in wheels:
+        centre = place.middle + offset * _across(place.direction)
+        face = "#f1d9a7" if shaft == "sun" else "#f7ead0"
+        hatch = "////" if shaft == element.held else None
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, fc=face, hatch=hatch, **look))
+
+
+def _differential(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A case with a crown wheel, and two side gears in it."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.22, 0.22), 0.5, fc="#f7ead0")
+    _box(axes, place.part(-0.34, -0.22), 0.75, fc="#f1d9a7")
+    for side in (1, -1):
+        gear = place.middle + side * 0.25 * _across(place.direction)
+        look: dict[str, Any] = {"fc": "#f1d9a7", "ec": INK, "lw": 1.1, "zorder": 4}
+        axes.add_patch(Ellipse(tuple(gear), 0.22, 0.34, angle=np.rad2deg(place.direction), **look))
+
+
 def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
     centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
@@ -228,6 +263,8 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "Disk": _disk,
     "Ratio": _ratio,
     "GearPair": _ratio,
+    "Planetary": _planetary,
+    "Differential": _differential,
     "PiecewiseShaft": _stages,
 }
 
@@ -275,13 +312,13 @@ def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
         text = f"β {angle / DEGREE:.4g}°" + (f"\nplane {plane / DEGREE:.4g}°" if plane else "")
     elif isinstance(element, SHAFTS) and (element.fork_offset or between):
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
-    elif isinstance(element, Ratio | GearPair):
+    elif isinstance(element, GEARS):
         text = f"i {element.speed_ratio:.4g}"
     elif isinstance(element, Disk) and element.load_torque:
         text = f"load\n{element.load_torque:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
-    if isinstance(element, Ratio | GearPair):  # beside the upper wheel
+    if isinstance(element, GEARS):  # beside the upper wheel
         at = place.end + np.array([0.05, 0.75])
         axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:

@@ -54,7 +54,7 @@ def _shape(modes: NaturalFrequencies, mode: int, words: str, drive: str | None =
 
 
 def _frequency(modes: NaturalFrequencies, mode: int, unit: str) -> str:
-    if modes.rigid_body and mode == 0:
+    if mode < modes.rigid_motions:
         return "rigid body"
     if modes.overdamped[mode]:
         return "overdamped"

@@ -233,7 +233,7 @@ def campbell_diagram(
     values, shapes = loaded_modes(assembly, speed)
     frequency = values.imag
     ratio = -values.real / np.abs(values)
-    mode = np.arange(frequency.shape[1]) + (2 if assembly.topology.free else 1)
+    mode = np.arange(frequency.shape[1]) + 1 + assembly.topology.rigid_count
     lines = excitation_lines(assembly, speed)
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
     met, jumps = [], []
@@ -295,7 +295,7 @@ def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
 def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
     """Shares of kinetic (rotation, mode) and elastic energy (spring, mode)."""
     coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
-    kinetic = assembly.aligned.mass[0][:, None] * np.abs(shape) ** 2
+    kinetic = (shape.conj() * (assembly.aligned.inertia[0] @ shape)).real
     potential = coefficients.stiffness[0][:, None] * np.abs(assembly.topology.elongations @ shape) ** 2
     return kinetic / kinetic.sum(axis=0), potential / potential.sum(axis=0)
 

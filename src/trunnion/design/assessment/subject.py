@@ -402,7 +402,7 @@ class Case:
     @property
     def first(self) -> int:
         """Number of the first elastic mode: 2 where the line can turn as a whole."""
-        return 2 if self.assembly.topology.free else 1
+        return 1 + self.assembly.topology.rigid_count
 
     @property
     def suffix(self) -> str:

@@ -147,7 +147,8 @@ class Neighbourhood:
             own = np.repeat(self.row(), len(shares), axis=0)
             one.moved(own, shares)
             matrices = aligned_matrices(topo, self.assembly.coefficients(own, damped=False))
-            table[:, column(-1, "damping_ratio_frequency")] = frequencies(matrices, free=topo.free)[:, int(topo.free)]
+            lowest = frequencies(matrices, rigid=topo.rigid_count)[:, topo.rigid_count]
+            table[:, column(-1, "damping_ratio_frequency")] = lowest
         return table
 
 

@@ -110,9 +110,13 @@ def meeting_exponents(
     return found
 
 
+def _along_tree(assembly: Assembly) -> bool:
+    return assembly.topology.size >= LONG and not assembly.topology.graph
+
+
 def _batches(cases: Places, sides: SideOrders, assembly: Assembly) -> Iterator[Places]:
     numbers = len(sides.harmonics) * assembly.topology.size
-    at_once = max(1, MOST_NUMBERS // (8 * numbers if assembly.topology.size >= LONG else numbers**2))
+    at_once = max(1, MOST_NUMBERS // (8 * numbers if _along_tree(assembly) else numbers**2))
     for begin in range(0, len(cases), at_once):
         yield cases[begin : begin + at_once]
 
@@ -125,7 +129,7 @@ class _Blocks:
         tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
         self.tree: TreeHill | None = None
-        if assembly.topology.size >= LONG:
+        if _along_tree(assembly):
             self.tree = TreeHill(assembly.topology, tree_matrices(assembly.topology, co, tau), co.loss, self.step)
             return
         matrices = line_matrices(assembly.topology, co, tau)

@@ -107,7 +107,7 @@ def stability_along(
         return _about_own_motions(assembly, speed, motions)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
-    if assembly.topology.size <= LARGEST_DENSE:
+    if assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph:
         return _by_exponentials(assembly, table, statically_twisted)
     if assembly.topology.size < LONG or assembly.topology.free:
         return _by_kernel(assembly, co)

@@ -232,7 +232,7 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
     forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
     turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
-    if assembly.topology.size >= LONG:
+    if assembly.topology.size >= LONG and not assembly.topology.graph:
         modes = floquet_modes(assembly.topology, coefficients, turns)
         found = None if modes is None else _of_modes(system, modes, forced, tolerance)
         if found is not None:

@@ -18,7 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import require_steady_base
+from trunnion.equations.steady_base import require_steady_base, require_tree
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.features import left_out
@@ -136,6 +136,7 @@ def certify_stability(
     assembly = assemble(line)
     _require_provable(assembly)
     require_steady_base(assembly, assembly.table(1, 1.0))
+    require_tree(assembly, "the bounds of the proof do")
     spreads = read_tolerances(assembly, tolerances)
     _require_rising(assembly, spreads)
     space = _Space(assembly, spreads, span)

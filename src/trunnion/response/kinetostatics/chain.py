@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
 from trunnion.driveline.parameters import PackedLine, pack
@@ -175,11 +175,18 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
                 remedy="replace it by a Disk with the load_torque it exerts",
             )
     stations, draft = stations_of(line, even=True), _Draft(line, lengths or {})
+    knots = [station.element for station in stations.stations if station.link is Link.SUM]
+    knots += [compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None]
+    if knots:
+        raise InputError(
+            "ties a shaft to two others, which kinetostatics do not follow", element=line.names[knots[0]],
+            remedy="leave out one leg, or one way round, and write a Ratio in its place",
+        )  # fmt: skip
     step_of: list[int] = []
     for station, speed in zip(stations.stations, stations.speed_ratio, strict=True):
         step_of.append(draft.add(station, speed, step_of[station.before] if station.before >= 0 else -1))
-    for s, i in stations.disks + stations.tube_ends:
-        draft.put(step_of[s], line.elements[i])
+    for s, i, number in stations.inertias:
+        draft.put(step_of[s], line.elements[i], number)
     members = tuple(member if member.length > 0 else replace(member, length=np.nan) for member in draft.members)
     behind = tuple(step_of[s] for s in stations.behind)
     found = Chain(line, tuple(draft.steps), members, behind, len(line.elements) - 1)
@@ -219,9 +226,8 @@ class _Draft:
                 law = element.law(lambda key: np.asarray(self.packed.values[self.packed.column(i, key)]))
             return self._joint(parent, name, speed, law=law, orders=element.orders, **bend)
         if station.link is Link.RATIO:
-            assert isinstance(element, Ratio | GearPair)
-            axis = Member(-1, self.members[-1].train + 1, speed)
-            return self._step(Link.RATIO, parent, name, speed, axis, ratio=element.speed_ratio)
+            axis, ratio = Member(-1, self.members[-1].train + 1, speed), self.steps[parent].speed / speed
+            return self._step(Link.RATIO, parent, name, speed, axis, ratio=float(ratio))
         if isinstance(element, GearPair):
             return parent  # rigid and in contact
         assert isinstance(element, Spring | PiecewiseShaft)
@@ -234,17 +240,16 @@ class _Draft:
         self._extend(here, name, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         return here
 
-    def put(self, step: int, element: Element) -> None:
-        """A disk, or one end of a tube, at the station behind a step."""
+    def put(self, step: int, element: Element, number: int) -> None:
+        """One of an element's inertias, with the loads of a disk, at the station behind a step."""
         here = self.steps[step]
-        if isinstance(element, Spring):
-            self.steps[step] = replace(here, inertia=here.inertia + element.moment_of_inertia / 2)
-        elif isinstance(element, Disk):
-            self.steps[step] = replace(
-                here, inertia=here.inertia + element.moment_of_inertia, load=here.load + element.load_torque,
-                viscous_load=here.viscous_load + element.viscous_load,
+        here = replace(here, inertia=here.inertia + element.inertia_values[number])
+        if isinstance(element, Disk):
+            here = replace(
+                here, load=here.load + element.load_torque, viscous_load=here.viscous_load + element.viscous_load,
                 quadratic_load=here.quadratic_load + element.quadratic_load,
             )  # fmt: skip
+        self.steps[step] = here
 
     def _cross(
         self, parent: int, name: str, speed: Fraction, *, angle: float, plane: float = 0.0,

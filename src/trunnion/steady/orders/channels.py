@@ -56,13 +56,17 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     """
     places = channels_of(topo)
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
+    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
+    if topo.graph:
+        seen[..., places.twist], seen[..., places.deviation] = x @ topo.elongations.T, x
+        seen[..., places.joint_input.start :] = x @ topo.turning[at].T
+        return seen
     for e, (far, near) in enumerate(topo.ends):
         if far >= 0:
             seen[..., e] += x[..., far]
         if near >= 0:
             seen[..., e] -= ratio[..., e] * x[..., near]
     seen[..., places.deviation] = x
-    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
     for k, station in enumerate(at, start=places.joint_input.start):
         if (i := topo.unknown_of[station]) >= 0:
             seen[..., k] = relative[..., station] * x[..., i]

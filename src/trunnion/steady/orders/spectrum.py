@@ -39,7 +39,7 @@ from trunnion.steady.orders.groups import OWN, Group, SideOrders, groups_of, off
 from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
 from trunnion.steady.orders.prices import places_left, tree_pays
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
-from trunnion.steady.orders.straight import straight_response
+from trunnion.steady.orders.straight import coupled_response, straight_response
 from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.steady.orders.unbalanced import balanced
 from trunnion.waiting import keep_time
@@ -219,7 +219,8 @@ class _Case:
 
     def _tree_pays(self) -> bool:
         groups, sides, _ = self._plan(self.reach)
-        return tree_pays(self.topo, [len(sides.of(group)[0]) for group in groups], len(self.numbers))
+        harmonics = [len(sides.of(group)[0]) for group in groups]
+        return not self.topo.graph and tree_pays(self.topo, harmonics, len(self.numbers))
 
     def _batch(self) -> int:
         """Speeds together, by the largest arrays of one."""
@@ -257,7 +258,9 @@ class _Case:
 
     def _straight(self, table: Array) -> OrderSum:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
-        matrices, base = tree_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
+        base = self._base(table, co, np.zeros(1))
+        respond: Callable[..., Complex] = coupled_response if topo.graph else straight_response
+        matrices = (line_matrices if topo.graph else tree_matrices)(topo, co, np.zeros(1))
         total = OrderSum(len(table), self.places)
         groups = groups_of(self.acting, None, 0)
         if groups:
@@ -267,7 +270,7 @@ class _Case:
                 for group, at in zip(groups, nu, strict=True)
             ]
             right = np.stack([force[:, 0] for force, _ in sources])
-            y = straight_response(topo, matrices, co.loss, nu, right, linearised=self.linearised)
+            y = respond(topo, matrices, co.loss, nu, right, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
                 if topo.free:  # driven away by a constant torque, without bound

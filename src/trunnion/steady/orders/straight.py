@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
 from trunnion.numerics.condensation import Plan
@@ -70,6 +71,40 @@ def straight_response(
         still = frequency[k] == 0
         y[k, still] = _driven_away(rigid_rotation(topo), plan, matrices, right[k], linearised)[still]
     return y
+
+
+def coupled_response(
+    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
+) -> Complex:
+    """The same as ``straight_response`` where masses couple unknowns: dense, order by order and speed by speed."""
+    parts = tuple(part[:, 0] for part in (matrices.mass, matrices.damping, matrices.stiffness))
+    lossy = np.einsum("ei,se,ej->sij", topo.elongations, loss, topo.elongations)
+    w = frequency[..., None, None]
+    matrix = parts[2] - w**2 * parts[0] + 1j * (w * parts[1] + np.sign(w) * lossy)
+    if not linearised:
+        return _one_by_one(matrix, right)
+    # To first order about the first case, whose matrix stands for all.
+    held = np.broadcast_to(matrix[:, :1], matrix.shape)
+    first = _one_by_one(held, np.broadcast_to(right[:, :1], right.shape))
+    taken = (matrix @ first[..., None])[..., 0]
+    rest = right - taken
+    rest[np.abs(rest).max(axis=2) <= ROUNDING * (np.abs(matrix) @ np.abs(first)[..., None])[..., 0].max(axis=2)] = 0.0
+    return first + _one_by_one(held, rest)
+
+
+def _one_by_one(matrix: Complex, right: Complex) -> Complex:
+    """Solutions (order, case, n); NaN where a motion needs no force, 0 where nothing acts."""
+    found = np.zeros(right.shape, dtype=complex)
+    for at in np.argwhere(right.any(axis=2)):
+        one = tuple(at)
+        try:
+            found[one] = np.linalg.solve(matrix[one], right[one])
+        except np.linalg.LinAlgError:
+            found[one] = np.nan
+        holds = np.abs(matrix[one]) @ np.abs(found[one])
+        if np.abs(right[one]).max() < SINGULAR * holds.max():
+            found[one] = np.nan
+    return found
 
 
 def about_first(matrix: TreeMatrix, right: Complex) -> Complex:

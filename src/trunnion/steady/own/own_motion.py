@@ -48,7 +48,7 @@ class OwnMotion:
         co = self.assembly.coefficients(self.assembly.table(1, self.speed))
         turn = self.speed * orbit.period
         mean = line_matrices(topo, co, turn * np.arange(SAMPLES) / SAMPLES)
-        highest = float(frequencies(aligned_matrices(topo, co), free=True).max()) * orbit.period / (2 * np.pi)
+        highest = float(frequencies(aligned_matrices(topo, co), rigid=1).max()) * orbit.period / (2 * np.pi)
         scale = np.repeat([1.0, 1 / self.speed], topo.size)
         times = orbit.period * np.linspace(0, 1, max(SAMPLES, PER_CYCLE * int(np.ceil(highest))) + 1)
         state, over = orbit.start, []
