@@ -34,6 +34,8 @@ from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
+from trunnion.driveline import TunedDamper as TunedDamper
+from trunnion.driveline import ViscousDamper as ViscousDamper
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump
 from trunnion.driveline import dumps as dumps
@@ -62,6 +64,7 @@ from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
 from trunnion.modes.bending import bending_speeds as bending_speeds
+from trunnion.modes.damper_optimum import damper_optimum as damper_optimum
 from trunnion.modes.natural_frequencies import natural_frequencies as natural_frequencies
 from trunnion.modes.resonance_speeds import resonance_speeds as resonance_speeds
 from trunnion.motion.chaos.bifurcation_diagram import bifurcation_diagram as bifurcation_diagram

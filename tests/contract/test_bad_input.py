@@ -6,7 +6,7 @@ import re
 import pytest
 
 import trunnion as tn
-from trunnion import assess
+from trunnion import assess, damper_optimum, natural_frequencies
 from trunnion.driveline import (
     ConstantSpeed,
     Coupling,
@@ -23,6 +23,8 @@ from trunnion.driveline import (
     Shaft,
     SwitchedOff,
     Tolerance,
+    TunedDamper,
+    ViscousDamper,
     dump,
     load,
     loads,
@@ -31,6 +33,19 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def damped():
+    """A damper at the middle of three equal disks that start free."""
+    ends, shaft = Disk(inertia=1.0), Shaft(stiffness=100.0)
+    return Driveline(
+        [ends, shaft, Disk(inertia=1.0), ViscousDamper(ring_inertia=0.1, damping=1.0, name="damper"), shaft, ends]
+    )
+
+
+def on_a_bare_shaft():
+    """A damper whose housing has no inertia, and nothing else where it sits."""
+    return Driveline([Disk(inertia=1.0), Shaft(stiffness=100.0), ViscousDamper(ring_inertia=0.1, damping=1.0)])
 
 
 def planetary(**changes: object) -> Planetary:
@@ -579,6 +594,40 @@ PYTHON = [
     ),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    (lambda: ViscousDamper(damping=1), "ViscousDamper.ring_inertia: is missing", 'ring_inertia = "0.12 kg*m^2"'),
+    (lambda: ViscousDamper(ring_inertia=0.1), "ViscousDamper.damping: is missing", 'damping = "45 N*m*s/rad"'),
+    (
+        lambda: ViscousDamper(ring_inertia=0.1, damping=0),
+        "ViscousDamper.damping = 0: must be positive",
+        '"3 N*m*s/rad"',
+    ),
+    (lambda: ViscousDamper(ring_inertia=0, damping=1), "ViscousDamper.ring_inertia = 0: must be positive", "write for"),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, stiffness=0),
+        "ViscousDamper.stiffness = 0: must be positive",
+        "write for",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, inertia=-1),
+        "ViscousDamper.inertia = -1: must be positive",
+        "write for",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, heat_rating=0),
+        "ViscousDamper.heat_rating = 0: must be positive",
+        "write for",
+    ),
+    (lambda: TunedDamper(ring_inertia=1, damping=1), "TunedDamper.stiffness: is missing", '"1.5 kN*m/rad"'),
+    (
+        lambda: TunedDamper(ring_inertia=1, stiffness=1, damping=-1),
+        "TunedDamper.damping = -1: must not be negative",
+        "write for",
+    ),
+    (lambda: natural_frequencies(on_a_bare_shaft()), "ViscousDamper 1: has no inertia in front", "Disk in front of"),
+    (lambda: damper_optimum(line(), "damper"), "damper = 'damper': is no damper of this driveline", ""),
+    (lambda: damper_optimum(damped(), "dampr"), "damper = 'dampr': is no damper", "damper"),
+    (lambda: damper_optimum(damped(), "damper", 3), "mode = 3: is no elastic mode", "from 1 to 2"),
+    (lambda: damper_optimum(damped(), "damper", 1), "damper: stands in a node of mode 1", "free end"),
     (lambda: planetary(held="planets"), "Planetary.held = 'planets': is no shaft", '"sun", "carrier", "ring"'),
     (lambda: planetary(held=["sun", "ring"]), "Planetary.held = ['sun', 'ring']: holds two shafts", 'held = "sun"'),
     (lambda: planetary(held="sun"), "Planetary.held = 'sun': is the input", "hold carrier or ring"),

@@ -25,6 +25,8 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    TunedDamper,
+    ViscousDamper,
     deg,
     rpm,
 )
@@ -51,6 +53,11 @@ PARTS = [
     Disk(mass="2.2 t", radius="0.35 m"),
     Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
     Planetary(teeth_sun=30, teeth_ring=72, input="sun", held="ring", planet_mass="0.8 kg", centre_distance="80 mm"),
+]
+COMPONENTS = [
+    ViscousDamper(inertia="0.05 kg*m^2", ring_inertia="0.12 kg*m^2", damping=45, heat_rating="400 W"),
+    ViscousDamper(ring_inertia=0.12, damping=45, stiffness="2 kN*m/rad"),
+    TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
 ]
 WITH_STAGES = [
     RzeppaJoint(
@@ -88,7 +95,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + WITH_STAGES, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element

@@ -5,6 +5,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
@@ -52,6 +53,8 @@ __all__ = [
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",
+    "TunedDamper",
+    "ViscousDamper",
     "deg",
     "dump",
     "dumps",

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import SerializeAsAny
 
 from trunnion.driveline.elements import ConstantSpeed, Element
-from trunnion.driveline.parts import Jointed, Sprung
+from trunnion.driveline.parts import Dragged, Jointed, Sprung
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.record import Name, Record
 from trunnion.driveline.refusals import nearest
@@ -131,7 +131,7 @@ def _parent(line: Chain, place: int) -> int | None:
             raise InputError("does not come earlier", **where, remedy=f"move {name} behind {after}")
         raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
     parent = line.names.index(after)
-    if any(isinstance(part, Jointed | Sprung) for part in line.elements[parent].parts()):
+    if any(isinstance(part, Jointed | Sprung | Dragged) for part in line.elements[parent].passes_on):
         remedy = "branches leave from a Disk, a ConstantSpeed or gears; put a Disk there"
         raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
     return parent

@@ -11,13 +11,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
-from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
+from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, held_excitations, unlike_in_series
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 
@@ -61,6 +62,14 @@ def _rubbing(at_one_motion: bool) -> Finder:
     return _where(Clutch, "friction", lambda clutch: (clutch.linear_amplitude is not None) is at_one_motion)
 
 
+def _kind(kind: type[Element]) -> Finder:
+    return lambda line: [name for name, element in line.parts if isinstance(element, kind)]
+
+
+def _dragged(line: Driveline) -> list[str]:
+    return [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
+
+
 def _branches(line: Driveline) -> list[str]:
     return [n for n, p, i in zip(line.names, line.parents, range(len(line.names)), strict=True) if i and p != i - 1]
 
@@ -89,6 +98,14 @@ UNEVEN = (
 """Features of joints that do not pass rotation unchanged."""
 
 
+_DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
+
+
+def _of(name: str, *keys: str) -> tuple[str, ...]:
+    """Some fields of a kind of element."""
+    return tuple(f"{name}.{key}" for key in keys)
+
+
 def _of_springs(*keys: str) -> tuple[str, ...]:
     """Some fields of every kind of spring that has them."""
     return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
@@ -109,6 +126,9 @@ FEATURES = (
             "Shaft.shear_modulus", "Shaft.material",
         ),
     ),
+    Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
+    Feature(DRAGGED, (), _dragged),
+    Feature("tuned damper", _of("TunedDamper", *_DAMPER), _kind(TunedDamper)),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
     Feature("damping", _of_springs("damping")),
@@ -215,6 +235,7 @@ NOT_FEATURES = {
         (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
         "a rating, which checks compare with",
     ),
+    **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",
     "Driveline.name": "a label",
     "Driveline.description": "a label",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
@@ -20,6 +21,8 @@ KINDS: dict[str, type[Element]] = {
         PiecewiseShaft,
         Clutch,
         Disk,
+        ViscousDamper,
+        TunedDamper,
         HookeJoint,
         IdealJoint,
         TripodJoint,

@@ -21,6 +21,7 @@ UNITS = {
     "density": "kg/m^3",
     "fork_offset": "rad",
     "inertia": "kg*m^2",
+    "ring_inertia": "kg*m^2",
     "load_torque": "N*m",
     "viscous_load": "N*m*s/rad",
     "quadratic_load": "N*m*s^2/rad^2",

@@ -1,8 +1,9 @@
 """What an element is made of, as the one walk along a line reads it (``trunnion.equations.topology``).
 
 An element hangs on the shaft in front of it, which is its coordinate 0. Its parts come in order; those that make a new
-shaft, with a rotation of its own, number it on: 1, 2, … Whatever follows in the line hangs on the last one. Parts say
-what is joined to what; numbers that can vary, stiffness, inertia, a joint's law, stay with the element.
+shaft, with a rotation of its own, number it on: 1, 2, … Whatever follows in the line hangs on the last one, or on the
+element's ``onward``. Parts say what is joined to what; numbers that can vary, stiffness, inertia, a joint's law, stay
+with the element.
 """
 
 from __future__ import annotations
@@ -57,4 +58,12 @@ class Sprung:
     to: int = 0
 
 
-Part = Prescribed | Heavy | Geared | Jointed | Sprung
+@dataclass(frozen=True)
+class Dragged:
+    """A new shaft that oil alone joins to coordinate ``to``: a damper without a spring, so that nothing holds its
+    rotation where it is."""
+
+    to: int = 0
+
+
+Part = Prescribed | Heavy | Geared | Jointed | Sprung | Dragged

@@ -142,23 +142,21 @@ def periodic_linear_system(
         m = line_matrices(topo, coefficients, np.asarray(tau, dtype=float))
         return Matrices(m.mass[0], m.damping[0] / speed, m.stiffness[0] / speed**2, m.forcing[0] / speed**2)
 
-    aligned = frequencies(aligned_matrices(topo, coefficients), free=topo.free)[0]
+    aligned = frequencies(aligned_matrices(topo, coefficients), still=topo.still)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
     fastest = float(max(topo.rates, default=0))
     return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
-    """States (x, dx/dτ) as columns (2n, k) that a straight free line keeps for ever: multipliers exactly 1.
+    """States (x, dx/dτ) as columns (2n, k) that a line keeps for ever: multipliers exactly 1.
 
-    A turn of the whole line always; a change of its speed where no load depends on the speed. Without bent joints
-    only; k is 0 for a driven line.
+    A turn of the whole of a free line always, and a change of its speed where no load depends on the speed: without
+    bent joints only. And a turn of what only oil drags along, joints bent or not.
     """
     n = topo.size
-    if not topo.free:
-        return np.zeros((2 * n, 0))
-    turn = rigid_rotation(topo)
-    kept = np.zeros((2 * n, 2))
-    kept[:n, 0], kept[n:, 1] = turn, turn
-    constant = not (coefficients.viscous.any() or coefficients.quadratic.any())
-    return kept if constant else kept[:, :1]
+    kept = np.zeros((2 * n, topo.still))
+    kept[:n] = topo.loose
+    if not topo.free or coefficients.viscous.any() or coefficients.quadratic.any():
+        return kept
+    return np.column_stack([kept, np.append(np.zeros(n), rigid_rotation(topo))])

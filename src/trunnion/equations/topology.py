@@ -22,7 +22,7 @@ from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.parts import Geared, Heavy, Jointed, Prescribed, Sprung
+from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Prescribed, Sprung
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
@@ -60,11 +60,12 @@ class Station:
 
 @dataclass(frozen=True)
 class Compliance:
-    """Shaft(s) in series from a station to the first station of another group."""
+    """Shaft(s) in series from a station to the first station of another group; ``drags``: a damper without a spring."""
 
     near: int
     far_group: int
     shafts: tuple[int, ...]
+    drags: bool = False
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,33 @@ class Topology:
     def free(self) -> bool:
         """True when no rotation is prescribed, so that the line can turn as a rigid body."""
         return not any(self.prescribed)
+
+    @cached_property
+    def dragged(self) -> tuple[int, ...]:
+        """Compliances that are dampers without a spring."""
+        return tuple(e for e, compliance in enumerate(self.compliances) if compliance.drags)
+
+    @cached_property
+    def loose(self) -> Array:
+        """Rotations (n, k), as columns, that no spring of the aligned line resists: of a free line as a whole by one at
+        its input, and of what hangs on each of the ``dragged`` links."""
+        columns = [np.array(self.mean_speeds[self.firsts])] if self.free else []
+        for e in self.dragged:
+            unknowns = np.unique([u for u in self.unknown_of[self.stations_behind[e]] if u >= 0])
+            column = np.zeros(self.size)
+            column[unknowns] = self.mean_speeds[self.firsts][unknowns]
+            columns.append(column / self.mean_speeds[self.reference[self.compliances[e].far_group]])
+        return np.array(columns).reshape(-1, self.size).T
+
+    @property
+    def still(self) -> int:
+        """How many undamped modes of the aligned line do not vibrate: one for each ``loose`` rotation."""
+        return self.loose.shape[1]
+
+    def set_aside(self, by_speed: bool) -> int:
+        """How many multipliers of a line with straight joints are exactly 1 whatever it does: for every loose rotation
+        one, and for the speed of a free line another where no load goes ``by_speed``."""
+        return self.still + int(self.free and not by_speed)
 
     @cached_property
     def joints(self) -> tuple[int, ...]:
@@ -351,13 +379,14 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     if orders or even:
                         here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = () if orders else (*plane, (i, 1.0))
-                case Sprung(to):
+                case Sprung(to) | Dragged(to):
                     here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
-                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,)))
+                    drags = isinstance(part, Dragged)
+                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), drags))
             own.append(here)
             turned.append(plane)
-        found.behind.append(own[-1])
-        planes.append(turned[-1])
+        found.behind.append(own[element.onward])
+        planes.append(turned[element.onward])
     return found
 
 
@@ -421,7 +450,8 @@ def _meshes(line: Driveline, draft: LineStations, compliances: list[Compliance])
 def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:
     """Springs in series become one only where they are linear."""
     for i in shafts:
-        if isinstance(line.elements[i], PiecewiseShaft | GearPair):
+        dragged = any(isinstance(part, Dragged) for part in line.elements[i].parts())
+        if dragged or isinstance(line.elements[i], PiecewiseShaft | GearPair):
             where = "in front of it" if i != shafts[0] else "behind it"
             raise InputError(
                 f"has no inertia {where}", element=line.names[i],

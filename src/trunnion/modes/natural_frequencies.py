@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import frequencies, loaded_matrices, rigid_rotation
+from trunnion.equations.aligned import frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import left_out
 from trunnion.modes.damped_modes import LineModes, line_modes
@@ -35,6 +35,7 @@ class NaturalFrequencies(Result):
     names: tuple[str, ...] = coordinate("rotation")
     undamped_frequency: Array = variable("mode", "rad/s", "undamped, ascending, 0 of the rigid body")
     rigid_body: bool = internal("whether mode 1 is the free rotation of the whole line")
+    still: int = internal("how many modes no spring resists: the rigid body, and rings that oil alone drags along")
     assembly: Assembly = internal("of the line")
     unit: str = internal("that frequencies are printed in, beside Hz")
 
@@ -73,13 +74,13 @@ class NaturalFrequencies(Result):
     def overdamped(self) -> Flags:
         """Which modes do not oscillate (mode,), the rigid body aside."""
         still = self.eigenvalue[:, 0].imag == 0
-        still[: int(self.rigid_body)] = False
+        still[: self.still] = False
         return np.asarray(still)
 
     @cached_property
     def modes(self) -> LineModes:
         """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
-        return line_modes(*_matrices(self.assembly), _rigid(self.assembly) if self.rigid_body else None)
+        return line_modes(*_matrices(self.assembly), _loose(self.assembly), self.rigid_body)
 
     @cached_property
     @computed(variable("rotation mode", "1", "undamped mode shape"))
@@ -88,6 +89,8 @@ class NaturalFrequencies(Result):
         mass = self.assembly.aligned.mass[0]
         root = np.sqrt(mass)
         shape = np.linalg.eigh(self.assembly.aligned.stiffness[0] / np.outer(root, root))[1] / root[:, None]
+        if self.still > 1:
+            shape[:, : self.still] = self.assembly.topology.loose
         return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
 
     @cached_property
@@ -102,8 +105,8 @@ class NaturalFrequencies(Result):
 
     @property
     def elastic(self) -> Array:
-        """Undamped frequencies without the rigid-body mode [rad/s]."""
-        return self.undamped_frequency[int(self.rigid_body) :]
+        """Undamped frequencies without the modes that do not vibrate [rad/s]."""
+        return self.undamped_frequency[self.still :]
 
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:
         """One row per mode, frequencies in ``unit``; what dies out without oscillating and what moves most named."""
@@ -124,6 +127,9 @@ class NaturalFrequencies(Result):
     def _rigid(self, mode: int) -> bool:
         return self.rigid_body and mode == 0
 
+    def _dragged(self, mode: int) -> bool:
+        return int(self.rigid_body) <= mode < self.still
+
     def _decay(self, mode: int) -> str:
         """How an overdamped mode dies out; "" of others."""
         if not self.overdamped[mode]:
@@ -143,6 +149,9 @@ class NaturalFrequencies(Result):
     def _said(self, mode: int) -> str:
         if self._rigid(mode):
             return "0, rigid body (the line turns as a whole)"
+        if self._dragged(mode):
+            ring, slip = self.names[np.argmax(np.abs(self.shape[:, mode]))], self.words.number(self.decay_rate[mode][1])
+            return f"0, {ring} (oil alone drags it along; slip decays at {slip} 1/s)"
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
             return f"overdamped, {self._decay(mode)}; undamped {undamped}"
@@ -166,8 +175,8 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     """
     assembly = assemble(line)
     topo = assembly.topology
-    found = frequencies(assembly.aligned, free=topo.free)[0]
-    return NaturalFrequencies(topo.names, found, topo.free, assembly, speed_unit(assembly.line))
+    found = frequencies(assembly.aligned, still=topo.still)[0]
+    return NaturalFrequencies(topo.names, found, topo.free, topo.still, assembly, speed_unit(assembly.line))
 
 
 def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
@@ -179,6 +188,6 @@ def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
     return matrices.damping[0] / scale, matrices.stiffness[0] / scale, matrices.loss[0] / scale
 
 
-def _rigid(assembly: Assembly) -> Array:
-    """How the whole line turns, in coordinates scaled with the roots of the inertias."""
-    return np.asarray(rigid_rotation(assembly.topology) * np.sqrt(assembly.aligned.mass[0]))
+def _loose(assembly: Assembly) -> Array:
+    """Rotations that no spring resists, in coordinates scaled with the roots of the inertias."""
+    return np.asarray(assembly.topology.loose * np.sqrt(assembly.aligned.mass[0])[:, None])

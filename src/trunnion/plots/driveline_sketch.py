@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from trunnion.arrays import Array
+from trunnion.driveline.dampers import Damper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
@@ -34,7 +35,7 @@ HEADROOM = 1.75
 """What stands above a branch: wheels, numbers, a load in two lines."""
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
-    "PiecewiseShaft": 1.25, "Planetary": 0.9,
+    "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "TunedDamper": 0.7,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (Spring, PiecewiseShaft)
@@ -193,6 +194,19 @@ def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
 
 
+def _damper(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A ring above and below in its housing, in oil or on a spring."""
+    damper = place.element
+    assert isinstance(damper, Damper)
+    _bar(axes, place.start, place.end)
+    for side in (1, -1):
+        middle = replace(place, start=place.start + side * 0.62 * _across(place.direction),
+                         end=place.end + side * 0.62 * _across(place.direction))  # fmt: skip
+        _bar(axes, place.middle, middle.middle, lw=1.4)
+        _box(axes, middle.part(-0.24, 0.24), 0.26, fc="#d5e8dd" if damper.dragged else "#d8c7a0")
+        _box(axes, middle.part(-0.15, 0.15), 0.16, fc="#8fa9b8")
+
+
 def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Two wheels in mesh, sizes by the ratio."""
     element = place.element
@@ -247,6 +261,8 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "Disk": _disk,
     "Ratio": _ratio,
     "GearPair": _ratio,
+    "ViscousDamper": _damper,
+    "TunedDamper": _damper,
     "Planetary": _planetary,
     "PiecewiseShaft": _stages,
 }

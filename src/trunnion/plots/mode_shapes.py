@@ -60,6 +60,8 @@ def draw(modes: NaturalFrequencies, *, unit: str = "Hz", drive: str | None = Non
 def _shown(modes: NaturalFrequencies, mode: int, unit: str) -> str:
     if modes.rigid_body and mode == 0:
         return "rigid body"
+    if mode < modes.still:
+        return "dragged by oil"
     if modes.overdamped[mode]:
         return "overdamped"
     frequency = float(modes.frequency[mode])

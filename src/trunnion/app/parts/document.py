@@ -330,6 +330,8 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "TripodJoint": {"angle": "8 deg", "radius": "30 mm", "length": "0.5 m"},
     "RzeppaJoint": {"angle": "8 deg"},
     "DoubleCardanJoint": {"angle": "20 deg"},
+    "ViscousDamper": {"ring_inertia": "0.12 kg*m^2", "damping": "45 N*m*s/rad"},
+    "TunedDamper": {"ring_inertia": "0.02 kg*m^2", "stiffness": "1.5 kN*m/rad", "damping": "2 N*m*s/rad"},
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }

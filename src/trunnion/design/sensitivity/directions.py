@@ -147,7 +147,7 @@ class Neighbourhood:
             own = np.repeat(self.row(), len(shares), axis=0)
             one.moved(own, shares)
             matrices = aligned_matrices(topo, self.assembly.coefficients(own, damped=False))
-            table[:, column(-1, "damping_ratio_frequency")] = frequencies(matrices, free=topo.free)[:, int(topo.free)]
+            table[:, column(-1, "damping_ratio_frequency")] = frequencies(matrices, still=topo.still)[:, topo.still]
         return table
 
 

@@ -32,7 +32,7 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
     assembly = near.assembly
     topo = assembly.topology
     found = natural_frequencies(assembly)
-    first = int(found.rigid_body)
+    first = found.still
     values = found.eigenvalue[first:, 0]
 
     def matrices(table: Array) -> AlignedMatrices:

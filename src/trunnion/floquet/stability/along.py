@@ -177,7 +177,7 @@ def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
     lanes = chain_lanes(topo, co, by_speed)
     program = chain_program(topo, co, by_speed)
     matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
-    if topo.free:
+    if topo.still:
         values, bounds = quantities(matrix, error, trace)
         found = judge(values.T.copy(), bounds.T.copy(), topo.size, rigid_motions(topo, co).shape[1])
     else:

@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers, Places
-from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.aligned import at_rest, rigid_rotation
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics.tree_solve import tree_solve
@@ -60,11 +60,13 @@ def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequ
         x[:, j] = _dense(diagonal[:, j], coupling[:, j], parent, b[:, j])
     weight = np.maximum(np.abs(diagonal), np.abs(coupling)) * np.abs(x)
     x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
-    if topo.free:
+    if topo.still:
         for j in np.flatnonzero(frequency.ravel() == 0):
-            x[:, j] = _driven_away(
-                rigid_rotation(topo), mass[j % cases], damping[j % cases], stiffness[j % cases], b[:, j]
-            )
+            joined = at_rest(topo, stiffness[j % cases])
+            if topo.free:
+                x[:, j] = _driven_away(rigid_rotation(topo), mass[j % cases], damping[j % cases], joined, b[:, j])
+            else:
+                x[:, j] = np.linalg.solve(joined, b[:, j])
     x[:, force == 0] = 0.0
     return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
 
