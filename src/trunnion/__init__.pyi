@@ -8,12 +8,14 @@ from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
 from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.study import tolerance_study as tolerance_study
+from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
+from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint

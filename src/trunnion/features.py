@@ -141,7 +141,8 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             *(key for key in UNEVEN if key != "Hooke's joint"),
-            "viscous damper", DRAGGED, "tuned damper", "ratio", "planetary set", "gear mesh", "mesh damping",
+            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "planetary set",
+            "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
             "quadratic load", SERIES,
@@ -202,8 +203,8 @@ _UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "viscous damper", DRAGGED, "tuned damper", "angle of an ideal joint", "mesh damping", "impact damping",
-        "backlash", "transmission error",
+        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "angle of an ideal joint",
+        "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time",
@@ -212,7 +213,7 @@ _RIGID = dict.fromkeys(
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
-_TUBES = ("tube inertia", "bending stiffness", "ratio", "planetary set", "gear mesh")
+_TUBES = ("tube inertia", "bending stiffness", "ratio", "belt", "planetary set", "gear mesh")
 _TUBE = "a tube whirls between its own joints, by its own dimensions"
 _RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a rigid pair in contact")
 _STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"

@@ -196,6 +196,15 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     ),
     **{name: (STRAIGHT_JOINT, jointed(joint.but(name="extra"))) for name, joint in JOINTS.items() if name in OWN},
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
+    "dual-mass flywheel": (
+        same,
+        front(tn.DualMassFlywheel(
+            primary_inertia=0.1, secondary_inertia=0.04, stiffnesses=[1e4], damping=5, name="front"
+        )),
+    ),
+    "belt": (
+        same, behind("hub", tn.Belt(radius_in=0.06, radius_out=0.12, span_stiffness=1e6, damping=2.0, inertia_out=0.02))
+    ),
     "planetary set": (same, behind("hub", planetary())),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),

@@ -8,10 +8,12 @@ import pytest
 import trunnion as tn
 from trunnion import assess, damper_optimum, natural_frequencies
 from trunnion.driveline import (
+    Belt,
     ConstantSpeed,
     Coupling,
     Disk,
     Driveline,
+    DualMassFlywheel,
     HookeJoint,
     IdealJoint,
     Limit,
@@ -46,6 +48,17 @@ def damped():
 def on_a_bare_shaft():
     """A damper whose housing has no inertia, and nothing else where it sits."""
     return Driveline([Disk(inertia=1.0), Shaft(stiffness=100.0), ViscousDamper(ring_inertia=0.1, damping=1.0)])
+
+
+RUBS = {"torque": 1, "stiffness": 1}
+
+
+def dual_mass(**changes):
+    return DualMassFlywheel(**{"primary_inertia": 0.1, "secondary_inertia": 0.05, "stiffnesses": [1e3]} | changes)
+
+
+def belt(**changes):
+    return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
 
 
 def planetary(**changes: object) -> Planetary:
@@ -594,6 +607,25 @@ PYTHON = [
     ),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: belt(radius_in=0), "Belt.radius_in = 0: must be positive", '"76 mm"'),
+    (lambda: belt(radius_out=-0.1), "Belt.radius_out = -0.1: must be positive", '"76 mm"'),
+    (lambda: belt(span_stiffness=0), "Belt.span_stiffness = 0: must be positive", "write for example"),
+    (lambda: belt(damping=-1), "Belt.damping = -1: must not be negative", "write for example"),
+    (lambda: belt(inertia_out=0), "Belt.inertia_out = 0: must be positive", "write for example"),
+    (lambda: belt(span_stiffness="4 N*m"), "Belt.span_stiffness = '4 N*m'", "N/m"),
+    (lambda: dual_mass(primary_inertia=None), "DualMassFlywheel.primary_inertia: must be a number", "kg*m^2"),
+    (lambda: dual_mass(secondary_inertia=0), "DualMassFlywheel.secondary_inertia = 0: must be positive", "write for"),
+    (lambda: dual_mass(stiffnesses=[0]), "DualMassFlywheel.stiffnesses = [0]: are all zero", "give a stage stiffness"),
+    (lambda: dual_mass(breakpoints=[0.1]), "DualMassFlywheel.stiffnesses", "must be 2 quantities"),
+    (lambda: dual_mass(breakpoints=[0.2, 0.1], stiffnesses=[1, 2, 3]), "DualMassFlywheel.breakpoints", "must rise"),
+    (lambda: dual_mass(friction=[{**RUBS, "torque": 0}]), "DualMassFlywheel.friction 1 torque = 0: must be", "15 N*m"),
+    (lambda: dual_mass(friction=[RUBS] * 9), "DualMassFlywheel.friction = [{", "at most 8 sliders; leave friction out"),
+    (
+        lambda: dual_mass(linear_amplitude=1, linear_frequency=9),
+        "DualMassFlywheel.linear_amplitude = 1: stands",
+        "stage",
+    ),
     (lambda: ViscousDamper(damping=1), "ViscousDamper.ring_inertia: is missing", 'ring_inertia = "0.12 kg*m^2"'),
     (lambda: ViscousDamper(ring_inertia=0.1), "ViscousDamper.damping: is missing", 'damping = "45 N*m*s/rad"'),
     (

@@ -10,11 +10,13 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline import (
+    Belt,
     Clutch,
     ConstantSpeed,
     Coupling,
     Disk,
     Driveline,
+    DualMassFlywheel,
     GearPair,
     HookeJoint,
     IdealJoint,
@@ -57,6 +59,16 @@ PARTS = [
 COMPONENTS = [
     ViscousDamper(inertia="0.05 kg*m^2", ring_inertia="0.12 kg*m^2", damping=45, heat_rating="400 W"),
     ViscousDamper(ring_inertia=0.12, damping=45, stiffness="2 kN*m/rad"),
+    Belt(radius_in="60 mm", radius_out="150 mm", span_stiffness=4e5, damping=0.5, inertia_in=2e-3, inertia_out=0.05),
+    DualMassFlywheel(
+        primary_inertia=0.14,
+        secondary_inertia=0.06,
+        breakpoints=["-30 deg", "30 deg"],
+        stiffnesses=[2e3, 800, 2e3],
+        friction=[{"torque": "8 N*m", "stiffness": "4 kN*m/rad"}],
+        damping=0.5,
+    ),
+    DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
 ]
 WITH_STAGES = [

@@ -10,11 +10,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
@@ -59,7 +61,9 @@ def _excited(test: Callable[[Excitation], object]) -> Finder:
 
 
 def _rubbing(at_one_motion: bool) -> Finder:
-    return _where(Clutch, "friction", lambda clutch: (clutch.linear_amplitude is not None) is at_one_motion)
+    return _where(
+        Clutch, "friction", lambda one: bool(one.friction) and (one.linear_amplitude is not None) is at_one_motion
+    )
 
 
 def _kind(kind: type[Element]) -> Finder:
@@ -98,6 +102,7 @@ UNEVEN = (
 """Features of joints that do not pass rotation unchanged."""
 
 
+_STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
 _DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
 
 
@@ -157,6 +162,16 @@ FEATURES = (
     *_OTHER_JOINTS,
     Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
     Feature(
+        "dual-mass flywheel",
+        _of("DualMassFlywheel", "primary_inertia", "secondary_inertia"),
+        _kind(DualMassFlywheel),
+    ),
+    Feature(
+        "belt",
+        _of("Belt", "radius_in", "radius_out", "span_stiffness", "damping", "inertia_in", "inertia_out"),
+        _kind(Belt),
+    ),
+    Feature(
         "planetary set",
         (
             *(f"Planetary.{key}" for key in ("teeth_sun", "teeth_ring", "input", "held")),
@@ -190,13 +205,21 @@ FEATURES = (
     ),
     Feature(
         "stages",
-        ("PiecewiseShaft.breakpoints", "PiecewiseShaft.stiffnesses", "Clutch.breakpoints", "Clutch.stiffnesses"),
+        tuple(f"{kind}.{key}" for kind in _STAGED for key in ("breakpoints", "stiffnesses")),
     ),
     Feature(
-        "damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law", "Clutch.damping_law")
+        "damping in contact only", ("GearPair.damping_law", *(f"{kind}.damping_law" for kind in _STAGED))
     ),
-    Feature("dry friction", ("Clutch.friction", "Slider.torque", "Slider.stiffness"), _rubbing(False)),
-    Feature("dry friction at one motion", ("Clutch.linear_amplitude", "Clutch.linear_frequency"), _rubbing(True)),
+    Feature(
+        "dry friction",
+        ("Clutch.friction", "DualMassFlywheel.friction", "Slider.torque", "Slider.stiffness"),
+        _rubbing(False),
+    ),
+    Feature(
+        "dry friction at one motion",
+        tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
+        _rubbing(True),
+    ),
     Feature("load torque", ("Disk.load_torque",)),
     Feature("drive share", ("Disk.drive_share",)),
     Feature("viscous load", ("Disk.viscous_load",)),

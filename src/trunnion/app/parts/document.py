@@ -332,6 +332,12 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "DoubleCardanJoint": {"angle": "20 deg"},
     "ViscousDamper": {"ring_inertia": "0.12 kg*m^2", "damping": "45 N*m*s/rad"},
     "TunedDamper": {"ring_inertia": "0.02 kg*m^2", "stiffness": "1.5 kN*m/rad", "damping": "2 N*m*s/rad"},
+    "Belt": {"radius_in": "60 mm", "radius_out": "150 mm", "span_stiffness": "4e5 N/m"},
+    "DualMassFlywheel": {
+        "primary_inertia": "0.14 kg*m^2",
+        "secondary_inertia": "0.06 kg*m^2",
+        "stiffnesses": ["15 N*m/deg"],
+    },
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }

@@ -231,6 +231,8 @@ class _Draft:
         else:
             more["stages"] = stage_law(self.line, i, self.packed.column, self.packed.table(1))
         here = self._step(Link.SHAFT, parent, name, speed, **more)
+        if element.onward == 0:  # beside the axis
+            return here
         self._extend(here, name, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         return here
 
