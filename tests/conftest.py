@@ -29,6 +29,8 @@ STUDIES = {
     "test_features.py": "every feature crossed with every analysis, the costly ones too",
     "test_killed_and_full.py": "14 commands killed at 30 moments and on disks of 10 sizes",
     "test_long_lines.py": "250 disks",
+    "test_responses_of_long_lines.py": "200 long trees",
+    "test_stability_of_long_lines.py": "200 long trees",
     "test_mutated_files.py": "20 000 mutated files",
     "test_phase_axes.py": "500 points on each of 20 charts",
     "test_resonance_names.py": "2000 unstable points",

@@ -13,8 +13,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Arc
 
 import trunnion as tn
-from trunnion.plots.kinetostatics import COLOURS, draw_paper
-from trunnion.plots.style import FAINT, INK, SMALL, TEXT, TITLE, save
+from trunnion.pictures.draw_matplotlib import SMALL, TEXT, TITLE, draw, save
+from trunnion.pictures.kinetostatics import paper
+from trunnion.pictures.looks import COLOURS, FAINT, INK
 
 IMAGES = Path(__file__).parents[1] / "images"
 FRONT, REAR, PLANE = COLOURS[0], COLOURS[1], FAINT
@@ -115,5 +116,5 @@ def span(axes, ray, low, high, radius, name, at) -> None:
 if __name__ == "__main__":
     save(conventions(), IMAGES / "kinetostatics-conventions.png")
     line = tn.catalogue("bicardan-elastic")
-    save(draw_paper(tn.kinetostatics(line, rigid=False)), IMAGES / "bicardan-elastic-figure-3.png")
-    save(draw_paper(tn.kinetostatics(line)), IMAGES / "bicardan-elastic-figure-4.png")
+    save(draw(paper(tn.kinetostatics(line, rigid=False))).figure.figure, IMAGES / "bicardan-elastic-figure-3.png")
+    save(draw(paper(tn.kinetostatics(line))).figure.figure, IMAGES / "bicardan-elastic-figure-4.png")

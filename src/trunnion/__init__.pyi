@@ -12,6 +12,7 @@ from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
+from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
@@ -78,16 +79,16 @@ from trunnion.motion.chaos.lyapunov_spectrum import lyapunov_spectrum as lyapuno
 from trunnion.motion.chaos.poincare_map import poincare_map as poincare_map
 from trunnion.motion.linearity.linearity_check import linearity_check as linearity_check
 from trunnion.motion.orbits.basins import basins as basins
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit as piecewise_orbit
 from trunnion.motion.orbits.frequency_response import compare_responses as compare_responses
 from trunnion.motion.orbits.frequency_response import frequency_response as frequency_response
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance as harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs as balance_springs
 from trunnion.motion.orbits.periodic_branch import periodic_branch as periodic_branch
+from trunnion.motion.orbits.periodic_branch import piecewise_branch as piecewise_branch
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch as piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit as piecewise_orbit
-from trunnion.motion.orbits.piecewise_sweep import rattle_index as rattle_index
-from trunnion.motion.orbits.piecewise_sweep import sweep as sweep
+from trunnion.motion.orbits.sweep import rattle_index as rattle_index
+from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
 from trunnion.motion.perturbation.averaging import averaging as averaging
@@ -96,7 +97,7 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales as mult
 from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
-from trunnion.plots.layout import sketch as sketch
+from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction

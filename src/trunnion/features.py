@@ -127,10 +127,15 @@ _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, 
 _NOT_FOLLOWED = dict.fromkeys(
     ("dry friction", ONE_MOTION), "sliders change between sticking and slipping, which is not followed"
 )
+TIED = "shafts tied to two others"
+_TREES = dict.fromkeys(
+    (TIED, "closed loop"), "follows lines that branch, and none whose shaft is tied to two others or closes a loop"
+)
 _FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
 _UNANSWERED = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"}
 _BASE = {
     **_RUBBING,
+    **_TREES,
     "free start": "bent, it is judged about its own periodic motion",
     "drive share": "belongs to lines that start free",
     "prescribed far end": "two prescribed speeds leave a bent line nowhere to go",
@@ -176,6 +181,7 @@ _DAMPINGS = (
 )  # fmt: skip
 _UNDAMPED = "the names stand at the frequencies of the undamped line"
 _ONE_DRIVE = {
+    **_TREES,
     "prescribed far end": "the nonlinear equations have one prescribed speed",
 }
 _ANYWHERE = {DRAGGED: "its ring may stand anywhere, so that no periodic motion is the only one"}
@@ -213,7 +219,7 @@ _RIGID = dict.fromkeys(
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
-_TUBES = ("tube inertia", "bending stiffness", "ratio", "belt", "planetary set", "gear mesh")
+_TUBES = ("tube inertia", "bending stiffness", "ratio", "belt", "planetary set", TIED, "gear mesh")
 _TUBE = "a tube whirls between its own joints, by its own dimensions"
 _RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a rigid pair in contact")
 _STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"
@@ -262,7 +268,7 @@ ROWS: dict[str, Row] = {
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
     ),
     "turn": _row(
-        refused={"prescribed far end": "the output follows from the input"},
+        refused={**_TREES, "prescribed far end": "the output follows from the input"},
         said={
             "damping": _UNDAMPED_TURN,
             "loss factor": _UNDAMPED_TURN,
@@ -288,7 +294,7 @@ ROWS: dict[str, Row] = {
         },
         inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
     ),
-    "forks": _row(refused={"prescribed far end": "the output follows from the input"}, inert=_RIGID),
+    "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
     "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import is_dataclass
 from types import SimpleNamespace
 from typing import Any
 
@@ -68,6 +69,9 @@ def alike(a: Any, b: Any, path: str = "") -> None:
         assert a.keys() == b.keys(), path
         for key in a:
             alike(a[key], b[key], f"{path}.{key}")
+    elif is_dataclass(a):
+        assert type(a) is type(b), path
+        alike(vars(a), vars(b), path)
     elif isinstance(a, list | tuple):
         assert len(a) == len(b), path
         for k, (one, other) in enumerate(zip(a, b, strict=True)):

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from served import Look
 
-from trunnion.app.parts import figures
+from trunnion.pictures import looks
 
 LEAST_CONTRAST = 4.5
 """Of text, by WCAG 2.2, 1.4.3."""
@@ -141,7 +141,7 @@ def luminance(colour: str) -> float:
 
 
 @pytest.mark.parametrize(
-    ("colour", "least"), [(figures.INK, 4.5), (figures.FAINT, 4.5), *((c, 2.0) for c in figures.COLOURS)]
+    ("colour", "least"), [(looks.INK, 4.5), (looks.FAINT, 4.5), *((c, 2.0) for c in looks.COLOURS)]
 )
 def test_what_is_drawn_stands_out_from_white(colour: str, least: float) -> None:
     """Text as text must; of the curves' colours those of Okabe and Ito are kept, which dashes tell apart as well."""

@@ -9,37 +9,38 @@ import trunnion as tn
 from trunnion.app.shown import assessment, chart, turn
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.starter import starter
+from trunnion.pictures.picture import Line, Mesh
+from trunnion.pictures.stability_chart import DECAYS, _steps
 
 pytest.importorskip("panel")
-
-from trunnion.app.views.stability import end_of_colours
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["two-shaft", "three-shaft", "truck"])
 def test_the_colours_of_a_chart_tell_its_points_apart(name: str) -> None:
-    """Whatever a turn takes away: neither is all of it white nor all of it of the darkest colour."""
+    """Whatever a turn takes away: its steps are not all of one colour, nor is one of them nearly all of the chart."""
     line = tn.loads(starter(name))
     speeds, angles = ("speed", tn.rpm(500), tn.rpm(2500), 6), (f"{hooke_joints(line)[0][0]}.angle", 0.0, 0.3, 4)
-    growth = chart(tn.stability_chart(line, speeds, angles))["growth"]
-    end = end_of_colours(growth)
-    shades = np.unique(np.clip(np.floor(5 * np.abs(growth) / end), 0, 4))
-    assert len(shades) >= 2
-    assert np.mean(np.abs(growth) <= end) >= 0.9 and np.percentile(np.abs(growth), 90) >= end / 2.5
+    items = chart(tn.stability_chart(line, speeds, angles), "rpm")["picture"].panel.items
+    mesh = next(item for item in items if isinstance(item, Mesh))
+    shown = mesh.values[np.isfinite(mesh.values)]
+    levels = mesh.colours.levels or np.linspace(mesh.colours.low, mesh.colours.high, 6)
+    assert shown.min() >= levels[0] * (1 - 1e-9) and shown.max() <= levels[-1] * (1 + 1e-9)
+    shades = np.unique(np.digitize(shown, levels), return_counts=True)[1]
+    assert len(shades) >= 2 and shades.max() <= 0.9 * shown.size
 
 
 @pytest.mark.parametrize("size", [1e-6, 3e-4, 0.02, 0.7, 40.0])
-def test_the_ends_of_the_colours_are_round_and_follow_the_growth(size: float) -> None:
-    growth = np.linspace(-size, size, 101)
-    growth[3] = np.nan
-    end = end_of_colours(growth)
-    assert float(f"{end:.0e}") == pytest.approx(end) and f"{end:.0e}"[0] in "125"
-    assert end >= 0.9 * 0.98 * size and (end <= 2.5 * size or end == 1e-4)
-    assert end_of_colours(np.full(4, np.nan)) == 1e-4
+def test_the_steps_of_the_colours_are_round_and_cover_the_decay(size: float) -> None:
+    low, high, _, levels = _steps(np.linspace(size / 50, size, 101))
+    steps = np.diff(levels)
+    assert np.ptp(steps) < 1e-9 * size and 4 <= len(steps) <= DECAYS + 2
+    assert float(f"{steps[0]:.2g}") == pytest.approx(steps[0])
+    assert low == levels[0] <= size / 50 and high == levels[-1] >= size
 
 
 def turned(line: tn.Driveline) -> dict[str, object]:
-    return turn(tn.kinetostatics(line))
+    return turn(tn.kinetostatics(line), "rpm", 0.0)
 
 
 def test_accelerations_are_those_of_each_named_output() -> None:
@@ -57,8 +58,11 @@ def test_rounding_is_not_drawn_and_not_printed() -> None:
         data = turned(line)
         (output,) = data["outputs"]  # type: ignore[misc]
         assert (output["irregularity"], output["acceleration"]) == (0.0, 0.0)
-        last = np.asarray(data["deviation"])[-1]
-        assert not last.any()
+        speeds = data["picture"].panels[0]  # type: ignore[attr-defined]
+        every = np.concatenate([one.y for one in speeds.items])
+        behind = next(one.y for one in speeds.items if line.names[-2] in one.name)
+        low, high = (every.min(), every.max()) if speeds.y.low is None else (speeds.y.low, speeds.y.high)
+        assert np.ptp(behind) < 1e-9 * (high - low)
 
 
 def test_a_sketch_says_which_joints_it_does_not_show() -> None:
@@ -80,8 +84,9 @@ def test_what_binds_is_drawn_whatever_it_is() -> None:
     disk = next(e.name for e in reversed(line.elements) if e.kind == "Disk")
     limit = tn.Limit(of=disk, max_speed_fluctuation="0.01 rpm")
     found = tn.assess(tn.Driveline(line.elements, limits=[limit], operation=line.operation))
-    course = assessment(found)["course"]
-    assert (course["quantity"], course["unit"]) == (f"speed fluctuation of {disk}", "rpm")
-    assert course["values"][-1] == pytest.approx(np.full(len(course["speed"]), 0.01))
-    assert tn.rpm(course["values"][0].max()) == pytest.approx(found.binding.value)
-    assert course["names"][0].startswith("all together") and "order 2" in course["names"]
+    panel = assessment(found)["course"].panel
+    assert (panel.title, panel.y.unit) == (f"speed fluctuation of {disk}", "rpm")
+    whole, *orders, most = [item for item in panel.items if isinstance(item, Line)]
+    assert most.y == pytest.approx(np.full(len(whole.x), 0.01))
+    assert tn.rpm(np.max(whole.y)) == pytest.approx(found.binding.value)
+    assert whole.name.startswith("all together") and "order 2" in [one.name for one in orders]

@@ -27,6 +27,7 @@ from trunnion.app.session import NOW, Session
 from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter
 from trunnion.errors import ComputationError
+from trunnion.pictures.picture import EdgeNames
 
 WORKER = Worker(BytesIO(), BytesIO(), 1)
 
@@ -213,16 +214,16 @@ def test_settings_that_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.slow
 def test_each_part_is_of_its_own_job_and_what_is_not_asked_for_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A point that moves leaves the chart as it is; the named speeds go with the axis they stand on."""
+    """A point that moves leaves the chart as it is; a chart over other axes is another."""
 
     async def work(made: Session, pool: Held) -> None:
         side = made.view_of("stability").of(NOW)
-        assert len(side.names.data["x0"]) > 0 and not side.stamp.object
+        assert named(side) and not side.stamp.object
         said = side.regions.object
         pool.held.clear()
         made.view.clicked(700.0, 15.0)
         assert faintly(side.point.panel) and faintly(side.motion.panel) and side.stamp.object
-        assert not faintly(side.picture) and not faintly(side.regions)
+        assert not faintly(side.picture.panel) and not faintly(side.regions)
         pool.held.set()
         await settled(made)
         assert not side.stamp.object
@@ -231,9 +232,17 @@ def test_each_part_is_of_its_own_job_and_what_is_not_asked_for_is_gone(monkeypat
         assert side.regions.object == said and not side.stamp.object, "the same regions, over more points"
         pool.held.clear()
         made.view.chosen("x", "Shaft 1.stiffness")
-        assert len(side.names.data["x0"]) == 0 and faintly(side.picture)
+        assert faintly(side.picture.panel)
+        pool.held.set()
+        await settled(made)
+        assert not named(side) and not faintly(side.picture.panel)
 
     on_session(work, monkeypatch, view="stability", **{"stability.across": "6", "stability.up": "5"})
+
+
+def named(side: Any) -> list[str]:
+    """Resonances that are named along the chart."""
+    return [text for item in side.chart.items if isinstance(item, EdgeNames) for text in item.texts]
 
 
 def test_what_is_asked_for_beside_the_view_is_dropped_when_the_line_changes(monkeypatch: pytest.MonkeyPatch) -> None:

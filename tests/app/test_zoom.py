@@ -19,6 +19,7 @@ import trunnion as tn
 from trunnion.app.parts.jobs import Job
 from trunnion.app.worker import Worker
 from trunnion.driveline.starter import starter
+from trunnion.pictures.picture import Mesh
 
 BOX = ((tn.rpm(650), tn.rpm(800), 5), (tn.deg(10), tn.deg(19), 4))
 
@@ -45,11 +46,16 @@ def test_a_zoom_after_many_clicks_asks_for_no_chart(monkeypatch: pytest.MonkeyPa
         for name in ("point", "undisturbed", "motion"):
             compute(look(at_x)[name].job(toml))
     chart = steps["chart"]
-    zoomed = compute(Job(toml, chart.call, chart.show, {"zoom": BOX}))
+    zoomed = mesh(compute(Job(toml, chart.call, chart.show, {**chart.options, "zoom": BOX})))
     assert calls == ["chart"]
-    assert zoomed["growth"].shape == (4, 5) and whole["growth"].shape == (10, 12)
+    assert zoomed.says.shape == (4, 5) and mesh(whole).says.shape == (10, 12)
     for j, k in ((0, 0), (3, 2), (1, 4)):
-        line = tn.loads(toml).replace("HookeJoint 1", angle=float(zoomed["y"][j]))
-        there = tn.stability(line, speed=float(zoomed["x"][k]))
+        line = tn.loads(toml).replace("HookeJoint 1", angle=tn.deg(zoomed.y[j]))
+        there = tn.stability(line, speed=tn.rpm(zoomed.x[k]))
         per_turn = np.expm1(np.log(there.spectral_radius) * 2 * np.pi / there.period)
-        assert zoomed["growth"][j, k] == pytest.approx(per_turn, abs=1e-6)
+        assert zoomed.says[j, k] == pytest.approx(100 * per_turn, abs=1e-4)
+
+
+def mesh(data: dict[str, Any]) -> Mesh:
+    """What of a chart is coloured, and what the pointer is told of each point."""
+    return next(item for item in data["picture"].panel.items if isinstance(item, Mesh))

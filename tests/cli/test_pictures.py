@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
 
 import trunnion as tn
-from trunnion.plots.resonance_marks import spread
-from trunnion.plots.stability_chart import draw, edges
+from trunnion.pictures.draw_matplotlib import draw
+from trunnion.pictures.picture import edges, spread
+from trunnion.pictures.stability_chart import stability_chart
 from trunnion.results.verdict import Verdict
 
 
@@ -40,7 +41,7 @@ def test_resonance_names_neither_overlap_nor_clip(chart, size, turned):
     if turned:
         chart = tn.stability_chart(chart.line, ("HookeJoint *.angle", 0, 0.8, 12), ("speed", 0.25, 2.2, 30))
     figure = Figure(figsize=size, layout="constrained")
-    axes = draw(chart, figure.subplots(), resonances=tn.resonance_speeds(chart.line, 6))
+    axes = draw(stability_chart(chart, resonances=tn.resonance_speeds(chart.line, 6)), figure.subplots())
     figure.draw_without_rendering()
     names = [t for t in axes.texts if isinstance(t, Annotation)]
     boxes = [Text.get_window_extent(t) for t in names]
@@ -56,7 +57,7 @@ def test_every_verdict_has_its_entry(chart):
     verdict = chart.verdict.copy()
     for row, code in enumerate(Verdict):
         verdict[row] = code
-    axes = draw(replace(chart, verdict=verdict))
+    axes = draw(stability_chart(replace(chart, verdict=verdict)))
     words = [text.get_text() for text in axes.get_legend().get_texts()]
     for word in ("stable", "unstable", "marginal", "undecided", "not computed"):
         assert any(entry.startswith(word) for entry in words)
@@ -64,7 +65,7 @@ def test_every_verdict_has_its_entry(chart):
 
 def test_units_and_operating_point(chart):
     operating = tn.Operation(speed=1.0, speed_range=[0.5, 2.0], angle_range=[0.0, 0.3])
-    axes = draw(chart, unit="Hz", operating=operating)
+    axes = draw(stability_chart(chart, unit="Hz", operating=operating))
     assert axes.get_xlabel() == "input speed [Hz]" and axes.get_ylabel() == "angle of all Hooke's joints [°]"
     point = next(line for line in axes.lines if line.get_label() == "operating point")
     assert point.get_xydata()[0] == pytest.approx([1 / (2 * np.pi), np.rad2deg(0.2)])

@@ -94,6 +94,27 @@ def planetary() -> tn.Planetary:
     )  # fmt: skip
 
 
+def unbent(line: tn.Driveline) -> tn.Driveline:
+    """All joints straight and linear springs alone."""
+    elements = [tn.IdealJoint(name=name) if "joint" in name else element for name, element in line.parts]
+    springs = [tn.Shaft(stiffness=1e4, damping=5, name=e.name) if e.kind == "PiecewiseShaft" else e for e in elements]
+    return tn.Driveline(springs, operation=line.operation, limits=line.limits, tolerances=line.tolerances)
+
+
+def tied(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
+    """The same with a differential behind the hub, whose right leg carries what the left one does."""
+    line = unbent(line) if straight else line
+    place, load = line.index("hub") + 1, line.elements[-1]
+    legs = (
+        tn.Differential(ratio=2, inertia=0.02, name="gears"),
+        tn.Disk(inertia=0.03, name="right", after="gears.right"),
+        tn.Shaft(stiffness=8e3, damping=5, name="axle"),
+        tn.Disk(inertia=0.2, load_torque=getattr(load, "load_torque", 0.0), name="wheel"),
+        tn.Disk(inertia=0.03, name="left", after="gears.left"),
+    )
+    return line.but(elements=[*line.elements[:place], *legs, *line.elements[place:]])
+
+
 def tube(**more: float) -> Change:
     return front(tn.Shaft(outer_diameter=0.05, length=0.5, shear_modulus=8e10, density=800.0, name="front", **more))
 
@@ -168,6 +189,26 @@ OWN = {one.key for one in FEATURES}
 """Among them the names of joints that are features of their own."""
 CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
 
+
+def looped(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
+    """The same with a second shaft beside the rear one, from the hub to the load."""
+    line = unbent(line) if straight else line
+    place = line.index("load") + 1
+    second = tn.Shaft(stiffness=4e3, damping=3, name="second", after="hub", to="load")
+    return line.but(elements=[*line.elements[:place], second, *line.elements[place:]])
+
+
+def excited(change: Change) -> Change:
+    return lambda line: change(line).replace("load", excitation=[{"order": 2, "amplitude": 5.0}])
+
+
+OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
+    ("resonance_speeds", "shafts tied to two others"): (same, lambda line: tied(line, straight=False)),
+    ("resonance_speeds", "closed loop"): (same, lambda line: looped(line, straight=False)),
+    ("optimise", "closed loop"): (excited(unbent), excited(looped)),
+    ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
+}
+"""Where an analysis asks about something else than the lines below have."""
 CHANGES: dict[str, tuple[Change, Change]] = {
     "inertia": (same, put("hub", inertia=0.15)),
     "stiffness": (same, put("front", stiffness=2e4)),
@@ -206,6 +247,8 @@ CHANGES: dict[str, tuple[Change, Change]] = {
         same, behind("hub", tn.Belt(radius_in=0.06, radius_out=0.12, span_stiffness=1e6, damping=2.0, inertia_out=0.02))
     ),
     "planetary set": (same, behind("hub", planetary())),
+    "shafts tied to two others": (unbent, tied),
+    "closed loop": (unbent, looped),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
     "impact damping": (

@@ -14,6 +14,7 @@ from trunnion.driveline import (
     Clutch,
     ConstantSpeed,
     Coupling,
+    Differential,
     Disk,
     Driveline,
     DualMassFlywheel,
@@ -55,6 +56,7 @@ PARTS = [
     Disk(mass="2.2 t", radius="0.35 m"),
     Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
     Planetary(teeth_sun=30, teeth_ring=72, input="sun", held="ring", planet_mass="0.8 kg", centre_distance="80 mm"),
+    Differential(teeth_in=10, teeth_out=41, inertia="0.05 kg*m^2"),
 ]
 COMPONENTS = [
     ViscousDamper(inertia="0.05 kg*m^2", ring_inertia="0.12 kg*m^2", damping=45, heat_rating="400 W"),
@@ -278,6 +280,7 @@ def test_a_line_introduces_itself():
         "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg*m^2, material steel",
         "  Planetary 1      teeth sun 30, teeth ring 72, input sun, held ring, planet mass 0.8 kg, "
         "centre distance 80 mm",
+        "  Differential 1   teeth in 10, teeth out 41, inertia 0.05 kg*m^2",
     ]
 
 

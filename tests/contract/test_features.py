@@ -97,7 +97,8 @@ def differ(one: dict[str, np.ndarray], other: dict[str, np.ndarray], tolerance: 
 def test_cell(analysis: str, key: str) -> None:
     cell = TABLE[analysis][key]
     line = QUESTIONS[analysis].line()
-    without, with_it = (tn.dumps(change(line)) for change in feature_lines.CHANGES[key])
+    changes = feature_lines.OTHERS.get((analysis, key), feature_lines.CHANGES[key])
+    without, with_it = (tn.dumps(change(line)) for change in changes)
     own = key if (analysis, key) in ASK_CELL else ""
     after = answer(analysis, with_it, own)
     if cell.treatment is Treatment.REFUSED:
@@ -121,7 +122,7 @@ def test_cell(analysis: str, key: str) -> None:
         assert words and words[0] in after.text, f"not said: {words}"
 
 
-ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "plots")
+ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "pictures")
 """Where what takes a driveline to answer something stands."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from walks import Walk, shown
 
 NAME = "energy_share"
-NEW = [f"src/trunnion/{room}/{NAME}.py" for room in ("response", "plots", "cli")]
+NEW = [f"src/trunnion/{room}/{NAME}.py" for room in ("response", "pictures", "cli")]
 RIGHT = """
 import json
 import numpy as np, xarray as xr, trunnion as tn

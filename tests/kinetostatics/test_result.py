@@ -9,9 +9,9 @@ import pytest
 from matplotlib.text import Text
 
 import trunnion as tn
-from trunnion.plots import kinetostatics as plots
-from trunnion.plots.irregularity import draw as draw_irregularity
-from trunnion.plots.style import STYLES, curve_style
+from trunnion.pictures import kinetostatics as pictures
+from trunnion.pictures.draw_matplotlib import draw
+from trunnion.pictures.looks import STYLES, curve, look
 from trunnion.response.kinetostatics.measures import extremes, parts
 
 LINE = lines.row([12, 15], planes=[0, 20], load=150.0)
@@ -173,11 +173,11 @@ def texts(figure):
     return [t.get_text() for ax in figure.axes for t in (ax.xaxis.label, ax.yaxis.label, ax.title) if t.get_text()]
 
 
-@pytest.mark.parametrize("draw", [plots.draw, plots.draw_polar, plots.draw_paper])
-def test_figures(draw, result):
+@pytest.mark.parametrize("described", [pictures.kinetostatics, pictures.polar, pictures.paper])
+def test_figures(described, result):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        figure = draw(result)
+        figure = draw(described(result)).figure
         figure.canvas.draw()
     assert any("[" in text for text in texts(figure))
     box, size = figure.get_tightbbox(), figure.get_size_inches()
@@ -190,8 +190,8 @@ def test_a_line_without_shafts_still_shows_itself(joint, tmp_path):
     assert ("turns uniformly" if result.irregularity == 0 else "irregularity") in str(result)
     assert result.data["speed"].shape == (0, 720)
     result.to_csv(tmp_path / "turn.csv")
-    for draw in (plots.draw, plots.draw_polar):
-        draw(result).canvas.draw()
+    for described in (pictures.kinetostatics, pictures.polar):
+        draw(described(result)).figure.canvas.draw()
 
 
 @pytest.mark.parametrize("what", ["line", "layout", "tripod"])
@@ -235,7 +235,7 @@ def test_curves_of_many_forks_differ():
     drawn = result.plot().axes[3].get_lines()
     assert len(drawn) == 12
     assert len({(c.get_color(), str(c._unscaled_dash_pattern), c.get_marker()) for c in drawn}) == 12
-    in_grey = [(str(curve_style(k)["linestyle"]), curve_style(k)["marker"]) for k in range(STYLES)]
+    in_grey = [(look(curve(k)).dash, look(curve(k)).marker) for k in range(STYLES)]
     assert len(set(in_grey)) == STYLES >= 16
 
 
@@ -244,20 +244,20 @@ def test_irregularity_of_more_shafts_than_colours():
     for number in range(1, 9):
         line += [tn.HookeJoint(angle=0.02 * number), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1)]
     result = tn.kinetostatics(tn.Driveline(line))
-    drawn = [c for c in draw_irregularity(result).get_lines() if not c.get_label().startswith("_")]
+    drawn = [c for c in draw(pictures.irregularity(result)).get_lines() if not c.get_label().startswith("_")]
     assert len(drawn) == 8
     assert len({(str(c._unscaled_dash_pattern), c.get_marker()) for c in drawn}) == 8
 
 
 @pytest.mark.slow
 def test_pictures_speak_the_unit_of_the_text(result):
-    for draw in (plots.draw, plots.draw_polar):
-        assert "input 94.2478 rad/s" in draw(result).get_suptitle()
-        assert "input 900 rpm" in draw(result, unit="rpm").get_suptitle()
+    for described in (pictures.kinetostatics, pictures.polar):
+        assert "input 94.2478 rad/s" in draw(described(result)).figure.get_suptitle()
+        assert "input 900 rpm" in draw(described(result, unit="rpm")).figure.get_suptitle()
 
 
 def test_title_breaks_in_front_of_a_quantity():
-    title = plots.draw_polar(tn.kinetostatics(tn.catalogue("bicardan-elastic"))).get_suptitle()
+    title = draw(pictures.polar(tn.kinetostatics(tn.catalogue("bicardan-elastic")))).figure.get_suptitle()
     assert "input 1 rad/s" in title
     assert "\n" in title
 

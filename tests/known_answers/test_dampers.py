@@ -10,6 +10,8 @@ from pages import run_page
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.floquet.stability.along import stability_along
 
 INERTIA, STIFFNESS = 0.12, 3e4
 OMEGA = np.sqrt(STIFFNESS / INERTIA)
@@ -321,6 +323,96 @@ def test_a_damper_is_a_branch_by_itself() -> None:
     assert all(a < b for a, b in pairwise(found.undamped_frequency))
     again = tn.loads(tn.dumps(line))
     assert again == line
+
+
+def chain(ends: str, stiffness: float | None, count: int = 20, angle: float = 0.0) -> tn.Driveline:
+    """Some twenty inertias with a ring in mid-line and one at the end; the first disk is shaken, at one speed by a
+    torque that stands still."""
+    link = {} if stiffness is None else {"stiffness": stiffness}
+    shaken = [{"order": 2, "amplitude": 10.0}, {"order": 1, "frequency": -100.0, "amplitude": 4.0}]
+    elements: list[object] = [tn.ConstantSpeed()] if ends == "driven" else []
+    for i in range(count):
+        elements += [tn.Shaft(stiffness=3e4, damping=3.0, name=f"s{i}")] if elements else []
+        more = {"excitation": shaken} if i == 1 else {"viscous_load": 0.05} if i == count - 1 else {}
+        elements.append(tn.Disk(inertia=0.3 + 0.02 * i, drive_share=float(not elements), name=f"d{i}", **more))
+        if angle and i == 5:
+            elements += [tn.HookeJoint(angle=angle, name="joint"), tn.Disk(inertia=0.05, name="yoke")]
+        if i in (3, count - 1):
+            elements.append(tn.ViscousDamper(ring_inertia=0.2, damping=20.0, name=f"r{i}", **link))
+    return tn.Driveline(elements)
+
+
+@pytest.mark.parametrize("ends", ["driven", "free"])
+def test_long_lines_with_rings_are_the_limit_of_soft_oil(ends: str) -> None:
+    """Orders of a straight line, one of them a torque that stands still, against rings on ever softer springs."""
+    speeds = [80.0, 100.0, 130.0]
+    found = tn.order_response(chain(ends, None), speeds).data["torque"].to_numpy()
+    off = [
+        np.abs(tn.order_response(chain(ends, k), speeds).data["torque"].to_numpy() - found).max() for k in (1e-1, 1e-3)
+    ]
+    assert np.isfinite(found).all() and off[1] < 1.1e-2 * off[0] < 1e-3 * np.abs(found).max()
+
+
+def test_multipliers_of_a_long_line_with_rings() -> None:
+    """Against e^{λT} of the eigenvalues of the matrices written out."""
+    speed, n = 150.0, 20
+    line = chain("driven", None)
+    inertia = np.array([0.3 + 0.02 * i for i in range(n)] + [0.2, 0.2])
+    k, c = np.zeros((n + 2, n + 2)), np.zeros((n + 2, n + 2))
+    for i in range(n):
+        one = np.eye(n + 2)[i] - (np.eye(n + 2)[i - 1] if i else 0.0)
+        k, c = k + 3e4 * np.outer(one, one), c + 3.0 * np.outer(one, one)
+    for ring, on in ((n, 3), (n + 1, n - 1)):
+        one = np.eye(n + 2)[ring] - np.eye(n + 2)[on]
+        c = c + 20.0 * np.outer(one, one)
+    c[n - 1, n - 1] += 0.05
+    state = np.block([[np.zeros_like(k), np.eye(n + 2)], [-k / inertia[:, None], -c / inertia[:, None]]])
+    values = np.linalg.eigvals(state)
+    left = np.abs(values).argsort()[2:]
+    assert np.abs(np.delete(values, left)).max() < 1e-9
+    found = tn.stability(line, speed)
+    assert found.set_aside == 2
+    expected = np.exp(values[left].real.max() * found.period / speed)
+    assert found.spectral_radius == pytest.approx(expected, abs=1e-9)
+
+
+def test_a_long_bent_line_with_rings_is_judged_alike_everywhere() -> None:
+    """One speed by its matrix over the period, many by the chain kernel, and soft oil mode by mode."""
+    line, soft = (chain("driven", k, 42, np.deg2rad(12)) for k in (None, 1e-3))
+    one = tn.stability(line, 150.0)
+    along = stability_along(assemble(line), [150.0])
+    assert one.set_aside == 2 and along.radius == pytest.approx(one.spectral_radius, abs=1e-7)
+    every = np.sort(np.abs(tn.stability(soft, 150.0).multipliers))[::-1]
+    assert every[2] == pytest.approx(one.spectral_radius, abs=1e-6), "behind those of both rings"
+
+
+def test_a_ring_behind_a_differential() -> None:
+    """Legs turn against each other, rings are dragged along: each is one mode at 0, and none is another's."""
+
+    def car(free: bool, load: float, **link: float) -> tn.Driveline:
+        first = tn.Disk(inertia=0.5, drive_share=1.0) if free else tn.ConstantSpeed()
+        ring = {"ring_inertia": 0.2, "damping": 20.0, **link}
+        return tn.Driveline(
+            [
+                first, tn.Shaft(stiffness=3e4, damping=3.0), tn.Disk(inertia=0.3), tn.ViscousDamper(**ring),
+                tn.Differential(name="drive", ratio=3.5), tn.Disk(inertia=0.05),
+                tn.Shaft(stiffness=2e4, damping=2.0), tn.Disk(inertia=0.4, viscous_load=load), tn.ViscousDamper(**ring),
+                tn.Disk(inertia=0.05, after="drive.right"),
+                tn.Shaft(stiffness=2e4, damping=2.0), tn.Disk(inertia=0.6, viscous_load=load),
+            ]
+        )  # fmt: skip
+
+    for free in (False, True):
+        for load in (0.0, 2.0):
+            found, soft = (tn.natural_frequencies(car(free, load, **link)) for link in ({}, {"stiffness": 1e-4}))
+            assert (found.rigid_motions, found.still) == (1 + free, 3 + free)
+            assert soft.still == 1 + free
+            assert found.eigenvalue == pytest.approx(soft.eigenvalue, abs=2e-5)
+            judged = tn.stability(car(free, load), 100.0)
+            assert judged.set_aside == found.still + (0 if load else found.rigid_motions)
+            assert "set aside" in str(judged)
+            slowest = np.sort(found.decay_rate.ravel())[judged.set_aside]
+            assert judged.growth_rate == pytest.approx(-slowest, abs=1e-6)
 
 
 def test_the_page_runs() -> None:

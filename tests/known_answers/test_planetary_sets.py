@@ -36,7 +36,7 @@ def heavy(drives: str, driven: str) -> tn.Planetary:
 @pytest.mark.parametrize(("drives", "driven"), list(permutations(("sun", "carrier", "ring"), 2)))
 def test_ratios_of_all_arrangements(drives: str, driven: str) -> None:
     one = planetary(drives, driven)
-    assert one.output == driven
+    assert one.driven == driven
     np.testing.assert_allclose(one.speed_ratio, STANDARD[drives, driven], rtol=1e-15)
     speed = one.speeds
     assert SUN * speed["sun"] + RING * speed["ring"] == (SUN + RING) * speed["carrier"]

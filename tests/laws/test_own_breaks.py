@@ -16,8 +16,7 @@ from oracles.scanned_lines import scanned_line
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.floquet.stability.along import stability_along
-from trunnion.steady.own.own_breaks import breaks
-from trunnion.steady.own.own_motions import MotionsBySpeed
+from trunnion.steady.own.own_motions import MotionsBySpeed, breaks
 
 
 def test_a_motion_on_the_flank_of_a_steep_resonance_is_followed_to():

@@ -15,7 +15,7 @@ import pytest
 from oracles.driven_chains import Chain, keeps, mean_speed, random_chain, reaches, run
 
 import trunnion as tn
-from trunnion.motion.passing.run_up_result import RunUp
+from trunnion.motion.passing.run_up import RunUp
 
 LOOSE, TIGHT = 1e-8, 1e-10
 MOST_EDGES = 0.05
@@ -156,7 +156,7 @@ def test_the_torque_of_a_captured_line_would_keep_the_last_speed(captured: RunUp
     from trunnion.equations.line_system import line_system
     from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 
-    losses = {w: kept_speed_orbit(line_system(hanging_line(), w)).extra_torque for w in (captured.ending.speed, 100.0)}
+    losses = {w: kept_speed_orbit(line_system(hanging_line(), w)).values[-1] for w in (captured.ending.speed, 100.0)}
     needed = {w: 0.003 * w**2 + torque for w, torque in losses.items()}
     assert needed[100.0] < captured.ending.drive
     assert needed[captured.ending.speed] == pytest.approx(captured.ending.drive, rel=0.1)
@@ -240,10 +240,10 @@ def test_a_line_whose_losses_take_the_torque_is_not_captured() -> None:
     )
     found = tn.run_up(line, 10.0, 60.0, acceleration=1.0, steady=0)
     assert found.outcome.kind == "short of torque" and found.outcome.ok
-    needed = 0.1 * 60 + kept_speed_orbit(line_system(line, 60.0)).extra_torque
+    needed = 0.1 * 60 + kept_speed_orbit(line_system(line, 60.0)).values[-1]
     assert needed > found.ending.drive
     ends = found.ending.speed
-    assert 0.1 * ends + kept_speed_orbit(line_system(line, ends)).extra_torque == pytest.approx(
+    assert 0.1 * ends + kept_speed_orbit(line_system(line, ends)).values[-1] == pytest.approx(
         found.ending.drive, rel=0.02
     )
     assert "losses in joints and dampers take all" in str(found)

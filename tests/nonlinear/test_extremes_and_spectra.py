@@ -179,12 +179,13 @@ def test_orders_of_a_long_period_have_bars_that_can_be_seen() -> None:
     """A period of 26 turns has 313 orders up to 12, most of them empty: the others leave room for wide bars."""
     from types import SimpleNamespace
 
-    from trunnion.plots.motion import draw_orders
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.motion import orders as described
 
     orders = np.arange(313) / 26
     amplitude = np.zeros((313, 2))
     amplitude[[26, 42, 78]] = [[3.0, 1.0], [200.0, 90.0], [20.0, 1e-3]]
-    axes = draw_orders(SimpleNamespace(shafts=("a", "b"), order_spectrum=lambda highest: (orders, amplitude)))
+    axes = draw(described(SimpleNamespace(shafts=("a", "b"), order_spectrum=lambda highest: (orders, amplitude))))
     widths = [bar.get_width() for bar in axes.patches]
     assert len(widths) == 6 and min(widths) > 12 / 200
     assert axes.get_xlim()[0] == 0 and axes.get_xlim()[1] >= 12

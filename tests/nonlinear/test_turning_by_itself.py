@@ -42,7 +42,7 @@ def truth(drive, times: np.ndarray, speed: float) -> np.ndarray:
 
 
 @pytest.fixture(scope="module")
-def motion() -> tn.motion.simulation.line_simulation.LineSimulation:
+def motion() -> tn.motion.simulation.simulation.LineSimulation:
     return tn.simulate(runaway(), 20.0, speed=20.0)
 
 

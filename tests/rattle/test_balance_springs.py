@@ -20,9 +20,9 @@ from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.errors import InputError
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.harmonic_balance_springs import SpringBalance, balance_springs
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.numerics import harmonics as fourier
 from trunnion.results.verdict import Verdict
 from trunnion.systems.second_order import SecondOrder, backlash_spring, cubic_spring

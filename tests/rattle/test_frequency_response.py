@@ -11,9 +11,9 @@ from known_motions import DEAD_ZONE_FOLDS, DUFFING_FOLDS
 
 import trunnion as tn
 from trunnion.errors import InputError
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.frequency_response import compare_responses, frequency_response
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 

@@ -17,7 +17,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_response import PeriodicResponse
-from trunnion.motion.simulation.simulation import simulate_system
+from trunnion.motion.simulation.simulate import simulate_system
 from trunnion.numerics.integration.integration import integrate
 from trunnion.numerics.piecewise_linear import piecewise
 from trunnion.systems.reference import dead_zone_oscillator

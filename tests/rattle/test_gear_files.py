@@ -14,7 +14,7 @@ import trunnion as tn
 from trunnion.driveline import json_schema
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputRemark
-from trunnion.motion.simulation.simulation import simulate_system
+from trunnion.motion.simulation.simulate import simulate_system
 
 SCHEMA = jsonschema.Draft202012Validator(json_schema())
 

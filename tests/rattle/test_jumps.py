@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trunnion.motion.orbits.jumps import abrupt_changes
+from trunnion.motion.orbits.sweep import abrupt_changes
 
 CASES = [
     ([1.0, 1.1, 1.2, 0.3, 0.28, 0.27], [2]),

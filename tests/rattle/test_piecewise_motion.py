@@ -22,8 +22,8 @@ from scipy.linalg import expm
 
 import trunnion as tn
 from trunnion.errors import InputError
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.numerics.piecewise_linear.piecewise import TooManyEventsError, kernel, move, period
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator

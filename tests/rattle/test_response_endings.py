@@ -11,14 +11,15 @@ from gears import HALF_GAP, dead_zone, gear_pair
 import trunnion as tn
 from trunnion.errors import InputError
 from trunnion.motion.orbits import harmonic_balance as balance_module
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.frequency_response import compare_responses, frequency_response, methods_of
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.integration.integration import End
-from trunnion.plots.frequency_response import draw_sweeps
+from trunnion.pictures.draw_matplotlib import draw
+from trunnion.pictures.frequency_response import sweeps
 from trunnion.systems import maps as map_module
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder
@@ -197,7 +198,7 @@ def test_a_picture_of_all_methods_hides_none() -> None:
         (line,) = (line for line in axes.lines if line.get_label() == name)
         assert 20 < len(line.get_xdata()) < 50
     up, down = (found[f"sweep {d}"].detail for d in ("up", "down"))
-    swept = draw_sweeps([up, down], length="rad")
+    swept = draw(sweeps([up, down], length="rad"))
     labels = [text.get_text() for text in swept.get_legend().get_texts()]
     assert "jump of a slow sweep" in labels and "two-sided, up" in labels and "one-sided, down" in labels
     assert len(swept.texts) == len(up.jumps) + len(down.jumps) == 2 and swept.get_ylabel().endswith("[rad]")

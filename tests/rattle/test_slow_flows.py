@@ -11,7 +11,7 @@ from oracles.sampling import quick_every
 from scipy.integrate import quad
 
 from trunnion.errors import InputError
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.perturbation.averaging import averaging
 from trunnion.motion.perturbation.cubic_fit import cubic_fit
 from trunnion.motion.perturbation.describing_function import DescribingFunction, describing_function

@@ -10,8 +10,8 @@ from gears import HALF_GAP, gear_pair
 
 from trunnion.errors import InputError
 from trunnion.motion.orbits.basins import basins
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_sweep import rattle_index, sweep
+from trunnion.motion.orbits.periodic_branch import piecewise_branch
+from trunnion.motion.orbits.sweep import rattle_index, sweep
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 FREQUENCIES = np.arange(30, 131) / 100

@@ -11,11 +11,13 @@ from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.modes.natural_frequencies import natural_frequencies
-from trunnion.plots.layout import sketch
-from trunnion.plots.style import HEIGHT, WIDTH, new_axes
+from trunnion.pictures.draw_matplotlib import new_figure
+from trunnion.pictures.layout import sketch
 from trunnion.reporting.pictures import picture
 
 NAMES = ["load $a_$", "$x$", "$", "a$b$c$", r"$\frac{1}{$", "{", r"\alpha $\undefined$", "^$_^$"]
+
+SIZE = (6.3, 4.9)
 
 
 def line(name: str) -> tn.Driveline:
@@ -34,7 +36,7 @@ def line(name: str) -> tn.Driveline:
 
 @pytest.mark.parametrize(("name", "ending"), list(zip(NAMES, ["svg", "png", "pdf"] * 3, strict=False)))
 def test_text_of_every_kind_is_shown_as_written(name, ending):
-    axes = new_axes()
+    axes = new_figure(*SIZE).add_subplot()
     axes.plot([1, 1e6], [1, 1e6], label=name)
     axes.set(xlabel=name, ylabel=name, title=name, xscale="log")
     axes.set_yticks([1, 2], [name, "b"])
@@ -46,7 +48,7 @@ def test_text_of_every_kind_is_shown_as_written(name, ending):
 
 
 def test_powers_at_the_axes_stay_powers():
-    axes = new_axes()
+    axes = new_figure(*SIZE).add_subplot()
     axes.set(xscale="log", xlim=(1, 1e6), title="$x$")
     axes.figure.draw_without_rendering()
     assert all(text.get_parse_math() for text in axes.get_xticklabels()) and not axes.title.get_parse_math()
@@ -59,7 +61,7 @@ def test_a_saved_figure_is_drawn_once_and_laid_out_as_matplotlib_would(ending, m
         axes.set(xlabel="speed", ylabel="amplitude of something", title="title", xscale="log")
         axes.figure.legend(loc="outside lower left")
 
-    axes, plain = new_axes(), Figure(figsize=(WIDTH, HEIGHT), layout="constrained").add_subplot()
+    axes, plain = new_figure(*SIZE).add_subplot(), Figure(figsize=SIZE, layout="constrained").add_subplot()
     fill(axes)
     fill(plain)
     plain.figure.savefig(io.BytesIO(), format=ending)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.plots.style import settle
+from trunnion.pictures.draw_matplotlib import settle
 
 
 def plain_line(stiffness: float = 1e4, damping: float = 3.0, limit: float = 60.0) -> tn.Driveline:
@@ -58,10 +58,11 @@ def test_far_margins_do_not_fall_onto_one_another(limit: float) -> None:
     assert far
     axes = found.plot()
     settle(axes)
-    rings = {line.get_ydata()[0]: [] for line in axes.lines[:-1]}
-    for line in axes.lines:
-        if line.get_marker() == "o":
-            rings[line.get_ydata()[0]].append(axes.transData.transform((line.get_xdata()[0], 0.0))[0])
+    rings = {}
+    for line in (one for one in axes.lines if one.get_marker() == "o"):
+        for x, row in line.get_xydata():
+            rings.setdefault(row, []).append(axes.transData.transform((x, 0.0))[0])
+    assert len(rings) == len(axes.get_yticks())
     box = axes.get_window_extent()
     for before, after in rings.values():
         assert abs(before - after) > 2 and box.x0 < min(before, after) < max(before, after) < box.x1

@@ -12,7 +12,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline.starter import starter
-from trunnion.plots.driveline_sketch import draw as draw_sketch
+from trunnion.pictures.driveline_sketch import draw as draw_sketch
 from trunnion.reporting.report import Report
 from trunnion.reporting.tables import TIED, checks, with_signs
 

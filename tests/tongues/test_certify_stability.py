@@ -384,7 +384,7 @@ def test_refusals(run, message: str) -> None:
 
 def test_drawn_over_the_directions_split_most() -> None:
     """Boxes, proved and open, fill the volume once; the picture has both, and marks the line that is unstable."""
-    from trunnion.plots.certificate import most_split
+    from trunnion.pictures.design import most_split
 
     found = tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.5, "Disk 1.inertia": 0.01}, (1.2, 1.25), most_boxes=30)
     assert found.verdict == "undecided" and len(found.proved_low) and most_split(found) == (0, 1)
@@ -400,11 +400,11 @@ def test_drawn_over_the_directions_split_most() -> None:
     volume = sum(speed * sides.prod() for speed, sides in every)
     assert volume == pytest.approx(np.log(high[0] / low[0]) * (high - low)[1:].prod(), rel=1e-9)
     axes = found.plot()
-    words = [text.get_text() for text in axes.figure.legends[0].get_texts()]
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
     assert words == [f"proved stable ({len(found.proved_low)} boxes)", f"left open ({len(found.undecided_low)} boxes)"]
     assert axes.get_xlabel() == "input speed [rad/s]" and axes.get_ylabel() == "stiffness of Shaft 1 [N·m/rad]"
     assert "1 other direction" in axes.get_title(loc="left")
     line = tn.catalogue("two-shaft-cardan", angle=0.6, damping_ratio=0.002)
     unstable = tn.certify_stability(line, {"Shaft 1.stiffness": 0.01}, (1.5, 1.7))
-    words = [text.get_text() for text in unstable.plot().figure.legends[0].get_texts()]
+    words = [text.get_text() for text in unstable.plot().get_legend().get_texts()]
     assert unstable.verdict == "counterexample" and words[-1] == "unstable line"

@@ -66,7 +66,7 @@ def campbell_diagram(
     """Example: trunnion campbell-diagram truck.toml --load-case climb -o campbell.png"""
     import numpy as np
 
-    from trunnion.plots.formats import check_format
+    from trunnion.pictures.formats import check_format
     from trunnion.reporting.ranges import speed_range
 
     if picture is not None:
@@ -74,7 +74,7 @@ def campbell_diagram(
     result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
     if picture is None:
         return Shown(result)
-    from trunnion.plots.style import save
+    from trunnion.pictures.draw_matplotlib import save
 
     save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
     return Shown(result, more=lambda: output.say(f"  written: {picture}"))

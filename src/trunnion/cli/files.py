@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from trunnion.errors import InputError
-from trunnion.plots.formats import FORMATS
+from trunnion.pictures.formats import FORMATS
 
 DATA_FORMATS = ("nc", "csv")
 REPORTS = (".html", ".htm")

@@ -159,12 +159,12 @@ def _parts(part: Any) -> dict[str, Any]:
 
 def _files(result: Kinetostatics, base: Path, unit: str) -> list[Path]:
     """Curves, polar curves and data, called ``base``, and a sketch where there is a joint to draw."""
-    from trunnion.plots.kinetostatics import draw_polar
-    from trunnion.plots.style import save
+    from trunnion.pictures.draw_matplotlib import draw, save
+    from trunnion.pictures.kinetostatics import polar
 
     endings = (".png", ".csv")
     written = [write_result(base.with_suffix(e), result, lambda: result.plot(unit=unit)) for e in endings]
-    pictures = {"polar": draw_polar(result, unit=unit)}
+    pictures = {"polar": draw(polar(result, unit=unit)).figure.figure}
     if result.joints:
         try:
             pictures["sketch"] = tn.sketch(result.line)

@@ -26,7 +26,7 @@ from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.motion.orbits.periodic_response import PeriodicResponse
-    from trunnion.motion.passing.run_up_result import RunUp
+    from trunnion.motion.passing.run_up import RunUp
     from trunnion.motion.passing.safe_accelerations import SafeAccelerations
     from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 
@@ -196,7 +196,7 @@ def _print_orders(result: PeriodicResponse, unit: str) -> None:
 
 
 def _simulation_json(result: Any) -> dict[str, Any]:
-    from trunnion.motion.simulation.line_simulation import LineSimulation
+    from trunnion.motion.simulation.simulation import LineSimulation
 
     content = {
         "outcome": result.outcome.kind,

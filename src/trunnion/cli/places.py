@@ -38,10 +38,10 @@ def check_places(to: list[Path] | None, endings: tuple[str, ...] = TABLES) -> No
 
 def write_result(path: Path, found: Any, draw: Callable[[], Any], table: Any = None) -> Path:
     """Numbers or picture by the ending of ``path``; ``table`` as of ``write_numbers``."""
-    from trunnion.plots.formats import FORMATS
+    from trunnion.pictures.formats import FORMATS
 
     if path.suffix.removeprefix(".").lower() in FORMATS:
-        from trunnion.plots.style import save
+        from trunnion.pictures.draw_matplotlib import save
 
         save(draw().figure.figure, path)
     else:

@@ -173,9 +173,10 @@ def sweep(
 
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.staged_line import staged_line
-    from trunnion.motion.orbits.free_play import require_forced
-    from trunnion.motion.orbits.piecewise_branch import check_range
-    from trunnion.plots.frequency_response import draw_line_sweeps, draw_sweeps
+    from trunnion.motion.orbits.frequency_response import require_forced
+    from trunnion.motion.orbits.periodic_branch import check_range
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.frequency_response import line_sweeps, sweeps
 
     if isinstance(subject, tn.System):
         raise InputError(
@@ -197,8 +198,8 @@ def sweep(
     measured = _oscillator_json if one_equation else _line_json
     return Shown(
         _Sweeps(found),
-        draw=lambda: (
-            draw_sweeps(found, length=length) if one_equation else draw_line_sweeps(found, spring=curve, unit=unit)
+        draw=lambda: draw(
+            sweeps(found, length=length) if one_equation else line_sweeps(found, spring=curve, unit=unit)
         ),
         content=lambda: {"sweeps": [_sweep_json(one, measured(one)) for one in found]},
         text=lambda: "\n".join(str(one) if one_equation else one.describe(unit) for one in found),

@@ -68,7 +68,7 @@ class Envelope(Result):
     findings: tuple[Finding, ...] = attribute(default=())
 
     def plot(self, axes: Axes | None = None, *, schedule: str = "") -> Axes:
-        """Margins of the worst checks along a schedule; see ``plots.envelope.draw``."""
+        """Margins of the worst checks along a schedule; see ``pictures.design.envelope``."""
         return drawing(self, "plot")(self, axes, schedule=schedule)
 
     @property

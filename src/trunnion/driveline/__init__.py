@@ -7,6 +7,7 @@ from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
@@ -29,6 +30,7 @@ from trunnion.driveline.tolerances import Tolerance
 __all__ = [
     "STARTERS",
     "ConstantSpeed",
+    "Differential",
     "Disk",
     "DoubleCardanJoint",
     "Driveline",

@@ -16,8 +16,10 @@ from trunnion.driveline.record import Name, Record
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError, problems_of
 
-MOST_ELEMENTS = 2000
-"""Ten times the longest line of practice; its matrices fit into a gigabyte."""
+MOST_ELEMENTS = 5000
+"""Ten times the longest line of practice."""
+HOURS = 0.006
+"""What the stability of a chain of 2000 elements takes at one speed."""
 
 
 class Chain(Record):
@@ -47,7 +49,12 @@ class Chain(Record):
     @cached_property
     def parents(self) -> tuple[int | None, ...]:
         """Index of the element each one follows: the one named in ``after``, or the previous; first None."""
-        return tuple(_parent(self, i) for i in range(len(self.elements)))
+        return tuple(_parent(self, i)[0] for i in range(len(self.elements)))
+
+    @cached_property
+    def hangs_on(self) -> tuple[int, ...]:
+        """Coordinate among the ``parts`` of the element each one follows; −1 is the last."""
+        return tuple(_parent(self, i)[1] for i in range(len(self.elements)))
 
     def index(self, name: str) -> int:
         """Place of the element called `name`; InputError with the nearest name where there is none."""
@@ -73,9 +80,10 @@ def refuse_too_many(elements: int) -> None:
     """
     if elements > MOST_ELEMENTS:
         # Of a chain of disks and shafts, with about twenty matrices of its states at a time.
-        memory = 20 * 8 * elements**2 / 1e9
+        memory, hours = 20 * 8 * elements**2 / 1e9, HOURS * (elements / 2000) ** 3
         raise InputError(
-            f"has {elements} elements, at most {MOST_ELEMENTS} are taken; stability would need {memory:.3g} GB",
+            f"has {elements} elements, at most {MOST_ELEMENTS} are taken; "
+            f"stability would need {memory:.3g} GB and {hours:.2g} h",
             element="driveline",
             remedy="join neighbouring parts",
         )
@@ -108,6 +116,7 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
 def wrong_places(line: Chain) -> Iterator[InputError]:
     """Names twice, branches from nowhere, drives in mid-line."""
     wrong = [*_wrong_names(line.names), *problems_of(partial(_parent, line, i) for i in range(len(line.elements)))]
+    wrong += list(_wrong_loops(line))
     yield from wrong
     if not wrong:
         yield from _wrong_ends(line)
@@ -121,10 +130,26 @@ def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
             yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
 
 
-def _parent(line: Chain, place: int) -> int | None:
+def _wrong_loops(line: Chain) -> Iterator[InputError]:
+    for i, (name, element) in enumerate(line.parts):
+        to = getattr(element, "to", None)
+        if to is not None and to not in line.names[:i]:
+            remedy = nearest(to, line.names[:i])
+            yield InputError("is not an earlier element", element=name, key="to", value=to, remedy=remedy)
+
+
+def _parent(line: Chain, place: int) -> tuple[int | None, int]:
+    """The element that one follows, and the coordinate there; −1 is the last."""
     after, name = line.elements[place].after, line.names[place]
     if after is None:
-        return place - 1 if place else None
+        return (place - 1, line.elements[place - 1].onward) if place else (None, -1)
+    owner, _, port = after.rpartition(".")
+    if after not in line.names and owner in line.names[:place]:
+        ports = line.elements[line.names.index(owner)].ports
+        if port not in ports:
+            offered = nearest(port, [f"{owner}.{one}" for one in ports]) if ports else f"write {owner} alone"
+            raise InputError("names no shaft", element=name, key="after", value=after, remedy=offered)
+        return line.names.index(owner), ports[port]
     where: dict[str, Any] = {"element": name, "key": "after", "value": after}
     if after not in line.names[:place]:
         if after in line.names:
@@ -134,7 +159,7 @@ def _parent(line: Chain, place: int) -> int | None:
     if any(isinstance(part, Jointed | Sprung | Dragged) for part in line.elements[parent].passes_on):
         remedy = "branches leave from a Disk, a ConstantSpeed or gears; put a Disk there"
         raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
-    return parent
+    return parent, line.elements[parent].onward
 
 
 def _wrong_ends(line: Chain) -> Iterator[InputError]:

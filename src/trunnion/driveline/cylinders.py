@@ -36,7 +36,7 @@ def reciprocating_mass(
     >>> import trunnion as tn
     >>> masses, inertia = tn.reciprocating_mass("1.2 kg", "45 mm", "150 mm", orders=3)
     >>> [round(one.quadratic_amplitude / (1.2 * 0.045**2), 4) for one in masses], round(inertia, 6)
-    ([0.0767, -0.4998, -0.2336], 0.001243)
+    ([0.0768, -0.5003, -0.233], 0.001244)
     """
     m, r, length = parse(mass, MASS), parse(crank_radius, LENGTH), parse(rod_length, LENGTH)
     for key, value in (("mass", m), ("crank_radius", r)):

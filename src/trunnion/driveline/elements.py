@@ -72,6 +72,11 @@ class Element(Record):
         return ()
 
     @property
+    def ports(self) -> dict[str, int]:
+        """Coordinates among its ``parts`` on which elements may hang, by name: ``after = "differential.right"``."""
+        return {}
+
+    @property
     def kind(self) -> str:
         """The class name: what ``type`` says in a file."""
         return type(self).__name__

@@ -20,6 +20,7 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, held_excitations, unlike_in_series
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
@@ -178,6 +179,15 @@ FEATURES = (
             *(f"Planetary.{key}" for key in ("planets", "planet_inertia", "planet_mass", "centre_distance")),
             "Planetary.teeth_planet",
         ),
+    ),
+    Feature("closed loop", _of_springs("to")),
+    Feature(
+        "shafts tied to two others",
+        (
+            *(f"Planetary.{key}" for key in ("output", "free_speed")),
+            *(f"Differential.{key}" for key in ("ratio", "teeth_in", "teeth_out", "inertia")),
+        ),
+        lambda line: [n for n, e in line.parts if any(isinstance(part, Tied) for part in e.parts())],
     ),
     Feature(
         "gear mesh",

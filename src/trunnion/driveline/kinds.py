@@ -6,6 +6,7 @@ from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
+from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
@@ -35,5 +36,6 @@ KINDS: dict[str, type[Element]] = {
         Belt,
         GearPair,
         Planetary,
+        Differential,
     )
 }

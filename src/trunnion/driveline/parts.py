@@ -1,9 +1,9 @@
 """What an element is made of, as the one walk along a line reads it (``trunnion.equations.topology``).
 
 An element hangs on the shaft in front of it, which is its coordinate 0. Its parts come in order; those that make a new
-shaft, with a rotation of its own, number it on: 1, 2, … Whatever follows in the line hangs on the last one, or on the
-element's ``onward``. Parts say what is joined to what; numbers that can vary, stiffness, inertia, a joint's law, stay
-with the element.
+shaft number it on: 1, 2, … Whatever follows in the line hangs on the last one, on the element's ``onward``, or on one
+that its ``ports`` name. Parts say what is joined to what; numbers that can vary, stiffness, inertia, a joint's law,
+stay with the element.
 """
 
 from __future__ import annotations
@@ -53,9 +53,11 @@ class Jointed:
 
 @dataclass(frozen=True)
 class Sprung:
-    """A new shaft that the element's spring joins to coordinate ``to``."""
+    """A new shaft that the element's spring joins to coordinate ``to``; where it ``closes`` a loop, no new one, but the
+    shaft behind the element of that name."""
 
     to: int = 0
+    closes: str | None = None
 
 
 @dataclass(frozen=True)
@@ -66,4 +68,20 @@ class Dragged:
     to: int = 0
 
 
-Part = Prescribed | Heavy | Geared | Jointed | Sprung | Dragged
+@dataclass(frozen=True)
+class Loose:
+    """A new shaft with a rotation of its own, which on average turns ``speed`` times as fast as coordinate ``to``."""
+
+    to: int = 0
+    speed: Fraction = Fraction(1)
+
+
+@dataclass(frozen=True)
+class Tied:
+    """A new shaft tied rigidly to several: it turns by the sum of ``share`` times what coordinate ``to`` turns by, over
+    all (``to``, ``share``)."""
+
+    of: tuple[tuple[int, Fraction], ...]
+
+
+Part = Prescribed | Heavy | Geared | Jointed | Sprung | Dragged | Loose | Tied

@@ -9,17 +9,21 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Doubt, Element, Teeth, positive
-from trunnion.driveline.parts import Geared, Heavy, Numbers, Part
-from trunnion.driveline.quantities import Inertia, Length, Mass, Maybe, optional
+from trunnion.driveline.parts import Geared, Heavy, Loose, Numbers, Part, Tied
+from trunnion.driveline.quantities import Dimensionless, Inertia, Length, Mass, Maybe, optional
 from trunnion.driveline.record import one_of
 from trunnion.errors import InputError
 
 SHAFTS = ("sun", "carrier", "ring")
+STILL = 1e-9
+"""Share of the input's speed below which an output does not turn."""
 WRITE = 'write one of "sun", "carrier", "ring"'
 _Shaft = Literal["sun", "carrier", "ring"]
 
 
 def _one_shaft(value: object) -> object:
+    if value is None:
+        return None
     if isinstance(value, list | tuple) and len(value) > 1:
         remedy = f'write held = "{value[0]}": one shaft is held, one drives, one is driven'
         raise InputError("holds two shafts, so that nothing can turn", value=list(value), remedy=remedy)
@@ -27,16 +31,19 @@ def _one_shaft(value: object) -> object:
 
 
 class Planetary(Element):
-    """A planetary gear set with rigid teeth, one of whose three shafts is held.
+    """A planetary gear set with rigid teeth: any of its three shafts drives, is driven, is held or turns freely.
 
     z_s ω_s + z_r ω_r = (z_s + z_r) ω_c (Willis), rotations positive in one sense; torques follow without loss. The
-    inertias of sun, carrier and ring are Disks in front and behind; planets turn with them.
+    inertias of sun, carrier and ring are Disks on them; planets turn with them.
 
     Parameters
     ----------
     teeth_sun, teeth_ring : tooth numbers z_s and z_r.
     input : the shaft that hangs on the element in front: "sun", "carrier" or "ring".
     held : the shaft that the housing holds; what follows hangs on the third.
+    output : or else the shaft that what follows hangs on. The third is then called by the set's name and its own:
+        ``Disk(inertia=..., after="Planetary 1.ring")``; it needs an inertia.
+    free_speed : mean speed of that third shaft over the input's; 1, all turn as one, by default.
     planets : how many.
     planet_inertia : of one planet about its own axis [kg m²].
     planet_mass, centre_distance : of one planet [kg], and from its axis to the sun's [m]: both, or none.
@@ -53,7 +60,15 @@ class Planetary(Element):
     input: Annotated[_Shaft, BeforeValidator(one_of(SHAFTS, "is no shaft of a planetary set", WRITE))] = Field(
         description="shaft that hangs on the element in front: sun, carrier or ring"
     )
-    held: Annotated[_Shaft, BeforeValidator(_one_shaft)] = Field(description="shaft that the housing holds")
+    held: Annotated[_Shaft | None, BeforeValidator(_one_shaft)] = Field(
+        default=None, description="shaft that the housing holds"
+    )
+    output: Annotated[_Shaft | None, BeforeValidator(_one_shaft)] = Field(
+        default=None, description="where none is held, the shaft that what follows hangs on"
+    )
+    free_speed: Dimensionless = optional(
+        default=1.0, description="where none is held, mean speed of the third shaft over the input's"
+    )
     planets: int = Field(default=3, ge=1, le=100, description="how many planets")
     planet_inertia: Maybe[Inertia] = optional(default=None, description="of one planet about its own axis")
     planet_mass: Maybe[Mass] = optional(default=None, description="of one planet")
@@ -65,9 +80,19 @@ class Planetary(Element):
         if self.teeth_ring <= self.teeth_sun + 1:
             remedy = "the ring has more teeth than the sun, with room for planets between"
             raise InputError("leaves no planets", key="teeth_ring", value=self.teeth_ring, remedy=remedy)
+        others = " or ".join(one for one in SHAFTS if one != self.input)
         if self.input == self.held:
-            remedy = f"hold {' or '.join(one for one in SHAFTS if one != self.input)}"
-            raise InputError("is the input, so that nothing can turn", key="held", value=self.held, remedy=remedy)
+            problem = "is the input, so that nothing can turn"
+            raise InputError(problem, key="held", value=self.held, remedy=f"hold {others}")
+        if self.held is None and self.output is None:
+            raise InputError("is missing", key="held", remedy=f'hold {others}, or write output = "carrier", say')
+        if self.held is not None and self.output == self.held:
+            raise InputError("is held", key="output", value=self.output, remedy="leave one of the two out")
+        if self.input == self.output:
+            raise InputError("is the input", key="output", value=self.output, remedy=f"write {others}")
+        if abs(self.speeds[self.driven]) < STILL:
+            remedy = f"hold the {self.driven}, or write another speed"
+            raise InputError("lets the output stand still", key="free_speed", value=self.free_speed, remedy=remedy)
         if (self.planet_mass is None) != (self.centre_distance is None):
             missing = "planet_mass" if self.planet_mass is None else "centre_distance"
             raise InputError("is missing", key=missing, remedy="write planet_mass and centre_distance, or neither")
@@ -80,36 +105,52 @@ class Planetary(Element):
             yield ("planets", problem, "check the tooth numbers")
 
     @property
-    def output(self) -> str:
+    def driven(self) -> str:
         """The shaft that what follows hangs on."""
-        return next(one for one in SHAFTS if one not in (self.input, self.held))
+        return self.output or next(one for one in SHAFTS if one not in (self.input, self.held))
+
+    @property
+    def third(self) -> str:
+        """The shaft that is held or free."""
+        return next(one for one in SHAFTS if one not in (self.input, self.driven))
+
+    @property
+    def shares(self) -> dict[str, tuple[Fraction, Fraction]]:
+        """Shares of the input's rotation and of the third shaft's in those of sun, carrier, ring and planets."""
+        sun, ring = Fraction(self.teeth_sun), Fraction(self.teeth_ring)
+        weight = {"sun": sun, "ring": ring, "carrier": -sun - ring}
+        found = {self.input: (Fraction(1), Fraction(0)), self.third: (Fraction(0), Fraction(1))}
+        found[self.driven] = (-weight[self.input] / weight[self.driven], -weight[self.third] / weight[self.driven])
+        over = sun / (Fraction(self.teeth_planet) if self.teeth_planet else (ring - sun) / 2)
+        (c, d), (s, t) = found["carrier"], found["sun"]
+        return found | {"planets": (c - over * (s - c), d - over * (t - d))}
 
     @property
     def speeds(self) -> dict[str, Fraction]:
-        """Speed of sun, carrier, ring and planets, all over the input's, about fixed axes."""
-        sun, ring = self.teeth_sun, self.teeth_ring
-        weight = {"sun": sun, "ring": ring, "carrier": -sun - ring}
-        found: dict[str, Fraction] = {self.input: Fraction(1), self.held: Fraction(0)}
-        found[self.output] = Fraction(-weight[self.input], weight[self.output])
-        planet = Fraction(self.teeth_planet) if self.teeth_planet else Fraction(ring - sun, 2)
-        found["planets"] = found["carrier"] - sun / planet * (found["sun"] - found["carrier"])
-        return found
+        """Mean speed of sun, carrier, ring and planets over the input's, about fixed axes."""
+        third = Fraction(0) if self.held else Fraction(str(self.free_speed))
+        return {name: one + other * third for name, (one, other) in self.shares.items()}
 
     @property
     def speed_ratio(self) -> float:
-        """Input speed over output speed."""
-        return float(1 / self.speeds[self.output])
+        """Input speed over output speed, on average."""
+        return float(1 / self.speeds[self.driven])
+
+    @property
+    def ports(self) -> dict[str, int]:
+        """The third shaft, where it is not held."""
+        return {} if self.held else {self.third: 1}
 
     def parts(self) -> tuple[Part, ...]:
-        """Planets, where they are heavy, and the output: both geared to the input."""
-        speeds, found = self.speeds, list[Part]()
-        if self.planet_inertia is not None:
-            found += [Geared(1 / speeds["planets"]), Heavy(1, of="planets of")]
-        found.append(Geared(1 / speeds[self.output]))
-        if self._orbiting:
-            coordinates = sum(isinstance(part, Geared) for part in found)
-            found.append(Heavy(0 if self.input == "carrier" else coordinates, of="carrier of"))
-        return tuple(found)
+        """The third shaft, where it turns; planets, where they are heavy; and the output, tied to both others."""
+        place = {self.input: 0} | self.ports
+        found: list[Part] = [] if self.held else [Loose(0, Fraction(str(self.free_speed)))]
+        for name in (*(["planets"] if self.planet_inertia is not None else []), self.driven):
+            one, other = self.shares[name]
+            found.append(Geared(1 / one) if self.held else Tied(((0, one), (1, other))))
+            place[name] = len(place)
+        heavy = {"planets": self.planet_inertia is not None, "carrier": self._orbiting}
+        return (*found, *(Heavy(place[name], of=f"{name} of") for name, some in heavy.items() if some))
 
     @property
     def _orbiting(self) -> bool:

@@ -54,7 +54,12 @@ _RULES: dict[str, dict[str, Any]] = {
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth_in", "teeth_out"]}],
         "dependentRequired": {"teeth_in": ["teeth_out"], "teeth_out": ["teeth_in"]},
     },
+    "Differential": {
+        "not": {"required": ["ratio", "teeth_in"]},
+        "dependentRequired": {"teeth_in": ["teeth_out"], "teeth_out": ["teeth_in"]},
+    },
     "Planetary": {
+        "anyOf": [{"required": ["held"]}, {"required": ["output"]}],
         "dependentRequired": {"planet_mass": ["centre_distance"], "centre_distance": ["planet_mass"]},
     },
     "GearPair": {

@@ -27,6 +27,7 @@ from trunnion.driveline.quantities import (
     Torque,
     optional,
 )
+from trunnion.driveline.record import Name
 from trunnion.errors import InputError
 
 
@@ -67,6 +68,7 @@ class Spring(Elastic):
         default=None, description="at which the loss factor holds; by default at all"
     )
     fork_offset: Angle = optional(default=0.0, description="angle between the forks at the two ends; 0 is in line")
+    to: Name | None = Field(default=None, description="earlier element to which the far end closes a loop")
 
     @model_validator(mode="after")
     def _damped_one_way(self) -> Self:
@@ -87,7 +89,7 @@ class Spring(Elastic):
 
     def parts(self) -> tuple[Part, ...]:
         """A spring, and what of its inertia counts to each end."""
-        return (Sprung(), *(Heavy(at, of="end of") for at in (0, 1) if self.moment_of_inertia))
+        return (Sprung(closes=self.to), *(Heavy(at, of="end of") for at in (0, 1) if self.moment_of_inertia))
 
     def stiffness_of(self, number: Numbers) -> Any:
         """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
@@ -126,6 +128,7 @@ class Shaft(Spring):
         time refuse it. A relative damping ψ (loss per cycle over elastic energy) is η = ψ/2π.
     fork_offset : angle between the forks at the shaft's two ends [rad]; 0 is in line. Before the first joint,
         the angle of the fork from the joint plane.
+    to : earlier element, behind which the far end closes a loop; what follows says where it hangs by ``after``.
     outer_diameter, inner_diameter, length : of the tube [m]; inner_diameter = 0 is a solid bar.
     material : of the tube, by name: gives each of the next four that is not stated.
     shear_modulus : G [Pa].

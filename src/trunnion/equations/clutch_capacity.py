@@ -13,7 +13,6 @@ import numpy as np
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.elements import Disk
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.loads import mean_loads, static_torque
 from trunnion.equations.sliders import sliders
 from trunnion.equations.stage_laws import stage_law
 from trunnion.equations.steady_base import bent
@@ -43,7 +42,7 @@ def bounded_clutches(assembly: Assembly, speed: float) -> tuple[Bounded, ...]:
     """The clutches that no spring holds in the direction of their load at an input ``speed`` [rad/s]; those without a
     load, that none holds in either direction."""
     topo, packed, table = assembly.topology, assembly.packed, assembly.table(1, speed)
-    static = static_torque(topo, mean_loads(topo, packed.column, table))[0]
+    static = assembly.static_torque(table)[0]
     rubbing = sliders(packed, topo, table[0])
     found = []
     for e, compliance in enumerate(topo.compliances):

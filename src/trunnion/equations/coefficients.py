@@ -18,12 +18,13 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Elastic, Spring
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
-from trunnion.equations.loads import mean_load, static_torque, station_loads
+from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
@@ -106,6 +107,10 @@ class Assembly:
     def _derived(self) -> dict[Callable[[Assembly], Any], Any]:
         return {}
 
+    def static_torque(self, table: Array) -> Array:
+        """Torque [N m] that every compliance carries under the mean loads (case, compliance)."""
+        return _static_torque(self, table, mean_loads(self.topology, self.packed.column, table))
+
     def common_damping(self, table: Array, stiffness: Array) -> Array:
         """Damping (case,) of a spring under the line's one damping ratio: 2ζk/ω."""
         column = self.packed.column
@@ -157,9 +162,8 @@ def _lowest_elastic_frequency(assembly: Assembly) -> float:
     """
     topo = assembly.topology
     matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    still = topo.still
-    found = frequencies(matrices, still=still)[0]
-    lowest = float(found[still])
+    found = frequencies(matrices, still=topo.still)[0]
+    lowest = float(found[topo.still])
     # Eigenvalues, the squares, are right to their rounding beside the largest.
     if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
         raise InputError(
@@ -252,7 +256,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
     mean = mean_load(topo, loads, table[:, 0])
-    static = static_torque(topo, mean)
+    static = _static_torque(assembly, table, mean)
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))
     shift = np.zeros((len(table), len(topo.stations)))
@@ -282,7 +286,8 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             own = [twist[:, e]] if compliance.drags else [torque[:, e] / k for k in each]
         for i, turned in zip(shafts, own, strict=True):
             forks = column(i, "fork_offset")
-            shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
+            if i in topo.behind:
+                shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
     for s in topo.joints:
         station = topo.stations[s]
         shift[:, s] = -table[:, column(station.element, "plane")]
@@ -308,6 +313,30 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             if mesh.stiffness
         ),
     )
+
+
+def _static_torque(assembly: Assembly, table: Array, mean: Array) -> Array:
+    shared = _linear_stiffness(assembly, table) if assembly.topology.graph else None
+    return static_torque(assembly.topology, mean, shared)
+
+
+def _linear_stiffness(assembly: Assembly, table: Array) -> Array:
+    """Stiffness of every compliance (case, compliance) of a line whose springs share torques by it.
+
+    Raises
+    ------
+    InputError : a spring with stages, whose stiffness would follow from that share.
+    """
+    found = np.zeros((len(table), len(assembly.topology.compliances)))
+    for e, compliance in enumerate(assembly.topology.compliances):
+        element = assembly.line.elements[compliance.shafts[0]]
+        if has_stages(element) and not (isinstance(element, GearPair) and not element.total_backlash):
+            raise InputError(
+                f"has stages, beside {assembly.line.names[assembly.topology.knot]}, which shares torque by stiffness",
+                element=assembly.line.names[compliance.shafts[0]], remedy="write a Shaft of its stiffness under load",
+            )  # fmt: skip
+        found[:, e] = _stiffness([shaft_stiffness(assembly, table, i) for i in compliance.shafts])
+    return found
 
 
 def mesh_harmonics(

@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.arrays import Array, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.linear import LineMatrices, line_matrices, rigid_motions
+from trunnion.equations.linear import LineMatrices, line_matrices, over_mass, rigid_motions
 from trunnion.equations.topology import require_period
 
 LARGEST_DENSE = 12
@@ -71,8 +71,7 @@ class LineRates:
         co = assembly.coefficients(table, statically_twisted=statically_twisted)
         probe = line_matrices(assembly.topology, co, period * np.arange(times) / times)
         root, unit = scales(probe, co.speed)
-        mass, damping = (np.einsum("ctii->cti", part) for part in (probe.mass, probe.damping))
-        trace = (damping / mass).sum(axis=2).mean(axis=1) * period / co.speed
+        trace = np.einsum("ctii->ct", over_mass(probe, probe.damping)).mean(axis=1) * period / co.speed
         return cls(assembly, table, statically_twisted, period, root, unit, trace, steps_that_see(cycles))
 
     def __call__(self, which: Places, tau: Array) -> Array:
@@ -110,12 +109,11 @@ def scales(m: LineMatrices, speed: Array) -> tuple[Array, Array]:
 
 
 def first_order(m: LineMatrices, speed: Array, root: Array, unit: Array) -> Array:
-    """A (case, time, 2n, 2n) from matrices in time; mass matrices are diagonal."""
+    """A (case, time, 2n, 2n) from matrices in time."""
     n = m.mass.shape[-1]
-    over = 1 / np.einsum("ctii->cti", m.mass)[..., None]
     ratio = root[:, None, :, None] / root[:, None, None, :]
     a = np.zeros((*m.mass.shape[:2], 2 * n, 2 * n))
     a[..., :n, n:] = np.eye(n) * unit[:, None, None, None]
-    a[..., n:, :n] = m.stiffness * over * (ratio / (-(speed**2) * unit)[:, None, None, None])
-    a[..., n:, n:] = m.damping * over * (ratio / -speed[:, None, None, None])
+    a[..., n:, :n] = over_mass(m, m.stiffness) * (ratio / (-(speed**2) * unit)[:, None, None, None])
+    a[..., n:, n:] = over_mass(m, m.damping) * (ratio / -speed[:, None, None, None])
     return a

@@ -125,6 +125,8 @@ class DiskTorque(LineHarmonic):
         s = self.station
         sense = float(np.sign(float(topo.speed_ratio[s])))
         turned = np.exp(1j * self.own_order * sense * base.rotation[..., s])
+        if topo.graph:
+            return np.asarray((sense * size[:, None] * turned)[..., None] * topo.turning[s])
         g = np.zeros((*turned.shape, topo.size), dtype=complex)
         g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
         return g
@@ -158,6 +160,8 @@ class MeshError(LineHarmonic):
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         e = self.mesh.compliance
         (far, near), station, torque = topo.ends[e], topo.compliances[e].near, spring(e) * size[:, None]
+        if topo.graph:
+            return np.asarray(-torque[..., None] * topo.elongations[e])
         g = np.zeros((*torque.shape, topo.size), dtype=complex)
         if far >= 0:
             g[..., far] -= torque
@@ -194,7 +198,7 @@ def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTor
             columns = tuple(packed.column(place, f"excitation {i} {key}") for key in keys)
             number, phase, frequency = (float(row[column]) if column >= 0 else 0.0 for column in columns)
             order = Fraction(str(law.order or 0)) * abs(topo.speed_ratio[s])
-            own = packed.line.names[place], i, columns, s, law, cylinders(disk, law), bool(topo.unknown_of[s] < 0)
+            own = packed.line.names[place], i, columns, s, law, cylinders(disk, law), not topo.turning[s].any()
             found.append(DiskTorque(order, frequency, number, phase, *own))
     return tuple(found)
 

@@ -34,13 +34,14 @@ class Place(NamedTuple):
     """How a station follows the one ``before`` it.
 
     ``shift`` [rad]: the first coefficients of the jet that is added; then the joint's ``law``; then the division by
-    ``ratio``.
+    ``ratio``. With ``of`` it turns by the sum of the shares of several stations instead.
     """
 
     before: int
     shift: Sequence[Array] = ()
     law: JointLaw | None = None
     ratio: float = 1.0
+    of: Sequence[tuple[int, float]] = ()
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,11 @@ def walk(places: Iterable[Place], drive: Jet, stood: Array | None = None) -> Rot
     stood : (…, station) where joints find the stations in front of them [rad]; by default where the walk leads.
     """
     found = Rotations([drive], {}, {})
-    for s, (before, shift, law, ratio) in enumerate(places, start=1):
+    for s, (before, shift, law, ratio, of) in enumerate(places, start=1):
+        if of:
+            parts = [[share * a for a in found.angle[one]] for one, share in of]
+            found.angle.append([np.sum(together, axis=0) for together in zip(*parts, strict=True)])
+            continue
         jet = found.angle[before] if stood is None or law is None else [stood[..., before]]
         if shift:
             jet = [*(a + b for a, b in zip(jet, shift, strict=False)), *jet[len(shift) :]]
@@ -110,6 +115,7 @@ def base_motion(
             [shift[:, None]] if station.link in (Link.SHAFT, Link.JOINT) else (),
             next(laws) if station.link is Link.JOINT else None,
             ratio,
+            [(one, float(share)) for one, share in station.of],
         )
         for station, shift, ratio in zip(stations, coefficients.shift.T[1:], topo.ratio_values[1:], strict=True)
     ]
@@ -121,7 +127,11 @@ def base_motion(
     w[..., 0], r[..., 0] = 1.0, 1.0
     for s, (station, place) in enumerate(zip(stations, places, strict=True), start=1):
         b = place.before
-        if station.link is Link.SHAFT:
+        if station.link is Link.SUM:
+            for quantity in (w, w1):
+                quantity[..., s] = sum(share * quantity[..., one] for one, share in place.of)
+            r[..., s] = 1.0
+        elif station.link in (Link.SHAFT, Link.LOOSE):
             w[..., s], w1[..., s], r[..., s] = w[..., b], w1[..., b], 1.0
         elif station.link is Link.JOINT:
             _, eta, slope, curvature = turning.passed[s]

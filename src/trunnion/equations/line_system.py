@@ -25,6 +25,7 @@ from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
+from trunnion.equations.steady_base import require_tree
 from trunnion.errors import InputError
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, common_rate, periods_in_common, turning
@@ -352,6 +353,7 @@ def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = Fals
     """
     assembly = assemble(line)
     refuse_second_speed(assembly)
+    require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     return LineSystem(assembly, float(speed), leaves)

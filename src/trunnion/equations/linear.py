@@ -21,16 +21,18 @@ would.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
+from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
 from trunnion.equations.topology import Topology, require_period
+from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 
@@ -59,12 +61,41 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
-    motion = base_motion(topo, coefficients, tau)
-    cases, times, n = (*motion.angle.shape[:2], topo.size)
-    speed = coefficients.speed[:, None]
+    if topo.graph:
+        return _straight_matrices(topo, coefficients, len(tau))
+    cases, times, n = len(coefficients.speed), len(tau), topo.size
     # Each entry lies in one piece over time, which is how it is filled.
-    mass, damping, stiffness = (np.zeros((n, n, cases, times)).transpose(2, 3, 0, 1) for _ in range(3))
+    mass, damping, stiffness = (np.zeros((n, n, cases, times)) for _ in range(3))
     forcing = np.zeros((cases, times, n))
+    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing)
+    mass, damping, stiffness = (part.transpose(2, 3, 0, 1) for part in (mass, damping, stiffness))
+    return LineMatrices(mass, damping, stiffness, forcing, ratio, wave)
+
+
+class Entries(Protocol):
+    """Entries of a matrix by row and column, each (case, time), that numbers are added to in place."""
+
+    def __getitem__(self, place: tuple[int, int]) -> Array: ...
+
+    def __setitem__(self, place: tuple[int, int], values: Array) -> None: ...
+
+
+def put_entries(
+    topo: Topology,
+    coefficients: LineCoefficients,
+    tau: Array,
+    mass: Entries,
+    damping: Entries,
+    stiffness: Entries,
+    forcing: Array,
+) -> tuple[Array, Array]:
+    """Add the equations at input angles ``tau`` [rad] to matrices and ``forcing`` (case, time, n), which are zero.
+
+    Returns ratio and wave as of ``LineMatrices``.
+    """
+    motion = base_motion(topo, coefficients, tau)
+    cases, times = motion.angle.shape[:2]
+    speed = coefficients.speed[:, None]
     ratio_seen, wave = np.zeros((cases, times, len(topo.compliances))), stiffness_waves(topo, coefficients, tau)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
     loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
@@ -77,7 +108,7 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         w, w1 = motion.speed[..., ref] * speed, motion.acceleration[..., ref] * speed**2
         inertia = coefficients.inertia[:, s, None]
         if s == ref and not loaded[s]:  # r = 1
-            mass[..., i, i] += inertia
+            mass[i, i] += inertia
             forcing[..., i] -= inertia * w1
             continue
         load = coefficients.load[:, s, None]
@@ -89,9 +120,9 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
         load = load * sense + (viscous + quadratic * np.abs(v)) * v
         carried = load - coefficients.not_carried[:, s, None] * sense
         j, j1, j2 = inertia * r**2, 2 * inertia * r * r1, 2 * inertia * (r1**2 + r * r2)
-        mass[..., i, i] += j
-        damping[..., i, i] += j1 * w + r**2 * growth
-        stiffness[..., i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
+        mass[i, i] += j
+        damping[i, i] += j1 * w + r**2 * growth
+        stiffness[i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
     for e, (compliance, (far, near)) in enumerate(zip(topo.compliances, topo.ends, strict=True)):
         ref = topo.reference[topo.group_of(compliance.near)]
@@ -106,19 +137,51 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
             r_dot = r1 * motion.speed[..., ref] * speed
         ratio_seen[..., e] = r
         if far >= 0:
-            damping[..., far, far] += c
-            stiffness[..., far, far] += k
+            damping[far, far] += c
+            stiffness[far, far] += k
             forcing[..., far] -= torque
         if near >= 0:
-            damping[..., near, near] += c * r**2
-            stiffness[..., near, near] += k * r**2 + c * r * r_dot - r1 * torque
+            damping[near, near] += c * r**2
+            stiffness[near, near] += k * r**2 + c * r * r_dot - r1 * torque
             forcing[..., near] += r * torque
         if far >= 0 and near >= 0:
-            damping[..., far, near] -= c * r
-            damping[..., near, far] -= c * r
-            stiffness[..., far, near] -= k * r + c * r_dot
-            stiffness[..., near, far] -= k * r
-    return LineMatrices(mass, damping, stiffness, forcing, ratio_seen, wave)
+            damping[far, near] -= c * r
+            damping[near, far] -= c * r
+            stiffness[far, near] -= k * r + c * r_dot
+            stiffness[near, far] -= k * r
+    return ratio_seen, wave
+
+
+def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: int) -> LineMatrices:
+    """The same of a straight line whose shafts are tied to several others: M couples what they share.
+
+    Raises
+    ------
+    InputError : bent joints, or meshes whose stiffness varies.
+    """
+    varying = "bent joints" if any(law.uneven for law in coefficients.joints) else "meshes of varying stiffness"
+    if varying == "bent joints" or coefficients.waves:
+        raise InputError(
+            f"has {varying} beside a differential or a loop: what they do there is not followed", element="driveline",
+            remedy="take them without, at angle 0, or both legs or ways round as one shaft",
+        )  # fmt: skip
+    found = loaded_matrices(topo, coefficients, coefficients.speed)
+    cases = len(coefficients.speed)
+
+    def lasting(part: Array) -> Array:
+        return np.broadcast_to(part[:, None], (cases, times, *part.shape[1:]))
+
+    still, ratio = np.zeros((cases, topo.size)), np.ones((cases, len(topo.compliances)))
+    matrices = (found.inertia, found.damping, found.stiffness, still, ratio, ratio)
+    return LineMatrices(*(lasting(part) for part in matrices))
+
+
+def over_mass(matrices: LineMatrices, part: Array) -> Array:
+    """M⁻¹ times a matrix (case, time, n, n)."""
+    own = np.einsum("ctii->cti", matrices.mass)
+    if np.count_nonzero(matrices.mass) > np.count_nonzero(own):
+        return np.asarray(np.linalg.solve(matrices.mass, part))
+    return np.asarray(part * (1 / own)[..., None])
 
 
 def periodic_linear_system(
@@ -151,12 +214,12 @@ def periodic_linear_system(
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
     """States (x, dx/dτ) as columns (2n, k) that a line keeps for ever: multipliers exactly 1.
 
-    A turn of the whole of a free line always, and a change of its speed where no load depends on the speed: without
-    bent joints only. And a turn of what only oil drags along, joints bent or not.
+    A turn of a free line as a whole always, and of the legs of a differential against each other; a change of such a
+    speed where no load depends on the speed: without bent joints only. And a turn of what only oil drags along, joints
+    bent or not. k is 0 for a driven line without any of these.
     """
-    n = topo.size
-    kept = np.zeros((2 * n, topo.still))
-    kept[:n] = topo.loose
-    if not topo.free or coefficients.viscous.any() or coefficients.quadratic.any():
-        return kept
-    return np.column_stack([kept, np.append(np.zeros(n), rigid_rotation(topo))])
+    n, constant = topo.size, not (coefficients.viscous.any() or coefficients.quadratic.any())
+    turns, speeds = topo.loose, topo.rigid if constant else topo.rigid[:, :0]
+    kept = np.zeros((2 * n, topo.still + speeds.shape[1]))
+    kept[:n, : topo.still], kept[n:, topo.still :] = turns, speeds
+    return kept

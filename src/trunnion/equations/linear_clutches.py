@@ -11,7 +11,6 @@ import numpy as np
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.loads import mean_loads, static_torque
 from trunnion.equations.mean_clutch import states_a_motion
 from trunnion.errors import InputError
 
@@ -53,7 +52,7 @@ def with_mean_clutches(assembly: Assembly, speed: float) -> Driveline:
 def static_torques(assembly: Assembly, speed: float) -> dict[int, float]:
     """Torque [N m] that each spring carries at a steady input ``speed``, by its place in the line."""
     table, topo = assembly.table(1, speed), assembly.topology
-    static = static_torque(topo, mean_loads(topo, assembly.packed.column, table))
+    static = assembly.static_torque(table)
     return {i: float(static[0, e]) for e, compliance in enumerate(topo.compliances) for i in compliance.shafts}
 
 

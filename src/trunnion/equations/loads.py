@@ -129,16 +129,36 @@ def drive_places(topo: Topology, column: Column, table: Array) -> Array:
     return np.where(share.any(axis=1, keepdims=True), share, first)
 
 
-def static_torque(topo: Topology, load: Array) -> Array:
+def static_torque(topo: Topology, load: Array, stiffness: Array | None = None) -> Array:
     """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
 
     Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
-    shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged).
+    shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged). Round loops
+    springs share it by their ``stiffness`` (case, compliance).
     """
     torque = np.zeros((len(load), len(topo.compliances)))
     if not load.any():
         return torque
+    if topo.graph:
+        assert stiffness is not None
+        return _shared_torque(topo, load, stiffness)
     for e, behind in enumerate(topo.stations_behind):
         own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
         torque[:, e] = load[:, behind] @ (-np.abs(topo.mean_speeds[behind]) / own)
     return torque
+
+
+def loads_on_unknowns(topo: Topology, load: Array) -> Array:
+    """What loads (case, station) put on the unknowns of a straight line [N m] (case, n), against their rotation."""
+    return np.asarray((load * np.sign(topo.mean_speeds)) @ topo.turning)
+
+
+def _shared_torque(topo: Topology, load: Array, stiffness: Array) -> Array:
+    """The same where springs or the legs of a differential share the torque of a shaft: in balance for every unknown,
+    and round every loop by the stiffness of its springs."""
+    root, elongations = np.sqrt(stiffness), topo.elongations
+    felt, found = loads_on_unknowns(topo, load), np.zeros_like(stiffness)
+    for case in np.flatnonzero(load.any(axis=1)):
+        scaled = elongations.T * root[case]
+        found[case] = root[case] * np.linalg.lstsq(scaled, -felt[case], rcond=None)[0]
+    return found

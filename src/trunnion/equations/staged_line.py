@@ -31,7 +31,7 @@ from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, li
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
-from trunnion.equations.steady_base import imbalance, refuse_dragged, torques_in_words
+from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, periods_in_common, turning
@@ -279,6 +279,7 @@ def staged_line(line: Driveline | Assembly, speed: float | str | None = None) ->
         )
     assembly = assemble(line)
     refuse_second_speed(assembly)
+    require_tree(assembly, "exact motions do")
     _refuse_inexact(assembly)
     own = assembly.line.operation.speed if assembly.line.operation else None
     return _Builder(assembly, own if speed is None else one_speed(speed, "speed")).build()

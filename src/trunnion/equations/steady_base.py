@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly, joint_laws
-from trunnion.equations.loads import drive_places, given_shares, mean_loads
+from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
 from trunnion.errors import InputError
 
 BALANCED = 1e-9
@@ -74,7 +74,9 @@ def moves_by_itself(assembly: Assembly, table: Array | None = None) -> bool:
 
 
 def require_balance(assembly: Assembly, table: Array) -> None:
-    """Refuse a free line whose torques do not add up to nothing at the rows of ``table``, and name them."""
+    """Refuse a free line whose torques do not add up to nothing at the rows of ``table``, and name them; and legs of a
+    differential that the loads would turn against each other."""
+    _require_equal_legs(assembly, table)
     left = imbalance(assembly, table)
     worst = int(np.argmax(np.abs(left)))
     if left[worst]:
@@ -84,6 +86,37 @@ def require_balance(assembly: Assembly, table: Array) -> None:
             key="load_torque",
             remedy=_remedy(assembly, table[worst], float(left[worst])),
         )
+
+
+def _require_equal_legs(assembly: Assembly, table: Array) -> None:
+    topo = assembly.topology
+    if not topo.graph:
+        return
+    load = mean_loads(topo, assembly.packed.column, table)
+    felt, legs = loads_on_unknowns(topo, load), topo.rigid[:, int(topo.free) :]
+    left = np.abs(felt @ legs).max(initial=0.0)
+    if left > BALANCED * np.abs(load).max(initial=0.0) * np.abs(legs).max(initial=0.0):
+        raise InputError(
+            "drives legs whose loads differ, so that they turn faster and faster against each other",
+            element=assembly.line.names[topo.knot], key="load_torque",
+            remedy="give both legs the same load behind their own ratios",
+        )  # fmt: skip
+
+
+def require_tree(assembly: Assembly, what: str) -> None:
+    """Refuse a line with a differential or a loop, which ``what`` does not follow.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    topo = assembly.topology
+    if topo.graph:
+        problem, both = ("ties one shaft to two others", "legs") if topo.sums else ("closes a loop", "ways round")
+        raise InputError(
+            f"{problem}, which {what} not follow", element=assembly.line.names[topo.knot],
+            remedy=f"take both {both} as one shaft; natural frequencies and order response are available",
+        )  # fmt: skip
 
 
 def require_share(assembly: Assembly) -> None:

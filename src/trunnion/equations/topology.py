@@ -5,6 +5,9 @@ rigidly (by a law of angle) to the station in front; a shaft lets its two ends t
 Stations tied rigidly form a *group*: one coordinate, the rotation of the group's first station. The
 dynamics see groups that carry inertia, joined by compliances; massless shafts in series are one
 compliance. The root group is prescribed if the line starts with a ConstantSpeed, otherwise it is free.
+
+Most lines are trees. A differential ties one shaft rigidly to two others: its station turns by a sum of theirs, and is
+a group that is no unknown. ``Topology.turning`` says what every station turns by with every unknown of a straight line.
 """
 
 from __future__ import annotations
@@ -17,12 +20,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Prescribed, Sprung
+from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
+from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
@@ -35,8 +40,14 @@ class Link(IntEnum):
     SHAFT = 1
     JOINT = 2
     RATIO = 3
+    LOOSE = 4
+    SUM = 5
 
 
+Plane = tuple[tuple[int, float], ...]
+"""Constant-velocity joints behind the last bend, with the speeds of their shafts over that behind the last of them."""
+RANK = 1e-12
+"""Singular values below this share of the largest count as none."""
 TIED = (Link.JOINT, Link.RATIO)
 """Links that tie a station rigidly to the one in front of it."""
 
@@ -47,7 +58,7 @@ class Station:
 
     ``orders``: of the unevenness of a joint, in cycles per turn of its own shaft; ``planes``: constant-velocity joints
     between it and the bend before, which turn the plane that its own is measured from, and what their shafts' speeds
-    are over its own.
+    are over its own; ``of``: stations whose rotations add up to its own, and their shares.
     """
 
     before: int
@@ -55,16 +66,21 @@ class Station:
     element: int
     group: int
     orders: tuple[int, ...] = ()
-    planes: tuple[tuple[int, float], ...] = ()
+    planes: Plane = ()
+    of: tuple[tuple[int, Fraction], ...] = ()
 
 
 @dataclass(frozen=True)
 class Compliance:
-    """Shaft(s) in series from a station to the first station of another group; ``drags``: a damper without a spring."""
+    """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop.
+
+    ``drags`` : a damper without a spring.
+    """
 
     near: int
     far_group: int
     shafts: tuple[int, ...]
+    far: int | None = None
     drags: bool = False
 
 
@@ -129,25 +145,71 @@ class Topology:
 
     @cached_property
     def loose(self) -> Array:
-        """Rotations (n, k), as columns, that no spring of the aligned line resists: of a free line as a whole by one at
-        its input, and of what hangs on each of the ``dragged`` links."""
-        columns = [np.array(self.mean_speeds[self.firsts])] if self.free else []
-        for e in self.dragged:
+        """Rotations (n, k), as columns, that no spring of the aligned line resists: the ``rigid`` ones, and those of
+        what hangs on each of the ``dragged`` links."""
+        dragged = np.zeros((self.size, len(self.dragged)))
+        for k, e in enumerate(self.dragged):
             unknowns = np.unique([u for u in self.unknown_of[self.stations_behind[e]] if u >= 0])
-            column = np.zeros(self.size)
-            column[unknowns] = self.mean_speeds[self.firsts][unknowns]
-            columns.append(column / self.mean_speeds[self.reference[self.compliances[e].far_group]])
-        return np.array(columns).reshape(-1, self.size).T
+            own = self.mean_speeds[self.reference[self.compliances[e].far_group]]
+            dragged[unknowns, k] = self.mean_speeds[self.firsts][unknowns] / own
+        return _fixed(np.hstack([self.rigid, dragged]))
 
     @property
     def still(self) -> int:
         """How many undamped modes of the aligned line do not vibrate: one for each ``loose`` rotation."""
-        return self.loose.shape[1]
+        return int(self.loose.shape[1])
 
     def set_aside(self, by_speed: bool) -> int:
         """How many multipliers of a line with straight joints are exactly 1 whatever it does: for every loose rotation
-        one, and for the speed of a free line another where no load goes ``by_speed``."""
-        return self.still + int(self.free and not by_speed)
+        one, and for the speed of every rigid one another where no load goes ``by_speed``."""
+        return self.still + (0 if by_speed else self.rigid_count)
+
+    @cached_property
+    def sums(self) -> tuple[int, ...]:
+        """Stations that turn by the sum of others; a line without them is a tree."""
+        return tuple(s for s, station in enumerate(self.stations) if station.link is Link.SUM)
+
+    @cached_property
+    def graph(self) -> bool:
+        """Whether it is no tree: a shaft is tied to two others, or springs close a loop."""
+        return bool(self.sums) or any(c.far is not None for c in self.compliances)
+
+    @cached_property
+    def knot(self) -> int:
+        """The element that makes it a graph."""
+        closing = (c.shafts[-1] for c in self.compliances if c.far is not None)
+        return self.stations[self.sums[0]].element if self.sums else next(closing)
+
+    @cached_property
+    def turning(self) -> Array:
+        """Rotation of every station per rotation of every unknown (station, n), joints straight."""
+        found = np.zeros((len(self.stations), self.size))
+        for s, station in enumerate(self.stations):
+            place = self.coordinate[station.group]
+            if station.link is Link.SUM:
+                found[s] = sum(float(share) * found[one] for one, share in station.of)
+            elif s != self.reference[station.group]:
+                found[s] = found[station.before] * float(self.speed_ratio[s] / self.speed_ratio[station.before])
+            elif place >= 0:
+                found[s, place] = 1.0
+        found.flags.writeable = False
+        return found
+
+    @cached_property
+    def rigid(self) -> Array:
+        """Rotations of the unknowns (n, k) that twist nothing, joints straight; first, where it can, that of the whole
+        line by one at its input."""
+        whole = self.mean_speeds[self.firsts][:, None] if self.free else np.zeros((self.size, 0))
+        if not self.graph:
+            return _fixed(whole)
+        _, size, basis = np.linalg.svd(np.vstack([self.elongations, whole.T]))
+        still = basis[int(np.sum(size > RANK * size.max(initial=1.0))) :].T
+        return _fixed(np.hstack([whole, still]))
+
+    @property
+    def rigid_count(self) -> int:
+        """How many of these there are."""
+        return int(self.rigid.shape[1])
 
     @cached_property
     def joints(self) -> tuple[int, ...]:
@@ -225,6 +287,9 @@ class Topology:
     @cached_property
     def elongations(self) -> Array:
         """Twist of every compliance per rotation of every unknown (compliance, n), joints straight."""
+        if self.graph:
+            far_ends = [self.reference[c.far_group] if c.far is None else c.far for c in self.compliances]
+            return _fixed(self.turning[far_ends] - self.turning[[c.near for c in self.compliances]])
         found = np.zeros((len(self.compliances), self.size))
         for e, (far, near) in enumerate(self.ends):
             if far >= 0:
@@ -309,7 +374,7 @@ def behind_joint(stations: Sequence[Station], station: int) -> bool:
     return one.link in TIED and (one.link is Link.JOINT or behind_joint(stations, one.before))
 
 
-def _fixed(numbers: list[float]) -> Array:
+def _fixed(numbers: ArrayLike) -> Array:
     """As an array that nobody can change."""
     found = np.array(numbers)
     found.flags.writeable = False
@@ -334,7 +399,7 @@ class LineStations:
     called: list[str] = field(default_factory=list)
 
     def add(self, before: int, link: Link, element: int, ratio: Fraction, **joint: Any) -> int:
-        if link in (Link.ROOT, Link.SHAFT):
+        if link not in TIED:
             group = len(self.reference)
             self.reference.append(len(self.stations))
             self.prescribed.append(False)
@@ -354,12 +419,15 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
     ------
     InputError : what is not an element of a driveline.
     """
-    found, planes = LineStations(), list[tuple[tuple[int, float], ...]]()
+    found, coordinates = LineStations(), list[list[tuple[int, Plane]]]()
     for i, element in enumerate(line.elements):
         parent = line.parents[i]
-        here = found.add(-1, Link.ROOT, i, Fraction(1)) if parent is None else found.behind[parent]
         # Of every coordinate of the element: its station, and the joints that turn the plane behind it.
-        own, turned, heavy = [here], [() if parent is None else planes[parent]], 0
+        if parent is None:
+            here, plane = found.add(-1, Link.ROOT, i, Fraction(1)), Plane()
+        else:
+            here, plane = coordinates[parent][line.hangs_on[i]]
+        own, turned, heavy = [here], [plane], 0
         for part in element.parts():
             match part:
                 case Prescribed():
@@ -378,16 +446,42 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     here, plane = own[to], turned[to]
                     if orders or even:
                         here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
-                    plane = () if orders else (*plane, (i, 1.0))
+                    plane = Plane() if orders else (*plane, (i, 1.0))
+                case Sprung(to, closes) if closes is not None:
+                    end = line.index(closes)
+                    here, plane = coordinates[end][line.elements[end].onward]
+                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
+                    _require_closed(line, found, i, own[to], here)
                 case Sprung(to) | Dragged(to):
                     here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
-                    drags = isinstance(part, Dragged)
-                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), drags))
+                    drags, group = isinstance(part, Dragged), found.stations[here].group
+                    found.compliances.append(Compliance(own[to], group, (i,), drags=drags))
+                case Loose(to, speed):
+                    here, plane = found.add(own[to], Link.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()
+                case Tied(of):
+                    parts = tuple((own[to], share) for to, share in of)
+                    speed = sum((share * found.speed_ratio[s] for s, share in parts), Fraction(0))
+                    here, plane = found.add(parts[0][0], Link.SUM, i, speed, of=parts), Plane()
             own.append(here)
             turned.append(plane)
         found.behind.append(own[element.onward])
-        planes.append(turned[element.onward])
+        coordinates.append([*zip(own, turned, strict=True)])
     return found
+
+
+def _require_closed(line: Driveline, found: LineStations, element: int, near: int, far: int) -> None:
+    """Refuse a loop round which the ratios do not come out: its springs would wind up with every turn."""
+    apart = found.speed_ratio[far] - found.speed_ratio[near]
+    if apart:
+        spring = line.elements[element]
+        assert isinstance(spring, Spring)
+        turns = [float(found.speed_ratio[s]) for s in (near, far)]
+        raise InputError(
+            f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
+            f"input, {100 * abs(turns[1] / turns[0] - 1):.3g} % apart, and wind it up by "
+            f"{360 * abs(float(apart)):.3g} deg with every turn", element=line.names[element], key="to",
+            value=spring.to, remedy="check the ratios on both ways round",
+        )  # fmt: skip
 
 
 def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
@@ -397,22 +491,27 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
     if not any(not draft.prescribed[g] for g in heavy):
         raise InputError("has no inertia that can vibrate", element="driveline", remedy="add a Disk")
     compliances = list(draft.compliances)
+    summed = {station.group for station in draft.stations if station.link is Link.SUM}
+    for g in summed - heavy:
+        if all(draft.stations[c.near].group != g for c in compliances):
+            raise _bare_leg(line, draft, g)
     for g in range(len(draft.reference)):
-        if g in heavy:
+        if g in heavy | summed:
             continue
         into = [c for c in compliances if c.far_group == g]
         out = [c for c in compliances if draft.stations[c.near].group == g]
         plain = sum(s.group == g for s in draft.stations) == 1
-        if not (plain and len(into) == 1 and len(out) == 1):
-            raise _bare(line, draft, g)
+        if not (plain and len(into) == 1 and len(out) == 1 and into[0].far is None):
+            loose = draft.stations[draft.reference[g]].link is Link.LOOSE
+            raise _bare_leg(line, draft, g) if loose else _bare(line, draft, g)
         _refuse_bare_law(line, (*into[0].shafts, *out[0].shafts))
         compliances.remove(into[0])
         place = compliances.index(out[0])
-        compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts)
+        compliances[place] = Compliance(into[0].near, out[0].far_group, into[0].shafts + out[0].shafts, out[0].far)
     compliances.sort(key=lambda c: c.far_group)
     coordinate, count = [], 0
     for g in range(len(draft.reference)):
-        unknown = g in heavy and not draft.prescribed[g]
+        unknown = g in heavy - summed and not draft.prescribed[g]
         coordinate.append(count if unknown else -1)
         count += unknown
     names = _names(draft, coordinate)
@@ -426,10 +525,11 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
 
 def _points(line: Driveline, draft: LineStations, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:
     """Disks that move unevenly, held ones behind a joint among them, and the first ends of tubes without a disk."""
+    moved = {g for g, fixed in enumerate(draft.prescribed) if not fixed}
     found = [
         (s, line.names[i])
         for s, i in draft.disks
-        if coordinate[draft.stations[s].group] >= 0 or behind_joint(draft.stations, s)
+        if draft.stations[s].group in moved or behind_joint(draft.stations, s)
     ]
     with_disk = {draft.stations[s].group for s, _ in draft.disks}
     found += [(draft.reference[g], names[c]) for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
@@ -470,6 +570,19 @@ def _bare(line: Driveline, draft: LineStations, group: int) -> InputError:
         problem = "ends where there is no inertia"
         remedy = f"put a Disk behind {element}, or give the tube a density"
     return InputError(problem, element=element, remedy=remedy)
+
+
+def _bare_leg(line: Driveline, draft: LineStations, group: int) -> InputError:
+    """What refuses a shaft of a differential or a planetary set that nothing resists."""
+    station = draft.reference[group]
+    element = draft.stations[station].element
+    number = 1 + sum(one.element == element and one.link is not Link.ROOT for one in draft.stations[:station])
+    name, legs = line.names[element], {number: leg for leg, number in line.elements[element].ports.items()}
+    leg = legs.get(number, "output")
+    return InputError(
+        f"has no inertia on its {leg} shaft, which takes no torque then, nor do the others", element=name,
+        remedy="put a Disk there" + (f', after = "{name}.{legs[number]}"' if number in legs else ""),
+    )  # fmt: skip
 
 
 def _names(draft: LineStations, coordinate: list[int]) -> list[str]:

@@ -26,8 +26,9 @@ class LineModes:
     """Both eigenvalues (mode, 2) [1/s] of every undamped mode and the complex shapes (n, mode) of those that oscillate.
 
     Modes stand in the order of ``undamped`` (mode,) [rad/s], what no spring resists first: the rotation of a free line
-    as a whole, then what oil alone drags along. A mode that oscillates has λ and its conjugate, an overdamped one two
-    real eigenvalues, the slower first. Shapes, in coordinates scaled with √M, are NaN where a mode does not oscillate.
+    as a whole, other rigid motions, then what oil alone drags along. A mode that oscillates has λ and its conjugate, an
+    overdamped one two real eigenvalues, the slower first. Shapes, in coordinates scaled with √M, are NaN where a mode
+    does not oscillate.
     """
 
     undamped: Array
@@ -35,28 +36,30 @@ class LineModes:
     shape: Complex
 
 
-def line_modes(damping: Array, stiffness: Array, loss: Array, loose: Array, whole: bool) -> LineModes:
+def line_modes(damping: Array, stiffness: Array, loss: Array, loose: Array, rigid: int) -> LineModes:
     """Modes of a line of unit masses.
 
-    ``loose`` (n, k): rotations that no spring resists; ``whole``: the first of them is that of the whole line.
+    ``loose`` (n, k): rotations that no spring resists; the first ``rigid`` of them twist nothing, that of the whole
+    line first.
     """
     still = loose.shape[1]
     if not still:
         squares, basis = np.linalg.eigh(stiffness)
     else:  # taken out of the matrices, whose double eigenvalue 0 rounding would part
-        every = np.linalg.qr(loose, mode="complete")[0]
-        first, rest = every[:, :still], every[:, still:]
+        first, rest = np.split(np.linalg.qr(loose, mode="complete")[0], [still], axis=1)
         squares, own = np.linalg.eigh(rest.T @ stiffness @ rest)
         squares, basis = np.append(np.zeros(still), squares), np.column_stack([first, rest @ own])
     undamped = np.sqrt(np.maximum(squares, 0.0))
     pairs = 1j * undamped[:, None] * np.array([1.0, -1.0])
     shapes = basis.astype(complex)
     if damping.any() or loss.any():
-        start = int(whole and not _brakes(damping, basis[:, 0]))
+        start = 0
+        while start < rigid and not _brakes(damping, basis[:, start]):
+            start += 1
         kept = basis[:, start:]
         pairs[start:], own = _pairs(
             kept.T @ damping @ kept, np.diag(squares[start:]), kept.T @ loss @ kept, RIGID * float(undamped.max()),
-            np.delete(np.arange(len(squares) - start), np.arange(int(whole), still) - start),
+            np.delete(np.arange(len(squares) - start), np.arange(rigid, still) - start),
         )  # fmt: skip
         shapes[:, start:] = kept @ own
     pairs[:still, 0] = 0.0  # where it stands matters to nothing

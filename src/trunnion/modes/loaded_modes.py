@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array, Complex
-from trunnion.equations.aligned import loaded_matrices
+from trunnion.equations.aligned import UnitMasses, loaded_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.modes.damped_modes import RIGID, damped_modes, matched
 
@@ -26,10 +26,8 @@ def loaded_modes(assembly: Assembly, speeds: Array, table: Array | None = None) 
     coefficients = assembly.coefficients(numbers, any_frequency=True)
     matrices = loaded_matrices(topo, coefficients, speeds)
     damping = matrices.damping
-    n, mass = topo.size, matrices.mass[0]
-    root = np.sqrt(mass)
-    scale = np.outer(root, root)
-    squares, reference = np.linalg.eigh(matrices.stiffness[0] / scale)
+    n, unit = topo.size, UnitMasses(matrices.inertia[0])
+    squares, reference = np.linalg.eigh(unit.of_matrix(matrices.stiffness[0]))
     least = RIGID * np.sqrt(max(squares.max(initial=0.0), 0.0))
     elastic = squares > least**2
     last = reference[:, elastic].astype(complex)
@@ -38,10 +36,10 @@ def loaded_modes(assembly: Assembly, speeds: Array, table: Array | None = None) 
     alike = all(np.array_equal(part, np.broadcast_to(part[:1], part.shape)) for part in (damping, matrices.stiffness))
     for i in range(min(len(speeds), 1) if alike else len(speeds)):
         lossy = matrices.stiffness[i] + 1j * matrices.loss[i]
-        values, vectors = damped_modes(damping[i] / scale, lossy / scale, least)
+        values, vectors = damped_modes(unit.of_matrix(damping[i]), unit.of_matrix(lossy), least)
         here, there = matched(last, vectors)
         found[i, here] = values[there]
-        turned = vectors[:, there] / root[:, None]
+        turned = unit.rotations(vectors[:, there])
         largest = turned[np.abs(turned).argmax(axis=0), np.arange(len(there))]
         shapes[i][:, here] = turned / largest
         last[:, here] = vectors[:, there]

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.aligned import frequencies, loaded_matrices
+from trunnion.equations.aligned import UnitMasses, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import left_out
 from trunnion.modes.damped_modes import LineModes, line_modes
@@ -34,10 +34,19 @@ class NaturalFrequencies(Result):
 
     names: tuple[str, ...] = coordinate("rotation")
     undamped_frequency: Array = variable("mode", "rad/s", "undamped, ascending, 0 of the rigid body")
-    rigid_body: bool = internal("whether mode 1 is the free rotation of the whole line")
-    still: int = internal("how many modes no spring resists: the rigid body, and rings that oil alone drags along")
+    rigid_motions: int = internal("how many modes twist nothing; the free rotation of the whole line is the first")
     assembly: Assembly = internal("of the line")
     unit: str = internal("that frequencies are printed in, beside Hz")
+
+    @property
+    def rigid_body(self) -> bool:
+        """Whether mode 1 is the free rotation of the whole line."""
+        return self.assembly.topology.free
+
+    @property
+    def still(self) -> int:
+        """How many modes no spring resists: those of rigid motions, and rings that oil alone drags along."""
+        return self.assembly.topology.still
 
     @property
     @computed(coordinate("mode"), after="names")
@@ -80,15 +89,14 @@ class NaturalFrequencies(Result):
     @cached_property
     def modes(self) -> LineModes:
         """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
-        return line_modes(*_matrices(self.assembly), _loose(self.assembly), self.rigid_body)
+        return line_modes(*_matrices(self.assembly), _loose(self.assembly), self.rigid_motions)
 
     @cached_property
     @computed(variable("rotation mode", "1", "undamped mode shape"))
     def shape(self) -> Array:
         """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
-        mass = self.assembly.aligned.mass[0]
-        root = np.sqrt(mass)
-        shape = np.linalg.eigh(self.assembly.aligned.stiffness[0] / np.outer(root, root))[1] / root[:, None]
+        unit = UnitMasses(self.assembly.aligned.inertia[0])
+        shape = unit.rotations(np.linalg.eigh(unit.of_matrix(self.assembly.aligned.stiffness[0]))[1])
         if self.still > 1:
             shape[:, : self.still] = self.assembly.topology.loose
         return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
@@ -119,16 +127,15 @@ class NaturalFrequencies(Result):
                 "damping ratio": float(self.damping_ratio[i]),
                 f"undamped [{unit}]": float(self.undamped_frequency[i] * factor),
                 **({"overdamped": self._decay(i)} if still else {}),
-                "moves most": "whole line" if self._rigid(i) else self.names[np.argmax(np.abs(self.shape[:, i]))],
+                "moves most": self._moves_most(i),
             }
             for i in range(len(self.undamped_frequency))
         ]
 
-    def _rigid(self, mode: int) -> bool:
-        return self.rigid_body and mode == 0
-
-    def _dragged(self, mode: int) -> bool:
-        return int(self.rigid_body) <= mode < self.still
+    def _moves_most(self, mode: int) -> str:
+        if mode < self.rigid_motions:
+            return "whole line" if self.rigid_body and mode == 0 else "shafts against each other"
+        return self.names[np.argmax(np.abs(self.shape[:, mode]))]
 
     def _decay(self, mode: int) -> str:
         """How an overdamped mode dies out; "" of others."""
@@ -138,8 +145,8 @@ class NaturalFrequencies(Result):
         return f"decays at {slow} and {fast} 1/s"
 
     def plot(self, *, unit: str = "Hz", drive: str | None = None) -> Figure:
-        """Mode shapes side by side; see ``plots.mode_shapes.draw``."""
-        return drawing(self, "plot")(self, unit=unit, drive=drive)
+        """Mode shapes side by side; see ``pictures.modes.mode_shapes``."""
+        return drawing(self, "plot")(self, unit=unit, drive=drive).figure
 
     def _lines(self) -> Iterator[str]:
         many = len(self.undamped_frequency)
@@ -147,10 +154,11 @@ class NaturalFrequencies(Result):
         yield from (f"  mode {i + 1}: {self._said(i)}" for i in range(many))
 
     def _said(self, mode: int) -> str:
-        if self._rigid(mode):
-            return "0, rigid body (the line turns as a whole)"
-        if self._dragged(mode):
-            ring, slip = self.names[np.argmax(np.abs(self.shape[:, mode]))], self.words.number(self.decay_rate[mode][1])
+        if mode < self.rigid_motions:
+            how = "the line turns as a whole" if self.rigid_body and mode == 0 else "shafts turn against each other"
+            return f"0, rigid body ({how})"
+        if mode < self.still:
+            ring, slip = self._moves_most(mode), self.words.number(self.decay_rate[mode][1])
             return f"0, {ring} (oil alone drags it along; slip decays at {slip} 1/s)"
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
@@ -176,18 +184,17 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     assembly = assemble(line)
     topo = assembly.topology
     found = frequencies(assembly.aligned, still=topo.still)[0]
-    return NaturalFrequencies(topo.names, found, topo.free, topo.still, assembly, speed_unit(assembly.line))
+    return NaturalFrequencies(topo.names, found, topo.rigid_count, assembly, speed_unit(assembly.line))
 
 
 def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
     """Damping, stiffness and loss of unit masses, viscous loads among the damping."""
     coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
     matrices = loaded_matrices(assembly.topology, coefficients, np.zeros(1))
-    root = np.sqrt(matrices.mass[0])
-    scale = np.outer(root, root)
-    return matrices.damping[0] / scale, matrices.stiffness[0] / scale, matrices.loss[0] / scale
+    unit = UnitMasses(matrices.inertia[0])
+    return unit.of_matrix(matrices.damping[0]), unit.of_matrix(matrices.stiffness[0]), unit.of_matrix(matrices.loss[0])
 
 
 def _loose(assembly: Assembly) -> Array:
-    """Rotations that no spring resists, in coordinates scaled with the roots of the inertias."""
-    return np.asarray(assembly.topology.loose * np.sqrt(assembly.aligned.mass[0])[:, None])
+    """Rotations that no spring resists (n, k), in coordinates scaled with the roots of the inertias."""
+    return UnitMasses(assembly.aligned.inertia[0]).of_rotations(assembly.topology.loose)

@@ -140,8 +140,9 @@ def solved(matrix: Any, right: Any) -> Any:
     columns = right.reshape(*matrix.shape[:2], -1)
     finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(columns).all(axis=(1, 2))
     out = np.full(columns.shape, np.nan, dtype=right.dtype)
+    some: Any = slice(None) if finite.all() else finite
     try:
-        out[finite] = np.linalg.solve(matrix[finite], columns[finite])
+        out[some] = np.linalg.solve(matrix[some], columns[some])
     except np.linalg.LinAlgError:
         for i in np.flatnonzero(finite):
             with suppress(np.linalg.LinAlgError):

@@ -31,18 +31,25 @@ def multipliers(matrix: Array, error: Array) -> tuple[Complex, Array]:
     values, vectors = values.astype(complex), vectors.astype(complex)
     rounding = 1e-15 * np.linalg.norm(matrix, axis=(-2, -1))
     condition = _conditions(vectors)
-    uncertain = (np.asarray(error) + rounding)[..., None]
+    bound = bounds_of(values, condition, np.asarray(error) + rounding)
+    values[failed], bound[failed] = np.nan, np.nan
+    return values, bound
+
+
+def bounds_of(values: Complex, condition: Array, error: Array | float) -> Array:
+    """Bounds (…, m) on how far eigenvalues of condition numbers ``condition`` (…, m) may be off, of matrices that are
+    known to ``error`` (…)."""
+    uncertain = np.asarray(error)[..., None]
     moved = uncertain * condition
     distance = np.sort(np.abs(values[..., :, None] - values[..., None, :]), axis=-1)[..., 1:]
     # Multipliers closer than the error of Z are not known to be apart.
     distance = np.maximum(distance, uncertain[..., None])
     bound = moved.copy()
     product = moved.copy()
-    for k in range(2, matrix.shape[-1] + 1):
+    for k in range(2, values.shape[-1] + 1):
         product = product * distance[..., k - 2]
         bound = np.minimum(bound, product ** (1 / k))
-    values[failed], bound[failed] = np.nan, np.nan
-    return values, 2 * bound
+    return np.asarray(2 * bound)
 
 
 def without(matrix: Array, vectors: Array) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ from trunnion.design.assessment.parametric import NAME as PARAMETRIC
 from trunnion.design.assessment.subject import Case
 from trunnion.reporting.answer import capital
 from trunnion.reporting.overview import Overview
-from trunnion.reporting.pictures import Picture, picture
+from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.response.orders.result import OrderResponse
 
 OF_TORQUE = {
@@ -21,9 +21,10 @@ OF_TORQUE = {
 """How checks are called whose value is a torque, and the limit that they compare with."""
 
 
-def binding_picture(seen: Overview) -> Picture | None:
+def binding_picture(seen: Overview) -> ReportPicture | None:
     """What binds over speed, or None where no response and no stability along the range exist."""
-    from trunnion.plots import course, growth_over_speed, order_response
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.orders import course, growth_over_speed, order_response
 
     check, along = seen.assessment.binding, seen.along
     case = _case(seen, check)
@@ -32,7 +33,7 @@ def binding_picture(seen: Overview) -> Picture | None:
     if check is not None and check.course is not None and not (parametric or _of_torque(check)):
         what = check.course.quantity
         orders = " by order, and of all orders together" if check.course.by_order.size else ""
-        drawn = course.draw(check.course, unit=seen.unit, operating=seen.operation)
+        drawn = draw(course(check.course, unit=seen.unit, operating=seen.operation))
         said = f"{capital(what)} over speed{orders}, with its limit{loaded}."
         return picture(drawn, f"{what} over speed, with its limit", said)
     response = case.response
@@ -40,12 +41,12 @@ def binding_picture(seen: Overview) -> Picture | None:
     if response is not None and turning and not parametric:
         spring, limits = _spring(seen, case, check, response)
         which = "whose limit binds" if check is not None and _of_torque(check) else "that is loaded most"
-        drawn = order_response.draw(response, spring=spring, unit=seen.unit, operating=seen.operation, limits=limits)
+        drawn = draw(order_response(response, spring=spring, unit=seen.unit, operating=seen.operation, limits=limits))
         said = f"Torque over speed by order, and all orders together, of the spring {which}{loaded}."
         return picture(drawn, "Torque over speed by order, with its limits", said)
     if along is None:
         return None
-    drawn = growth_over_speed.draw(along, unit=seen.unit, operating=seen.operation)
+    drawn = draw(growth_over_speed(along, unit=seen.unit, operating=seen.operation))
     said = (
         "Growth rate of the slowest disturbance at the line's own joint angles: below zero it dies out. At every "
         "speed judged, the named resonance speeds among them."

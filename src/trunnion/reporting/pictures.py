@@ -16,7 +16,7 @@ RASTER_DPI = 200
 
 
 @dataclass(frozen=True)
-class Picture:
+class ReportPicture:
     """An image for a page: its address, words for those who cannot see it, a caption, the figure it shows."""
 
     address: str
@@ -25,12 +25,12 @@ class Picture:
     figure: Figure | None = field(default=None, repr=False, compare=False)
 
 
-def picture(drawn: Figure | Axes, alt: str, caption: str = "") -> Picture:
+def picture(drawn: Figure | Axes, alt: str, caption: str = "") -> ReportPicture:
     """What is drawn as SVG; meshes in it as pixels."""
     figure = cast("Figure", drawn.figure).figure
     stream = io.BytesIO()
     figure.savefig(stream, format="svg", dpi=RASTER_DPI, metadata={"Date": None})
-    return Picture(address("image/svg+xml", stream.getvalue()), alt, caption, figure)
+    return ReportPicture(address("image/svg+xml", stream.getvalue()), alt, caption, figure)
 
 
 def address(kind: str, content: bytes) -> str:

@@ -19,7 +19,7 @@ from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
 from trunnion.reporting.overview import Overview, overview
-from trunnion.reporting.pictures import Picture, picture
+from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
 from trunnion.results.speeds import frequency_unit as reading_of_frequencies
@@ -35,7 +35,7 @@ class Report:
 
     html: str
     contents: Contents
-    pictures: Mapping[str, Picture]
+    pictures: Mapping[str, ReportPicture]
     source: Path | None = None
 
     def save(self, path: str | os.PathLike[str]) -> Path:
@@ -99,7 +99,7 @@ def report(
         return Report(_page(contents, shown, path), contents, shown, path)
 
 
-def _page(contents: Contents, shown: Mapping[str, Picture], source: Path | None) -> str:
+def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
     from trunnion.reporting.page import environment
 
     seen = contents.overview
@@ -147,10 +147,15 @@ def _verdict(seen: Overview) -> str:
     return seen.stability.describe(seen.unit).split("\n  linear forced response")[0] if seen.stability else ""
 
 
-def pictures(contents: Contents) -> dict[str, Picture]:
+def pictures(contents: Contents) -> dict[str, ReportPicture]:
     """The figures of a report by name."""
-    from trunnion.plots import campbell_diagram, driveline_sketch, irregularity, mode_shapes, torque_over_speed
-    from trunnion.plots.motion import draw_orders, draw_period
+    from trunnion.pictures import driveline_sketch
+    from trunnion.pictures import motion as motions
+    from trunnion.pictures.campbell_diagram import campbell_diagram
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.kinetostatics import irregularity
+    from trunnion.pictures.modes import mode_shapes
+    from trunnion.pictures.orders import speed_sweep
 
     seen, unit = contents.overview, contents.overview.unit
     line, operating, frequency_unit = seen.line, seen.operation, reading_of_frequencies(seen.unit)
@@ -158,36 +163,38 @@ def pictures(contents: Contents) -> dict[str, Picture]:
     drive = line.names[0] if isinstance(first, ConstantSpeed) else None
     shown = {
         "sketch": picture(driveline_sketch.draw(line), "Sketch of the driveline, element by element"),
-        "modes": picture(mode_shapes.draw(seen.natural_frequencies, unit=frequency_unit, drive=drive), "Mode shapes"),
+        "modes": picture(draw(mode_shapes(seen.natural_frequencies, unit=frequency_unit, drive=drive)), "Mode shapes"),
     }
     if (binding := binding_picture(seen)) is not None:
         shown["binding"] = binding
     if contents.campbell is not None:
-        drawn = campbell_diagram.draw(contents.campbell, unit=unit, frequency_unit=frequency_unit, operating=operating)
-        shown["campbell"] = picture(drawn, "Campbell diagram: modes and excitations over speed")
+        diagram = campbell_diagram(contents.campbell, unit=unit, frequency_unit=frequency_unit, operating=operating)
+        shown["campbell"] = picture(draw(diagram), "Campbell diagram: modes and excitations over speed")
     if contents.turn is not None:
-        shown["irregularity"] = picture(irregularity.draw(contents.turn), "Speed of the shafts over a turn")
+        shown["irregularity"] = picture(draw(irregularity(contents.turn)), "Speed of the shafts over a turn")
     if contents.sweep is not None:
-        drawn = torque_over_speed.draw(contents.sweep, unit=unit, operating=operating)
-        shown["torque"] = picture(drawn, "Torque amplitude of every shaft over speed")
+        swept = speed_sweep(contents.sweep, unit=unit, operating=operating)
+        shown["torque"] = picture(draw(swept), "Torque amplitude of every shaft over speed")
     if contents.loaded:
         motion = heaviest(contents.loaded)
-        shown["loaded"] = picture(draw_period(motion.response, unit=unit), f"Torque over one period, {motion.case}")
-        shown["orders"] = picture(draw_orders(motion.response), f"Orders of the torque, {motion.case}")
+        period, orders = motions.period(motion.response, unit=unit), motions.orders(motion.response)
+        shown["loaded"] = picture(draw(period), f"Torque over one period, {motion.case}")
+        shown["orders"] = picture(draw(orders), f"Orders of the torque, {motion.case}")
     return shown | chart_pictures(contents)
 
 
-def chart_pictures(contents: Contents) -> dict[str, Picture]:
+def chart_pictures(contents: Contents) -> dict[str, ReportPicture]:
     """The stability chart and what follows from it; nothing where it is not computed."""
-    from trunnion.plots import stability_chart
-    from trunnion.plots import stable_limit as limit_plot
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.stability_chart import stability_chart
+    from trunnion.pictures.stable_limit import stable_limit
 
     seen, unit, shown = contents.overview, contents.overview.unit, {}
     if seen.chart is not None:
-        drawn = stability_chart.draw(seen.chart, unit=unit, operating=seen.operation)
-        shown["chart"] = picture(drawn, "Stability chart over speed and joint angle")
+        chart = stability_chart(seen.chart, unit=unit, operating=seen.operation)
+        shown["chart"] = picture(draw(chart), "Stability chart over speed and joint angle")
     if contents.limit is not None and not np.all(contents.limit.kind == LimitKind.BEYOND):
         stands = {name: abs(angle) for name, angle in hooke_joints(seen.line)}
-        drawn = limit_plot.draw(contents.limit, unit=unit, operating=seen.operation, values=stands)
-        shown["limit"] = picture(drawn, "Largest stable joint angle over speed")
+        limit = stable_limit(contents.limit, unit=unit, operating=seen.operation, values=stands)
+        shown["limit"] = picture(draw(limit), "Largest stable joint angle over speed")
     return shown

@@ -188,7 +188,7 @@ class CampbellDiagram(Result):
         frequency_unit: str = "Hz",
         operating: Operation | None = None,
     ) -> Axes:
-        """Modes with their margin over speed, excitation lines, crossings; see ``plots.campbell_diagram.draw``."""
+        """Modes with their margin over speed, excitation lines, crossings; see ``pictures.campbell_diagram``."""
         return drawing(self, "plot")(self, axes, unit=unit, frequency_unit=frequency_unit, operating=operating)
 
 
@@ -295,7 +295,7 @@ def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
 def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
     """Shares of kinetic (rotation, mode) and elastic energy (spring, mode)."""
     coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
-    kinetic = assembly.aligned.mass[0][:, None] * np.abs(shape) ** 2
+    kinetic = (shape.conj() * (assembly.aligned.inertia[0] @ shape)).real
     potential = coefficients.stiffness[0][:, None] * np.abs(assembly.topology.elongations @ shape) ** 2
     return kinetic / kinetic.sum(axis=0), potential / potential.sum(axis=0)
 

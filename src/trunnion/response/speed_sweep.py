@@ -74,7 +74,7 @@ class SpeedSweep(Result):
         yield from attributes(linear_range=LINEAR_RANGE)
 
     def plot(self, axes: Axes | None = None, *, unit: str = "", operating: Operation | None = None) -> Axes:
-        """Torque amplitude of every shaft over speed; see ``plots.torque_over_speed.draw``."""
+        """Torque amplitude of every shaft over speed; see ``pictures.orders.speed_sweep``."""
         return drawing(self, "plot")(self, axes, unit=unit, operating=operating)
 
     @property

@@ -202,7 +202,7 @@ class StabilityChart(Result):
         operating: Operation | None = None,
         tongues: Any = None,
     ) -> Axes:
-        """Draw the chart (dark = unstable); see ``plots.stability_chart.draw``."""
+        """Draw the chart (dark = unstable); see ``pictures.stability_chart``."""
         return drawing(self, "plot")(self, axes, unit=unit, resonances=resonances, operating=operating, tongues=tongues)
 
     def _lines(self) -> Iterator[str]:

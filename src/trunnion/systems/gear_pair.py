@@ -26,9 +26,21 @@ PRESSURE_ANGLE = radians(20.0)
 def base_radius(teeth: int, module: float, pressure_angle: float = PRESSURE_ANGLE) -> float:
     """Base radius of a spur gear [m]: half the module times the teeth times the cosine of the pressure angle.
 
+    Parameters
+    ----------
+    teeth : number of teeth.
+    module : pitch diameter over the number of teeth [m].
+    pressure_angle : between the line of action and the common tangent of the pitch circles [rad]; by default 20°.
+
     Raises
     ------
     InputError : no teeth, a module that is not positive.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.base_radius(20, 0.004), 6)
+    0.037588
     """
     if teeth < 1 or not module > 0:
         raise InputError("must be positive", element="gear", key="teeth, module", value=[teeth, module])
@@ -50,24 +62,36 @@ def gear_pair(
     frequency: float = 1.0,
     **more: Any,
 ) -> PiecewiseOscillator:
-    """The oscillator of a gear pair, its x the deflection u [m], its inertia I [kg].
+    """A gear pair with backlash as an oscillator: x is the deflection u [m] along the line of action.
+
+    Its inertia is I [kg], that of both gears along this line.
 
     Parameters
     ----------
-    radii, inertias : base radii [m] (see ``base_radius``) and inertias [kg m²] of driving and driven gear.
-    stiffness, damping : of the mesh along the line of action [N/m], [N s/m]; ``damping_law`` as in
-        ``PiecewiseOscillator``.
+    radii : base radii (driving, driven) [m]; see ``base_radius``.
+    inertias : of the driving and the driven gear [kg m²].
+    stiffness : of the mesh along the line of action [N/m].
     half_backlash : half the backlash along the line of action [m]; or
-    backlash_angle : the whole turn of the second gear while the first is held [rad].
-    inside : stiffness ratio within the gap.
-    torques, torque_amplitudes : mean and amplitude at ``frequency`` of M₁ and M₂ [N m], in phase.
+    backlash_angle : the whole turn of the driven gear while the driving one is held [rad].
+    inside : stiffness within the gap over ``stiffness`` [-].
+    damping : of the mesh along the line of action [N s/m].
+    torques : mean M₁ that drives and M₂ that resists [N m].
+    torque_amplitudes : of M₁ and M₂ at ``frequency`` [N m], in phase.
     transmission_error : harmonics (k, p_k, q_k) of e = Σ p_k cos kωt + q_k sin kωt [m].
     frequency : ω of torques and error [rad/s], the mesh frequency if the error is that of the teeth.
+    **more : ``name`` and ``damping_law`` of ``PiecewiseOscillator``.
 
     Raises
     ------
     InputError : radii, inertias or stiffness that are not positive, no backlash given or both, and what
         ``PiecewiseOscillator`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> pair = tn.gear_pair(radii=(0.04, 0.06), inertias=(1e-3, 4e-3), stiffness=1e8, half_backlash=5e-5)
+    >>> round(pair.inertia, 6), pair.breakpoints
+    (0.4, (-5e-05, 5e-05))
     """
     name = more.pop("name", "gear pair")
     for key, values in (("radii", radii), ("inertias", inertias), ("stiffness", (stiffness,))):

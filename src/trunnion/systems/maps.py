@@ -18,13 +18,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
 from trunnion.numerics.integration.integration import kernel as compiled_core
 from trunnion.numerics.integration.tangents import Motion
 from trunnion.systems.events import Event, watch
+from trunnion.systems.regimes import SLACK
 from trunnion.systems.system import System
 
 if TYPE_CHECKING:
@@ -34,6 +35,8 @@ SETTLED = 1e-8
 """Tolerance of motions that only have to come near an orbit."""
 SAME = 1e-9
 """Time between two crossings, over that between looks, below which they are one."""
+MOMENT = 0.02
+"""Share of the period within which a slider that sticks may slip by rounding."""
 LOOSER = (1.0, 10.0, 100.0)
 """A motion that touches a switching surface may chatter there at one tolerance and pass at another."""
 
@@ -87,6 +90,40 @@ class PeriodMap(Protocol):
         """What the closed motion from x does; NaN where it cannot be computed."""
 
 
+class RubbingMap(PeriodMap, Protocol):
+    """The map of a line with sliders.
+
+    The deflection of a slider that sticks throughout comes back whatever it has beside the twist that it follows: the
+    motion is one of a continuum, and the gradient of that difference a left eigenvector of its monodromy matrix, with
+    the multiplier 1.
+    """
+
+    @property
+    def sliders(self) -> int:
+        """How many."""
+
+    @property
+    def deflections(self) -> Integers:
+        """Places (slider,) of their deflections among the states."""
+
+    @property
+    def held(self) -> tuple[int, ...]:
+        """Numbers of those that are kept from slipping."""
+
+    def holding(self, which: tuple[int, ...]) -> Self:
+        """The map in which the sliders ``which`` are kept from slipping, which rounding could let them."""
+
+    def idle(self, x: Array) -> tuple[int, ...]:
+        """Numbers of the sliders that slip for no more than a moment in the motion from x, and stay within what they
+        hold."""
+
+    def conserved(self, x: Array, which: tuple[int, ...]) -> Array:
+        """Gradients (k, n) by the state of the deflections of sliders beside the twists that they follow."""
+
+    def within_limits(self, x: Array) -> Array:
+        """x (n,), deflections beyond what their sliders hold brought back to that."""
+
+
 @dataclass(frozen=True)
 class IntegratedMap:
     """x(t₀) → x(t₀ + periods · T) by integration, of one system or of a family of them.
@@ -98,6 +135,7 @@ class IntegratedMap:
     phase : t₀ [s].
     periods : forcing periods per application.
     look : (system, times, states) → curves (times, c) to be observed; by default the states.
+    held : numbers of the sliders that are kept from slipping.
     """
 
     family: Callable[..., System]
@@ -108,6 +146,7 @@ class IntegratedMap:
     tolerance: float = TOLERANCE
     most_steps: int = MOST_STEPS
     look: Callable[[System, Array, Array], Array] | None = None
+    held: tuple[int, ...] = ()
 
     @classmethod
     def of(cls, system: System, *, phase: float = 0.0, periods: int = 1, tolerance: float = TOLERANCE) -> Self:
@@ -117,7 +156,12 @@ class IntegratedMap:
     @cached_property
     def system(self) -> System:
         """The system at the values."""
-        return self.family(*self.values)
+        system = self.family(*self.values)
+        if not self.held:
+            return system
+        assert system.regimes is not None
+        numbers = system.regimes.holding(np.array(self.held), system.numbers)
+        return system.with_fields(numbers_of=lambda values: numbers)
 
     @property
     def size(self) -> int:
@@ -191,6 +235,38 @@ class IntegratedMap:
         amplitude = np.abs(fourier(run.at, run.time_of_state, self.periods)[self.periods])
         seen = extremes(lambda times: look(self.system, times, run.at(times)), run.time_of_state)
         return Observed(seen.span, seen.largest, amplitude)
+
+    @property
+    def sliders(self) -> int:
+        return len(self.system.sliders)
+
+    @property
+    def deflections(self) -> Integers:
+        return np.arange(self.size - self.sliders, self.size)
+
+    def holding(self, which: tuple[int, ...]) -> Self:
+        return replace(self, held=which)
+
+    def idle(self, x: Array) -> tuple[int, ...]:
+        passage, regimes, count = self(x, tangents=False, dense=True), self.system.regimes, self.sliders
+        if regimes is None or not passage.done:
+            return ()
+        still = regimes.stuck(passage.run.regime, passage.run.length, MOMENT)
+        seen = extremes(lambda times: passage.run.at(times)[:, -count:], passage.run.time_of_state)
+        reach = self.family(*self.values).within_limits(np.full(self.size, np.inf))[-count:]
+        return tuple(still[seen.largest[still] <= (1 + SLACK) * reach[still]].tolist())
+
+    def conserved(self, x: Array, which: tuple[int, ...]) -> Array:
+        system, equations = self.system, self.system.equations
+        if system.regimes is None:
+            return np.zeros((0, system.size))
+        count = equations.transitions.shape[1]
+        g, slopes = np.zeros(count), np.zeros(count * (system.size + 1))
+        compiled_core().call_guard(equations.guard, float(self.phase), x, system.numbers.copy(), 0, g, slopes)
+        return system.regimes.conserved(np.array(which, dtype=np.int64), slopes.reshape(count, -1))
+
+    def within_limits(self, x: Array) -> Array:
+        return self.system.within_limits(x)
 
     def motion(self, x: Array, frame: Array) -> Motion:
         """The motion from x application by application, a frame of tangents (k, n) carried along, compiled."""

@@ -127,11 +127,23 @@ SYSTEMS: Mapping[str, Callable[..., System]] = {
 
 
 def reference_system(name: str, **parameters: float) -> System:
-    """One of the reference systems by name, with some of its parameters changed.
+    """A system of the literature by name: duffing, ueda, lorenz, rossler, driven-pendulum, mathieu and others.
+
+    Parameters
+    ----------
+    name : one of ``trunnion.systems.reference.SYSTEMS``; an unknown name is refused with the list of them.
+    **parameters : new values of some of its parameters, in its own units; those left out keep the values of the source.
 
     Raises
     ------
     InputError : no such system, or not one of its parameters.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> system = tn.reference_system("duffing", force=0.3)
+    >>> system.states, system.parameters["force"], round(system.forcing_period, 4)
+    (('x', 'v'), 0.3, 5.236)
     """
     if name not in SYSTEMS:
         raise InputError(

@@ -26,12 +26,52 @@ class Spring(Portable):
 
 
 def cubic_spring(direction: ArrayLike, cubic: float) -> Spring:
-    """f = k₃u³."""
+    """A spring whose force grows with the cube of its elongation: f = k₃u³, u = dᵀx.
+
+    Parameters
+    ----------
+    direction : d (n,), what each unknown of the system adds to the elongation.
+    cubic : k₃ [N/m³] or [N m/rad³], in the units of the system.
+
+    Returns
+    -------
+    Spring, for ``SecondOrder``.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> spring = tn.cubic_spring([1.0, -1.0], cubic=2.0)
+    >>> spring.force(np.array([0.5, 1.0])), spring.slope(np.array([1.0]))
+    (array([0.25, 2.  ]), array([6.]))
+    """
     return Spring(_tuple(direction), lambda u: cubic * u**3, lambda u: 3 * cubic * u**2)
 
 
 def backlash_spring(direction: ArrayLike, half_gap: float, stiffness: float, inside: float = 0.0) -> Spring:
-    """The force of ``PiecewiseOscillator.gap``, which says what it refuses."""
+    """A spring with a gap, between two unknowns say: the force of ``PiecewiseOscillator.gap``.
+
+    Parameters
+    ----------
+    direction : d (n,), what each unknown of the system adds to the elongation u = dᵀx.
+    half_gap : |u| from which the spring is in contact, in units of u.
+    stiffness : of the contact [N/m] or [N m/rad].
+    inside : stiffness within the gap over ``stiffness`` [-], from 0 to 1.
+
+    Returns
+    -------
+    Spring, for ``SecondOrder``.
+
+    Raises
+    ------
+    InputError : what ``PiecewiseOscillator.gap`` refuses.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> spring = tn.backlash_spring([1.0, -1.0], half_gap=0.5, stiffness=4.0)
+    >>> spring.force(np.array([-1.0, 0.2, 1.0])), spring.kinks
+    (array([-2.,  0.,  2.]), (-0.5, 0.5))
+    """
     return _piecewise(direction, PiecewiseOscillator.gap(half_gap, stiffness, inside))
 
 

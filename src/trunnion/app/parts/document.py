@@ -312,7 +312,7 @@ def _free_name(word: str, tables: list[Any]) -> str:
 def _spoken_of(data: dict[str, Any]) -> set[str]:
     """Names of elements that limits, loads, schedules and branches use."""
     found = {str(one.get("of", "")) for one in _listed(data, ("limit",)) if isinstance(one, dict)}
-    found |= {str(one["after"]) for one in data.get("element", []) if "after" in one}
+    found |= {str(one[key]) for one in data.get("element", []) for key in ("after", "to") if key in one}
     for section in (LOAD_CASE, SCHEDULE):
         for one in _listed(data, ("operation", section)):
             for key in (LOADS, ANGLES) if isinstance(one, dict) else ():
@@ -339,6 +339,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
         "stiffnesses": ["15 N*m/deg"],
     },
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
+    "Differential": {"teeth_in": 10, "teeth_out": 41},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }
 """What a new element starts with."""

@@ -13,9 +13,16 @@ export function render({ model }) {
   const button = document.createElement("button")
   button.type = "button"; button.textContent = model.label
   let moving = false
+  const still = {}
   const set = (share) => {
-    const source = Bokeh.documents.map(d => d.get_model_by_name(model.source)).find(found => found)
-    if (source) source.data = {...source.data, y: Array.from(source.data.shape, v => v * share)}
+    for (const [kind, key] of [["lines", "xs"], ["marks", "x"]]) {
+      const source = Bokeh.documents.map(d => d.get_model_by_name(`${model.picture}-${kind}`)).find(found => found)
+      if (!source) continue
+      if (still[kind]?.data !== source.data) still[kind] = {data: source.data, values: Array.from(source.data[key])}
+      const swung = (value) => value.length === undefined ? value * share : Array.from(value, v => v * share)
+      source.data[key] = share === 1 ? still[kind].values : still[kind].values.map(swung)
+      source.change.emit()
+    }
   }
   const move = () => {
     if (!moving || !button.isConnected) { set(1); return }
@@ -39,9 +46,9 @@ button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
 
 
 class Mover(JSComponent):
-    """The column "y" of the source of that name swings through its column "shape" while the button is pressed."""
+    """Lines and marks of the picture of that name swing across while the button is pressed, from x to −x and back."""
 
-    source = param.String()
+    picture = param.String()
     label = param.String(default="Move the mode")
 
     _esm = _SCRIPT

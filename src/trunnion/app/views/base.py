@@ -11,7 +11,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import panel as pn
 
 from trunnion.app.parts.calls import Call
-from trunnion.app.parts.curves import Curves
+from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.document import Document
 from trunnion.app.parts.jobs import Job
 from trunnion.app.parts.pieces import Html, Quiet, faint, joined, markup, pane, wrapped
@@ -143,7 +143,6 @@ class Side(ABC, Generic[V]):
             jobs.setdefault(step.show, []).append(job)
         for kind in [kind for kind in self.shown if kind not in jobs]:
             del self.shown[kind]
-            self.forget(kind)
         self.wanted, self.doubt = jobs, doubt
         self.tell(ANEW)
 
@@ -179,9 +178,6 @@ class Side(ABC, Generic[V]):
         words = self.doubt or f"What is faint belongs to an earlier line or other settings: {fate}."
         self.stamp.object = markup("<div class='stamp' role='status'>{}</div>", words) if stale else ""
 
-    def forget(self, kind: str) -> None:
-        """Take away what a kind of step shows that is not asked for any more."""
-
     @property
     def line(self) -> Driveline:
         """The line that the picture is of."""
@@ -190,7 +186,7 @@ class Side(ABC, Generic[V]):
     def narrow(self, narrow: bool) -> None:
         """Take half of the page, or all of it again."""
         for held in vars(self).values():
-            if isinstance(held, Curves):
+            if isinstance(held, Canvas):
                 held.narrow(narrow)
 
     def begin(self, what: str) -> None:

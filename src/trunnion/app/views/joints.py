@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
 import panel as pn
 
-from trunnion.app.parts import figures
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.document import Document
 from trunnion.app.parts.pieces import Html, Shown, column, items, joined, lines, markup, pane, picture, small
 from trunnion.app.views.base import (
@@ -29,36 +28,23 @@ from trunnion.app.views.base import (
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.layout import combined_angle
 from trunnion.driveline.shafts import Shaft
+from trunnion.pictures.picture import Level
 
 DEGREES = 180 / math.pi
-SPACING = 2.6
-"""Distance of the drawn joints; a fork's arm is 1 long."""
+HEIGHT = 3.8
+"""Of a panel of curves over a turn [inches]."""
 
 
 class _Side(Side["JointsView"]):
     """Curves over a turn and the forks."""
 
     def make(self) -> None:
-        """Panes and figures, made once."""
-        self.speed = Curves("input angle [deg]", "speed less its mean [%]", height=270)
-        self.torque = Curves("input angle [deg]", "transmitted torque [N·m]", height=270)
-        self.couple = Curves("input angle [deg]", "secondary couple [N·m]", height=270)
+        """Panes and places of the pictures, made once."""
         self.text, self.phasing, self.space = pane(), pane(), pane()
-        self.forks = figures.plot("", "", height=210, title="forks seen along the line", match_aspect=True, tools="")
-        self.forks.axis.visible = False
-        self.forks.grid.visible = False
-        self.arms = figures.source(xs=[], ys=[], colour=[], dash=[])
-        self.labels = figures.source(x=[], y=[], text=[])
-        self.rings = figures.source(x=[], y=[])
-        self.forks.circle("x", "y", radius=1.0, source=self.rings, fill_alpha=0, line_color=figures.FAINT)
-        self.forks.multi_line("xs", "ys", line_color="colour", line_dash="dash", line_width=5, source=self.arms)
-        self.forks.text("x", "y", "text", source=self.labels, text_align="center", text_font_size="13px")
-        forks = pn.pane.Bokeh(self.forks, sizing_mode="stretch_width")
-        pictures = (self.speed.panel, self.torque.panel, self.couple.panel)
-        self.panel = column(self.text, self.phasing, forks, self.space, *pictures)
-        self.parts = {
-            ("turn",): [self.text, forks, *pictures], ("phasing",): [self.phasing], ("drawn",): [self.space],
-        }  # fmt: skip
+        self.curves, self.forks = Canvas(), Canvas()
+        self.panel = column(self.text, self.phasing, self.forks.panel, self.space, self.curves.panel)
+        turned = [self.text, self.forks.panel, self.curves.panel]
+        self.parts = {("turn",): turned, ("phasing",): [self.phasing], ("drawn",): [self.space]}
 
     def show_phasing(self, step: Step, data: Any) -> None:
         """The fork offsets that are best."""
@@ -75,34 +61,11 @@ class _Side(Side["JointsView"]):
 
     def show_turn(self, step: Step, data: Any) -> None:
         """Curves, the largest of each, and the forks where the input is turned to."""
-        cursor = self.view.value("turn")
-        self._draw(self.speed, data, "shafts", 100 * data["deviation"], "speed of the shafts over one turn")
-        self._draw(self.torque, data, "shafts", data["torque"], "torque of the shafts over one turn")
-        self._draw(self.couple, data, "forks", data["couple"], "couple that bends each fork's shaft")
+        panels = [replace(panel, key="below") for panel in data["picture"].panels]
+        curves = replace(data["picture"], panels=panels, columns=1, height=HEIGHT * len(panels))
+        self.curves.show(curves, Level(self.view.value("turn"), "cursor", on="x"))
+        self.forks.show(data["forks"])
         self.text.object = joined([*map(_uniformity, data["outputs"]), items(data["findings"])])
-        self._forks(data, cursor)
-
-    def _draw(self, into: Curves, data: Any, names: str, values: Any, title: str) -> None:
-        """A curve for every shaft or fork over the input angle."""
-        x = data["input_angle"] * DEGREES
-        curves = [Curve(name, x, one) for name, one in zip(data[names], values, strict=True)]
-        into.set(curves, cursor=self.view.value("turn"), title=title)
-
-    def _forks(self, data: Any, cursor: float) -> None:
-        at = int(np.abs(data["input_angle"] * DEGREES - cursor).argmin())
-        arms, labels = [], []
-        for k, name in enumerate(data["joints"]):
-            centre = SPACING * k
-            for quarter, colour, dash in ((0.0, figures.BLUE, "solid"), (np.pi / 2, figures.ORANGE, "dashed")):
-                angle = data["joint_angle"][k, at] + quarter
-                # an arm in the joint plane (angle 0) stands upright
-                dx, dy = math.sin(angle), math.cos(angle)
-                arms.append(([centre - dx, centre + dx], [-dy, dy], colour, dash))
-            labels.append((centre, -1.45, name))
-        figures.put_rows(self.arms, arms)
-        figures.put_rows(self.rings, [(centre, 0.0) for centre, _, _ in labels])
-        figures.put_rows(self.labels, labels)
-        self.forks.title.text = f"forks at input angle {cursor:g}°\njoint plane upright, output dashed"
 
 
 def _uniformity(output: Any) -> Html:
@@ -207,7 +170,7 @@ class JointsView(View):
         drawing = {"unit": unit_of(line)[0]}
         space = Call("tn.sketch", (LINE,), {"input_angle": self.value("turn") / DEGREES})
         return [
-            Step("turn", turn, "turn", drawing=drawing, title="one turn"),
+            Step("turn", turn, "turn", {**drawing, "at": self.value("turn")}, drawing=drawing, title="one turn"),
             Step("phasing", Call("tn.phase_forks", (LINE,)), "phasing", picture="", files=(), soft=True),
             Step("space", space, "drawn", picture="", files=(), title="forks in space", soft=True),
         ]

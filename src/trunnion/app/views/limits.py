@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import panel as pn
 
-from trunnion.app.parts import figures
-from trunnion.app.parts.axis import Axis
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.canvas import Canvas
+from trunnion.app.parts.parameter_range import ParameterRange
 from trunnion.app.parts.pieces import column, pane, pre, wrapped
 from trunnion.app.parts.variants import parameters, shown_unit, with_number
 from trunnion.app.views.base import (
@@ -59,12 +57,8 @@ SAYS = {
 AIMS = ("least spare margin", "irregularity", "growth rate")
 DESIGNS = 40
 """Lines computed in the search for one best value."""
-MOST_BARS = 16
 SCATTER = (".stiffness", ".inertia", ".damping", ".angle")
 """What scatters in a study of tolerances, where it is not zero."""
-AT_SPEEDS, AT_END = "largest stable at single speeds", "stable up to the end searched"
-OTHERS = (figures.GREEN, figures.PINK, figures.SKY, figures.YELLOW)
-"""Colours of the limits beside stability."""
 SAMPLES = 4096
 """Lines of such a study: the probability to within 1.5 % in the middle, and better at its ends."""
 
@@ -73,24 +67,15 @@ class _Side(Side["LimitsView"]):
     """A picture and a text."""
 
     def make(self) -> None:
-        """Panes and figures, made once."""
-        self.curves = Curves("input speed", "limit")
-        self.curves.mark(AT_SPEEDS, "circle", figures.INK)
-        self.curves.mark(AT_END, "triangle", figures.FAINT)
-        self.bars = figures.plot("", "", height=200, y_range=[], tools="")
-        self.rows = figures.source(name=[], value=[])
-        bar = self.bars.hbar(y="name", right="value", height=0.6, color=figures.BLUE, source=self.rows)
-        figures.hover(self.bars, [bar], [("", "@name"), ("", "@value")])
-        self.text = pane()
-        self.bars.visible = False
-        self.bar_panel = pn.pane.Bokeh(self.bars, sizing_mode="stretch_width", visible=False)
-        self.panel = column(self.curves.panel, self.bar_panel, self.text)
+        """Place of the picture, and the words below it."""
+        self.picture, self.text = Canvas(), pane()
+        self.panel = column(self.picture.panel, self.text)
         kinds = ("best", "tolerances", "ranked", "assembly", "limit", "windows")
-        self.parts = {kinds: [self.curves.panel, self.bar_panel, self.text]}
+        self.parts = {kinds: [self.picture.panel, self.text]}
 
     def clear(self) -> None:
-        """Show neither picture."""
-        self.curves.panel.visible = self.bar_panel.visible = False
+        """Show nothing."""
+        self.picture.clear()
         self.text.object = ""
 
     def show_best(self, step: Step, data: Any) -> None:
@@ -99,56 +84,14 @@ class _Side(Side["LimitsView"]):
         if self.variant == "now":
             self.view.found(step.options["path"], data["value"])
 
-    def _bars(self, step: Step, data: Any) -> None:
-        """What matters most, the largest on top."""
-        self._picture(data, drawn=False)
-        order = np.argsort(-np.abs(np.asarray(data["value"])))[:MOST_BARS]
-        rows = [(data["name"][i], float(data["value"][i])) for i in order]
-        self.bars.y_range.factors = [name for name, _ in reversed(rows)]
-        self.bars.height = 80 + 24 * len(rows)
-        self.bars.xaxis.axis_label = data["label"]
-        figures.put_rows(self.rows, rows)
-
-    show_tolerances = show_ranked = show_assembly = _bars
-
-    def show_limit(self, step: Step, data: Any) -> None:
-        """How far the parameter may go."""
-        self._over_speed(data, "largest stable")
-
-    def show_windows(self, step: Step, data: Any) -> None:
-        """Where it may be."""
-        self._over_speed(data, "regions of instability and stable windows of")
-
-    def _picture(self, data: Any, drawn: bool) -> None:
-        """The words, and the curves or else the bars."""
+    def _show(self, step: Step, data: Any) -> None:
         self.text.object = pre(data["text"])
-        self.curves.panel.visible = self.curves.figure.visible = drawn
-        self.bar_panel.visible = self.bars.visible = not drawn
+        if data["picture"] is None:
+            self.picture.clear()
+        else:
+            self.picture.show(data["picture"])
 
-    def _over_speed(self, data: Any, title: str) -> None:
-        """The unstable regions, the ends of what is stable at every speed, and the limits at single speeds.
-
-        The limits at single speeds are marks: a line through them would claim what lies between."""
-        self._picture(data, drawn=True)
-        axis, (speed_unit, factor) = self.view.axis(self.line), unit_of(self.line)
-        path, size = axis.path, axis.size
-        span = np.array(data["speeds"]) * factor
-
-        def level(name: str, value: float, colour: str, dash: str) -> Curve:
-            return Curve(name, span, np.full(2, value / size), colour, dash)
-
-        curves = [Curve(name, x * factor, y / size, figures.ORANGE, "solid") for name, x, y in data["regions"]]
-        self.curves.fill([(one.x, one.y) for one in curves])
-        curves += [level("end of stable at every speed", value, figures.INK, "dotted") for value in data["ends"]]
-        for k, (name, values) in enumerate(data.get("others", ())):
-            colour, dash = OTHERS[k % len(OTHERS)], figures.DASHES[k // len(OTHERS) % 4]
-            curves.append(Curve(f"{name} reached", data["speed"] * factor, values / size, colour, dash))
-        curves.append(level("the line now", pack(self.line).value(path), figures.BLUE, "dashed"))
-        self.curves.set(curves, x=f"input speed [{speed_unit}]", y=axis.label, title=f"{title} {path}")
-        speed, limit = (np.asarray(data.get(key, ())) for key in ("speed", "limit"))
-        at_end = limit >= data.get("high", np.inf)
-        for name, which in ((AT_SPEEDS, ~at_end), (AT_END, at_end)):
-            self.curves.put_marks(name, speed[which] * factor, limit[which] / size)
+    show_limit = show_windows = show_tolerances = show_ranked = show_assembly = _show
 
 
 class LimitsView(View):
@@ -217,15 +160,15 @@ class LimitsView(View):
             line = with_number(self.session.document.line, *self.best)
             self.session.edit(lambda document: document.set_numbers(line))
 
-    def axis(self, line: Driveline) -> Axis:
+    def axis(self, line: Driveline) -> ParameterRange:
         """The parameter with ends by themselves."""
         path = str(self.settings["parameter"])
         (unit, size), now = shown_unit(line, path), pack(line).value(path)
         if path.endswith(".angle"):
-            return Axis(path, 0.0, 45 * DEGREE, unit, size)
+            return ParameterRange(path, 0.0, 45 * DEGREE, unit, size)
         if unit == "deg":
-            return Axis(path, -90 * DEGREE, 90 * DEGREE, unit, size)
-        return Axis(path, 0.0, 4 * now if now > 0 else size, unit, size)
+            return ParameterRange(path, -90 * DEGREE, 90 * DEGREE, unit, size)
+        return ParameterRange(path, 0.0, 4 * now if now > 0 else size, unit, size)
 
     def steps(self, line: Driveline) -> list[Step]:
         """The one that is asked for."""
@@ -240,7 +183,8 @@ class LimitsView(View):
             return [self._tolerances(line)]
         axis = self.axis(line).typed(self.typed("low"), self.typed("high"))
         axis.require_rising()
-        path, low, high = axis.path, axis.low, axis.high
+        path, low, high, unit = axis.path, axis.low, axis.high, {"unit": unit_of(line)[0]}
+        now = {"now": pack(line).value(path)}
         if what == BEST:
             free = {path: (low, high)}
             call = Call("tn.optimise", (LINE, free, str(self.settings["aim"])), {"designs": DESIGNS})
@@ -248,12 +192,11 @@ class LimitsView(View):
                          columns=("low", "high", "before", "value"), title="best value")]  # fmt: skip
         if what == WINDOWS:
             call = Call("tn.stable_windows", (LINE, path, low, high, speed_range(line)))
-            drawing = {"unit": unit_of(line)[0]}
-            return [Step("windows", call, "windows", drawing=drawing, title="stable windows")]
+            return [Step("windows", call, "windows", unit | now, drawing=unit, title="stable windows")]
         speeds = Call("np.linspace", (*speed_range(line), bounded(self.settings["speeds"], 2)))
         call = Call("tn.stable_limit", (LINE, path, speeds), {"low": low, "high": high, "margin": 0.0})
         columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
-        return [Step("limit", call, "limit", drawing={"unit": unit_of(line)[0]}, title="stable limit", columns=columns)]
+        return [Step("limit", call, "limit", unit | now, drawing=unit, title="stable limit", columns=columns)]
 
     def _tolerances(self, line: Driveline) -> Step:
         """Uniform tolerances of everything that is not zero."""

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
-from trunnion.app.parts import figures
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.curves import Curve, Curves
-from trunnion.app.parts.pieces import column, pane, picture, pre
+from trunnion.app.parts.canvas import Canvas
+from trunnion.app.parts.pieces import column, joined, pane, pre
 from trunnion.app.views.base import (
     Side,
     Step,
@@ -27,6 +24,7 @@ from trunnion.app.views.base import (
 )
 from trunnion.driveline.driveline import Driveline
 from trunnion.motion.orbits.frequency_response import methods_of
+from trunnion.pictures.picture import Axis, single
 
 PERIODIC, RUN_UP, RATTLE = "periodic response", "run-up", "rattle over speed"
 POINCARE, EXPONENTS, CHAOS = "Poincaré map", "Lyapunov exponents", "is it chaos?"
@@ -34,7 +32,7 @@ MOTIONS = {PERIODIC: "periodic", RUN_UP: "run-up", RATTLE: "rattle", POINCARE: "
            CHAOS: "chaos"}  # fmt: skip
 ASKS = {
     "periodic": ("speed",),
-    "run-up": ("rate",),
+    "run-up": ("rate", "spring"),
     "rattle": ("spring", "points"),
     "section": ("of", "speed", "returns"),
     "exponents": ("of", "speed"),
@@ -56,121 +54,54 @@ SUBJECTS = {
 }
 SECTIONS = {"double-tripod-output": Call("tn.Event", ("rate", 0.0), {"direction": -1})}
 """Where the map of equations without a period of forcing is taken: where the rotation turns back."""
-PICTURES = ("map", "exponents", "certificate")
-"""Steps that show the picture that their result draws of itself."""
-METHODS = {"exact": figures.INK, "shooting": figures.GREEN, "harmonic balance": figures.SKY}
-"""Of a response followed over speed, with the colour of each."""
-SWEEPS = {"up": ("sweep up", "triangle", figures.BLUE), "down": ("sweep down", "inverted_triangle", figures.ORANGE)}
-
-LINEAR, DOTS, SMALL = "linear theory", 16, 5
-"""Drawn as so many small points upon every curve."""
+METHODS = ("exact", "shooting", "harmonic balance")
+"""By which a response is followed over speed."""
+SWEEPS = {"up": "sweep up", "down": "sweep down"}
 
 
 class _Side(Side["MotionView"]):
-    """Curves, or the picture of the result, and its text."""
+    """The picture of the result, and its text."""
 
     def make(self) -> None:
-        """Panes and figures, made once."""
-        self.curves = Curves("time [ms]", "torque [N·m]", height=380)
-        for title, shape, colour in SWEEPS.values():
-            self.curves.mark(title, shape, colour)
-        self.curves.mark(LINEAR, "circle", figures.INK, SMALL)
-        self.picture, self.text = pane(), pane()
-        self.panel = column(self.curves.panel, self.picture, self.text)
-        kinds = ("plotted", "periodic", "waves", "run_up", "swept", "followed")
-        self.parts = {kinds: [self.curves.panel, self.picture, self.text]}
+        """Places of picture and words, made once."""
+        self.picture, self.text = Canvas(), pane()
+        self.panel = column(self.picture.panel, self.text)
+        self.parts = {("plotted", "run_up", "swept", "followed"): [self.picture.panel, self.text]}
         self.found: dict[str, Any] = {}
 
     def clear(self) -> None:
-        """No curves, no marks, no picture."""
+        """No picture, no words."""
         self.found = {}
-        self.curves.set([])
-        self.curves.panel.visible = False
-        self.picture.object = self.text.object = ""
-        for title in self.curves.marks:
-            self.curves.put_marks(title, [], [])
+        self.picture.clear()
+        self.text.object = ""
 
     def show_plotted(self, step: Step, data: Any) -> None:
-        """The picture that the result draws of itself."""
-        self.curves.panel.visible = False
-        self.picture.object = picture(data["svg"], step.name, 820)
+        """The picture of the result, and how it prints."""
+        self.picture.show(data["picture"])
         self.text.object = pre(data["text"])
 
-    def show_periodic(self, step: Step, data: Any) -> None:
-        """The true motion over a period."""
-        self.curves.panel.visible = True
-        self.text.object = pre(data["text"])
-        curves = [Curve(n, 1e3 * data["time"], v) for n, v in zip(data["names"], data["torque"], strict=True)]
-        self.curves.set(curves, x="time [ms]", y="torque [N·m]", title="torque over one period")
-        self.curves.put_marks(LINEAR, [], [])
-
-    def show_waves(self, step: Step, data: Any) -> None:
-        """The motion by linear theory, as marks beside it."""
-        every = slice(None, None, max(len(data["time"]) // DOTS, 1))
-        time, torque = 1e3 * data["time"][every], [values[every] for values in data["torque"]]
-        self.curves.put_marks(LINEAR, np.tile(time, len(torque)), np.concatenate([[], *torque]))
-
-    def show_run_up(self, step: Step, data: Any) -> None:
-        """The largest torque turn by turn, and of the steady motions where they are known."""
-        self.curves.panel.visible = True
-        unit, factor = unit_of(self.line)
-        curves = []
-        for k, (name, largest) in enumerate(zip(data["names"], data["largest"], strict=True)):
-            curves.append(Curve(name, data["speed"] * factor, largest, figures.look(k)["line_color"], "solid"))
-        if len(data["steady_speed"]):
-            speed = data["steady_speed"] * factor
-            for one, steady in zip(tuple(curves), data["steady"], strict=True):
-                curves.append(Curve(f"{one.name}, steady", speed, steady, one.colour, "dashed"))
-        title = "largest torque in each turn of the run-up"
-        if data["ending"] != "reached":
-            title += f" ({data['ending']})"
-        self.curves.set(curves, x=f"input speed [{unit}]", y="torque [N·m]", title=title)
-        self.text.object = pre(data["text"])
+    show_run_up = show_plotted
 
     def refused(self, step: Step, sentence: str) -> None:
         """Why a soft step gave nothing."""
-        if step.name == "linear":
-            self.text.object += pre(f"no linear theory beside it: {sentence}")
-        elif step.name == "run_up":
+        if step.name == "run_up":
             self.text.object += pre(f"no steady motions beside it: {sentence}")
         else:
-            self._rattle(step, {"text": sentence})
+            self._rattle(step, {"items": [], "text": sentence})
 
     def _rattle(self, step: Step, data: Any) -> None:
         """All methods on one picture; what each said below."""
-        self.curves.panel.visible = True
         asked = {one.name: one.title for one in self.view.steps(self.line)}
         if step.name == next(iter(asked)):
             self.found = {}
         self.found[step.name] = data
-        unit, factor = unit_of(self.line)
-        for way, (title, _, _) in SWEEPS.items():
-            swept = self.found.get(f"sweep_{way}", {})
-            self.curves.put_marks(title, np.asarray(swept.get("speed", ())) * factor, swept.get("half", ()))
-        curves = []
-        for method, colour in METHODS.items():
-            followed = self.found.get(method.replace(" ", "_"), {})
-            for name, stable, dash in ((method, True, "solid"), (f"{method}, unstable", False, "dashed")):
-                if len(part := _part(followed, stable)):
-                    curves.append(Curve(name, followed["speed"] * factor, part, colour, dash))
+        done = [name for name in asked if name in self.found]
+        across, up = Axis("input speed", unit_of(self.line)[0]), Axis("half peak-to-peak torque", "N·m", 0.0)
         title = f"vibration of {self.view.settings['spring']} by every method"
-        self.curves.set(curves, x=f"input speed [{unit}]", y="half peak-to-peak torque [N·m]", title=title)
-        said = (f"{asked[name]}\n{self.found[name]['text']}" for name in asked if name in self.found)
-        self.text.object = "".join(map(pre, said))
+        self.picture.show(single(across, up, [i for name in done for i in self.found[name]["items"]], title=title))
+        self.text.object = joined(pre(f"{asked[name]}\n{self.found[name]['text']}") for name in done)
 
     show_swept = show_followed = _rattle
-
-
-def _part(followed: Any, stable: bool) -> Any:
-    """The curve where it is stable, or where not with the points next to that; NaN elsewhere."""
-    if not followed or "half" not in followed:
-        return ()
-    there = np.asarray(followed["stable"], dtype=bool) == stable
-    if not there.any():
-        return ()
-    if not stable:
-        there = there | np.roll(there, 1) | np.roll(there, -1)
-    return np.where(there, followed["half"], np.nan)
 
 
 class MotionView(View):
@@ -236,11 +167,9 @@ class MotionView(View):
             case "chaos":
                 call = Call("tn.certify_chaos", (subject,), {**at, "sweep": False})
                 return [Step("certificate", call, "plotted", title="verdict on chaos", files=("nc",))]
-        linear = Call("tn.order_response", (LINE, (speed,)))
-        return [
-            Step("periodic", Call("tn.periodic_response", (LINE, speed)), "periodic", title=PERIODIC),
-            Step("linear", linear, "waves", picture="", files=("nc",), title="linear theory", soft=True),
-        ]
+        unit = {"unit": unit_of(line)[0]}
+        call = Call("tn.periodic_response", (LINE, speed))
+        return [Step("periodic", call, "plotted", unit, drawing=unit, title=PERIODIC)]
 
     def _subject(self, speed: float) -> tuple[Any, dict[str, float]]:
         """What moves, and the speed for it: equations have a frequency of their own."""
@@ -252,10 +181,10 @@ class MotionView(View):
         ends, rate = speed_range(line), {"acceleration": self.value("rate")}
         alone = Call("tn.run_up", (LINE, *ends), {**rate, "steady": 0})
         whole = Call("tn.run_up", (LINE, *ends), rate)
-        unit = {"unit": unit_of(line)[0]}
+        shown = {"unit": unit_of(line)[0], "shaft": str(self.settings["spring"])}
         return [
-            Step("alone", alone, "run_up", picture="", files=()),
-            Step("run_up", whole, "run_up", drawing=unit, title=RUN_UP, soft=True),
+            Step("alone", alone, "run_up", shown, picture="", files=()),
+            Step("run_up", whole, "run_up", shown, drawing=shown, title=RUN_UP, soft=True),
         ]
 
     def _rattle(self, line: Driveline) -> list[Step]:
@@ -265,14 +194,13 @@ class MotionView(View):
         ends = {"up": (low, high), "down": (high, low)}
         steps = [
             Step(f"sweep_{way}", Call("tn.sweep", (LINE, Call("np.linspace", (*ends[way], points)))), "swept",
-                 {"spring": spring}, title=title, soft=True)
-            for way, (title, _, _) in SWEEPS.items()
+                 {"spring": spring, "name": name, "unit": unit_of(line)[0]}, title=name, soft=True)
+            for way, name in SWEEPS.items()
         ]  # fmt: skip
         known = [m for m in METHODS if m in methods_of(line)]
         return steps + [
             Step(method.replace(" ", "_"),
                  Call("tn.frequency_response", (LINE, low, high), {"method": method, "curve": spring}), "followed",
-                 {"unit": unit_of(line)[0]},
-                 title=f"response: {method}", soft=True)
+                 {"name": method, "unit": unit_of(line)[0]}, title=f"response: {method}", soft=True)
             for method in known
         ]  # fmt: skip

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import panel as pn
-from bokeh.models import LegendItem
+from bokeh.events import Tap
 
-from trunnion.app.parts import figures
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.mover import Mover
 from trunnion.app.parts.pieces import column, items, pane
 from trunnion.app.views.base import (
@@ -27,108 +25,52 @@ from trunnion.app.views.base import (
     unit_of,
 )
 from trunnion.driveline.driveline import Driveline
+from trunnion.pictures.picture import Level, Picture
 
 AS_STATED = "as stated"
 CAMPBELL_POINTS = 81
-_LIMITS = {"max_torque": "largest torque", "vibratory_torque": "vibratory torque"}
-
-
-class Mode:
-    """A mode shape that can be set moving, in the browser alone."""
-
-    def __init__(self) -> None:
-        self.figure = figures.shape(260)
-        self.source = figures.source(x=[], y=[], shape=[])
-        self.figure.line("x", "y", source=self.source, line_width=2, color=figures.BLUE)
-        self.figure.scatter("x", "y", source=self.source, size=11, color=figures.BLUE)
-        self.figure.y_range.update(start=-1.15, end=1.15)
-        self.source.name = f"mode-{self.source.id}"
-        self.panel = column(pn.pane.Bokeh(self.figure, sizing_mode="stretch_width"), Mover(source=self.source.name))
-
-    def set(self, data: Any, mode: int) -> None:
-        """Show a mode by its number from 1."""
-        k = min(max(mode, 1), len(data["frequency"])) - 1
-        shape = data["shape"][:, k]
-        names = [str(n) for n in data["names"]]
-        figures.name_inertias(self.figure, names)
-        figures.put(self.source, {"x": names, "y": shape, "shape": shape})
-        self.figure.title.text = (
-            f"mode {k + 1} of {len(data['frequency'])}: {data['frequency'][k] / (2 * np.pi):.5g} Hz,\n"
-            f"damping ratio {data['damping'][k]:.3g}"
-        )
 
 
 class _Side(Side["OrdersView"]):
     """Four pictures."""
 
     def make(self) -> None:
-        """Panes and figures, made once."""
-        self.orders = Curves("input speed", "torque [N·m]", tap=self.view.clicked)
-        self.wave = Curves("time [ms]", "torque [N·m]", height=290)
-        self.campbell = Curves("input speed", "frequency [Hz]", height=380, tap=self.view.clicked)
-        self.crossings = figures.source(x=[], y=[], name=[])
-        marks = self.campbell.figure.scatter("x", "y", size=8, color=figures.INK, source=self.crossings)
-        figures.hover(self.campbell.figure, [marks], [("", "@name")])
-        self.campbell.legend.items = [*self.campbell.legend.items, LegendItem(label="crossing", renderers=[marks])]
-        self.mode = Mode()
+        """Places of the pictures, and the button that moves a mode."""
+        tapped = {Tap: lambda event: self.view.clicked(float(event.x))}
+        self.orders, self.wave, self.campbell = Canvas(tapped), Canvas(), Canvas(tapped)
+        self.mode = Canvas(name=f"mode-{id(self)}")
         self.said = pane()
-        self.panel = column(self.orders.panel, self.wave.panel, self.campbell.panel, self.mode.panel, self.said)
+        modes = column(self.mode.panel, Mover(picture=self.mode.name))
+        self.panel = column(self.orders.panel, self.wave.panel, self.campbell.panel, modes, self.said)
         self.parts = {
-            ("orders",): [self.orders.panel], ("wave",): [self.wave.panel], ("campbell",): [self.campbell.panel],
-            ("modes",): [self.mode.panel], ("findings",): [self.said],
+            ("torque",): [self.orders.panel], ("wave",): [self.wave.panel], ("campbell",): [self.campbell.panel],
+            ("modes",): [modes], ("findings",): [self.said],
         }  # fmt: skip
 
-    def _speeds(self) -> tuple[str, float, float]:
-        """Unit of speeds, how many of it a rad/s is, and the speed looked at in it."""
-        unit, factor = unit_of(self.line)
-        return unit, factor, at_speed(self.line, self.view.typed("speed")) * factor
+    def _cursor(self) -> Level:
+        """A line at the speed looked at."""
+        return Level(at_speed(self.line, self.view.typed("speed")) * unit_of(self.line)[1], "cursor", on="x")
 
-    def show_orders(self, step: Step, data: Any) -> None:
+    def show_torque(self, step: Step, picture: Picture) -> None:
         """Torque of the shaft by order, in sum, and its limits."""
-        unit, factor, cursor = self._speeds()
-        x = data["speed"] * factor
-        curves = [
-            Curve("vibratory torque, all orders", x, data["vibratory"], figures.INK, "solid"),
-            Curve("largest torque", x, data["peak"], figures.FAINT, "dashed"),
-        ]
-        for k, (name, size) in enumerate(zip(data["names"], data["sizes"], strict=True)):
-            curves.append(Curve(name, x, size, *figures.look(k).values()))
-        for limit in self.line.limits_by_element:
-            if limit.element == data["spring"] and limit.key in _LIMITS:
-                value = np.full(len(x), float(limit.value))
-                curves.append(Curve(f"limit of the {_LIMITS[limit.key]}", x, value, figures.ORANGE, "dotted"))
-        title = f"torque of {data['spring']} by order" + ("; sums are bounds" if data["bound"] else "")
-        self.orders.set(curves, x=f"input speed [{unit}]", title=title, cursor=cursor)
+        self.orders.show(picture, self._cursor())
 
-    def show_wave(self, step: Step, data: Any) -> None:
+    def show_wave(self, step: Step, picture: Picture) -> None:
         """Torque of the shaft over a period."""
-        unit, _, cursor = self._speeds()
-        title = f"torque of {data['spring']} over one period at {cursor:.6g} {unit}"
-        self.wave.set([Curve(data["spring"], 1e3 * data["time"], data["torque"])], title=title)
+        self.wave.show(picture)
 
     def show_campbell(self, step: Step, data: Any) -> None:
         """Modes, what excites them, and where the two meet."""
-        unit, factor, cursor = self._speeds()
-        x = data["speed"] * factor
-        hertz = data["frequency"] / (2 * np.pi)
-        curves = [
-            Curve(f"mode {n}", x, hertz[:, k], figures.BLUE, figures.DASHES[k % 4]) for k, n in enumerate(data["mode"])
-        ]
-        curves += [
-            Curve(name, x, values / (2 * np.pi), figures.FAINT, figures.DASHES[k % 4])
-            for k, (name, values) in enumerate(data["lines"])
-        ]
-        self.campbell.set(curves, x=f"input speed [{unit}]", title="Campbell diagram", cursor=cursor)
-        crossings = {"x": data["crossing_speed"] * factor, "y": data["crossing_frequency"] / (2 * np.pi)}
-        figures.put(self.crossings, crossings | {"name": data["crossing"]})
+        self.campbell.show(data["picture"], self._cursor())
 
-    def show_modes(self, step: Step, data: Any) -> None:
+    def show_modes(self, step: Step, picture: Picture) -> None:
         """The mode that is asked for."""
-        self.mode.set(data, int(self.view.value("mode")))
+        self.mode.show(picture)
 
     def show_findings(self, step: Step, data: Any) -> None:
-        """What is to be known of the orders."""
-        self.said.object = items(data)
+        """What is to be known of the orders, and where the line is unstable."""
+        self.orders.show(data["picture"], self._cursor())
+        self.said.object = items(data["said"])
 
 
 class OrdersView(View):
@@ -171,26 +113,34 @@ class OrdersView(View):
             Step(
                 "orders",
                 orders,
-                "orders",
-                {"spring": spring},
+                "torque",
+                shown,
                 drawing=shown,
                 columns=("torque", "mean_torque", "peak_torque", "vibratory_torque"),
                 title="torque by order",
                 lasting=True,
             ),
-            Step("wave", wave, "wave", {"spring": spring}, picture="", files=("nc",), title="orders at the speed"),
+            Step("wave", wave, "wave", shown, picture="", files=("nc",), title="orders at the speed"),
             Step(
                 "campbell",
                 campbell,
                 "campbell",
+                {"unit": unit},
                 drawing={"unit": unit},
                 columns=("frequency", "damping_ratio"),
                 title="Campbell diagram",
                 lasting=True,
             ),
-            Step("modes", Call("tn.natural_frequencies", (LINE,)), "modes", title="mode shapes", lasting=True),
+            Step(
+                "modes",
+                Call("tn.natural_frequencies", (LINE,)),
+                "modes",
+                {"number": int(self.value("mode"))},
+                title="mode shapes",
+                lasting=True,
+            ),
             # Last, since it judges the stability at every speed.
-            Step("said", orders, "findings", picture="", files=(), lasting=True),
+            Step("said", orders, "findings", shown, picture="", files=(), lasting=True),
         ]
 
     def clicked(self, speed: float) -> None:

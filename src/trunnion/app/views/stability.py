@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-import panel as pn
 from bokeh.events import RangesUpdate, Tap
-from bokeh.models import BoxAnnotation, ColorBar, LinearColorMapper
 
-from trunnion.app.parts import figures
-from trunnion.app.parts.axis import Axis
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.curves import Curve, Curves
+from trunnion.app.parts.canvas import Canvas
+from trunnion.app.parts.parameter_range import ParameterRange
 from trunnion.app.parts.pieces import column, lines, pane, small
 from trunnion.app.parts.point import Point
 from trunnion.app.parts.variants import parameters, shown_unit, with_number
@@ -37,6 +36,8 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import SPEED, pack
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
+from trunnion.pictures.looks import curve
+from trunnion.pictures.picture import Axis, Cells, Item, Line, Mesh, Panel, Picture, points_at, single
 from trunnion.reporting.ranges import angle_range
 
 COARSE = (16, 12)
@@ -46,16 +47,11 @@ DISTURBANCE = 1e-3
 """Its largest rotation at the start [rad], in the mode that grows fastest."""
 REST = 0.3
 """Seconds that the line must stay before its regions are searched for."""
+HEIGHT = 5.4
+"""Of the chart [inches]."""
 MOST_NAMED = 6
 """Regions of instability that the page lists, those that grow fastest."""
 UNDISTURBED, DISTURBED = "undisturbed", "motion"
-PERCENT = 100.0
-LEAST_GROWTH, USUAL = 1e-4, 90
-"""Growth per turn at the ends of the colours at least, and the share [%] of a chart's points that lie between them."""
-_STABLE = ("#5b9bc8", "#86b5d6", "#b0cfe4", "#d8e8f2", "#f4f8fb")
-_UNSTABLE = ("#f6c49a", "#e8935a", "#d55e00", "#9c4300", "#5c2700")
-
-
 _ABOUT_MOTION = (
     f"The motion with a disturbance of {DISTURBANCE:g} rad in the mode that grows fastest, less the motion without it: "
     "the forced vibration, which both have, is taken away."
@@ -64,67 +60,42 @@ _ENDS = {"x_low": "x from", "x_high": "x to", "y_low": "y from", "y_high": "y to
 _AT = {"at_x": "Look at x", "at_y": "Look at y"}
 
 
-def _now(line: Driveline, axis: Axis) -> float:
+def _now(line: Driveline, axis: ParameterRange) -> float:
     value = at_speed(line, None) if axis.path == SPEED else pack(line).value(axis.path)
     return min(max(value, axis.low), axis.high)
-
-
-def end_of_colours(growth: Any) -> float:
-    """Growth per turn, round, at the dark end of the colours: most points of the chart are not darker. Zero is in the
-    middle, so that what grows is never of a colour of what dies out."""
-    sizes = np.abs(growth[np.isfinite(growth)])
-    most = max(LEAST_GROWTH, float(np.percentile(sizes, USUAL)) if sizes.size else 0.0)
-    ten = 10.0 ** np.floor(np.log10(most))
-    return float(next(ten * step for step in (1, 2, 5, 10) if ten * step >= most * (1 - 1e-9)))
 
 
 class _Side(Side["StabilityView"]):
     """Chart, multipliers, mode, motion."""
 
     def make(self) -> None:
-        """Panes and figures, made once."""
-        self.figure = figures.plot("", "", height=430, title="stability chart", x_range=(0, 1), y_range=(0, 1))
-        self.figure.grid.visible = False
-        self.image = figures.source(image=[], x=[], y=[], dw=[], dh=[])
-        self.colours = LinearColorMapper(palette=[*_STABLE, *_UNSTABLE], low=-1, high=1, nan_color="#9a9a9a")
-        drawn = self.figure.image("image", "x", "y", "dw", "dh", source=self.image, color_mapper=self.colours)
-        bar = ColorBar(color_mapper=self.colours, title="growth per turn [%]", width=14, padding=4)
-        self.figure.add_layout(bar, "right")
-        figures.hover(self.figure, [drawn], [("growth per turn", "@image{0.000} %")])
-        self.box = BoxAnnotation(line_color=figures.BLUE, line_width=2, fill_alpha=0.0)
-        self.figure.add_layout(self.box)
-        self.names = figures.source(x0=[], y0=[], x1=[], y1=[], name=[])
-        lines = self.figure.segment("x0", "y0", "x1", "y1", source=self.names, color=figures.INK, line_dash="dotted")
-        figures.hover(self.figure, [lines], [("", "@name")], line_policy="interp")
-        self.outlines = figures.source(xs=[], ys=[], name=[])
-        edges = self.figure.multi_line("xs", "ys", source=self.outlines, color=figures.INK, line_width=2)
-        figures.hover(self.figure, [edges], [("region of instability", "@name")], line_policy="interp")
-        self.here = figures.source(x=[], y=[])
-        self.figure.scatter("x", "y", source=self.here, marker="x", size=14, line_width=3, color=figures.INK)
-        self.figure.on_event(Tap, lambda event: self.view.clicked(float(event.x), float(event.y)))
-        self.figure.on_event(RangesUpdate, self._zoomed)
-        self.point = Point()
-        self.motion = Curves("turns of the input", "change of the twist [deg]", height=290)
+        """Panes and places of the pictures, made once."""
+        self.picture = Canvas({Tap: self._tapped, RangesUpdate: self._zoomed})
+        self.point, self.motion = Point(), Canvas()
         self.undisturbed: Any = None
-        self.said, self.regions = pane(), pane()
-        self.extent: tuple[Axis, Axis] | None = None
+        self.said, self.regions, self.no_motion = pane(), pane(), pane()
+        self.extent: tuple[ParameterRange, ParameterRange] | None = None
+        self.chart: Panel | None = None
+        self.zoomed: Panel | None = None
+        self.edges: Sequence[Item] = ()
         self.whole: Any = None
         self.ends: list[tuple[float, float]] = []
         self.count = 0
-        self.picture = pn.pane.Bokeh(self.figure, sizing_mode="stretch_width")
-        # Before its axes are known a chart would show false ones, and take a click on them for a point.
-        self.picture.visible = self.figure.visible = False
-        about = pane(small(_ABOUT_MOTION))
-        self.panel = column(self.picture, self.regions, self.said, self.point.panel, self.motion.panel, about)
+        moved, about = [self.motion.panel, self.no_motion], pane(small(_ABOUT_MOTION))
+        self.panel = column(self.picture.panel, self.regions, self.said, self.point.panel, *moved, about)
         self.parts = {
-            ("chart", "resonances"): [self.picture], ("chart",): [self.said], ("tongues",): [self.regions],
-            ("point",): [self.point.panel], ("motion",): [self.motion.panel],
+            ("chart",): [self.picture.panel, self.said], ("tongues",): [self.regions], ("point",): [self.point.panel],
+            ("motion",): moved,
         }  # fmt: skip
 
     def narrow(self, narrow: bool) -> None:
-        """Beside its colours half of the page holds three numbers."""
+        """The point's pictures too."""
         super().narrow(narrow)
-        self.figure.xaxis[0].ticker.desired_num_ticks = 3 if narrow else 6
+        self.point.circle.narrow(narrow)
+        self.point.mode.narrow(narrow)
+
+    def show_nothing(self, step: Step, data: None) -> None:
+        """Names of resonances, which stand in the chart and are here to be saved."""
 
     def show_point(self, step: Step, data: Any) -> None:
         """Multipliers and mode at the point looked at."""
@@ -135,43 +106,42 @@ class _Side(Side["StabilityView"]):
         if step.name == UNDISTURBED:
             self.undisturbed = data
         elif self.undisturbed is not None:
+            self.no_motion.object = ""
             pairs = zip(data["names"], data["twist"], self.undisturbed["twist"], strict=True)
-            curves = [Curve(n, data["turns"], np.rad2deg(with_it - without)) for n, with_it, without in pairs]
-            self.motion.set(curves, title=f"after a disturbance of {DISTURBANCE:g} rad")
+            lines = [
+                Line(data["turns"], np.rad2deg(with_it - without), curve(k), name)
+                for k, (name, with_it, without) in enumerate(pairs)
+            ]
+            title = f"after a disturbance of {DISTURBANCE:g} rad"
+            across, up = Axis("turns of the input"), Axis("change of the twist", "°")
+            self.motion.show(single(across, up, lines, height=3.6, title=title))
 
     def refused(self, step: Step, sentence: str) -> None:
         """A line that has no chart may have multipliers and a motion at each point."""
         if step.name in (UNDISTURBED, DISTURBED):
             self.undisturbed = None
-            self.motion.set([], title=f"no motion: {sentence}")
+            self.motion.clear()
+            self.no_motion.object = small(f"no motion: {sentence}")
             return
         if step.name == "tongues":
             self._say_regions(f"Regions narrower than the points lie apart could not be searched for: {sentence}")
             return
-        self.whole, self.ends = None, []
-        self.picture.visible = self.figure.visible = False
+        self.whole, self.chart, self.ends = None, None, []
+        self.picture.clear()
         self.said.object = small(f"no chart: {sentence}", class_="refusal")
 
     def show_chart(self, step: Step, data: Any) -> None:
         """The chart, coarse or full, with the point and the operating range."""
-        x, y = self.view.axes(self.line)
-        self.picture.visible = self.figure.visible = True
+        axes = self.view.axes(self.line)
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
         if fresh:
-            end = PERCENT * end_of_colours(data["growth"])
-            self.colours.update(low=-end, high=end)
-            self._image(data, x, y)
+            self.chart, self.zoomed = data["picture"].panel, None
             if not ("tongues" in self.shown and self.is_current("tongues")):
-                figures.put_rows(self.outlines, [])
+                self.edges = ()
                 self._say_regions("Regions narrower than the points lie apart are being searched for …")
-        if self.extent != (x, y):
-            self.extent, self.ends = (x, y), []
-            self.figure.x_range.update(start=x.ends[0], end=x.ends[1])
-            self.figure.y_range.update(start=y.ends[0], end=y.ends[1])
-            self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = x.label, y.label
-        at = self.view.point(self.line)
-        figures.put_rows(self.here, [(at[0] / x.size, at[1] / y.size)])
-        self._operating(x, y)
+        if self.extent != axes:
+            self.extent, self.ends = axes, []
+        self._draw()
         if not fresh:
             return
         full = step.name == "chart"
@@ -187,61 +157,58 @@ class _Side(Side["StabilityView"]):
     def show_tongues(self, step: Step, data: Any) -> None:
         """Outlines over the chart, however narrow."""
         x, y = self.view.axes(self.line)
-        rows = [(xs / x.size, ys / y.size, name) for name, xs, ys in data["regions"]]
-        figures.put_rows(self.outlines, rows)
+        self.edges = data["edges"]
+        self._draw()
+        begins = data["begins"]
         parts = [
-            f"{name} from {ys.min():.4g} {y.unit} on, at {xs[ys.argmin()]:.5g} {x.unit}"
-            for xs, ys, name in rows[:MOST_NAMED]
+            f"{name} from {up / y.size:.4g} {y.unit} on, at {across / x.size:.5g} {x.unit}"
+            for name, across, up in begins[:MOST_NAMED]
         ]
-        parts += [f"and {len(rows) - MOST_NAMED} more"] if len(rows) > MOST_NAMED else []
-        count = {0: "No region", 1: "One region"}.get(len(rows), f"{len(rows)} regions")
-        self._say_regions(f"{count} of instability found{': ' if rows else ''}{'; '.join(parts)}.\n{data['search']}")
+        parts += [f"and {len(begins) - MOST_NAMED} more"] if len(begins) > MOST_NAMED else []
+        count = {0: "No region", 1: "One region"}.get(len(begins), f"{len(begins)} regions")
+        self._say_regions(f"{count} of instability found{': ' if begins else ''}{'; '.join(parts)}.\n{data['search']}")
 
     def _say_regions(self, text: str) -> None:
         self.regions.object = small(lines(text))
 
-    def _image(self, data: Any, x: Axis, y: Axis) -> None:
-        (left, width), (bottom, height) = x.pixels(data["x"]), y.pixels(data["y"])
-        image = {"image": [(PERCENT * data["growth"]).astype(np.float32)], "x": [left], "y": [bottom]}
-        figures.put(self.image, image | {"dw": [width], "dh": [height]})
+    def _draw(self) -> None:
+        """The chart, or in its place the points of a part of it, the edges of regions, and the point looked at."""
+        if self.chart is None or self.extent is None:
+            return
+        items = list(self.chart.items)
+        if self.zoomed is not None:
+            items = [*filter(_is_mesh, self.zoomed.items), *(item for item in items if not _is_mesh(item))]
+        at = [value * factor for value, factor in zip(self.view.point(self.line), self._factors(), strict=True)]
+        panel = replace(self.chart, items=(*items, *self.edges, points_at(at, "here")))
+        self.picture.show(Picture((panel,), height=HEIGHT))
 
-    def _operating(self, x: Axis, y: Axis) -> None:
-        """A box of the speeds and angles that the line is meant for."""
-        ends: dict[str, float | None] = {"left": None, "right": None, "bottom": None, "top": None}
-        operation = self.line.operation
-        for axis, low, high in ((x, "left", "right"), (y, "bottom", "top")):
-            if operation is None:
-                break
-            angles = operation.angle_range if axis.path.endswith(".angle") else None
-            if span := operation.speed_range if axis.path == SPEED else angles:
-                ends[low], ends[high] = span[0] / axis.size, span[1] / axis.size
-        self.box.update(**ends, visible=any(v is not None for v in ends.values()))
+    def _factors(self) -> tuple[float, float]:
+        """From SI to the units along the chart."""
+        assert self.chart is not None and self.extent is not None
+        shown = ((axis.high or 0.0) - (axis.low or 0.0) for axis in (self.chart.x, self.chart.y))
+        return tuple(one / (axis.high - axis.low) for one, axis in zip(shown, self.extent, strict=True))  # type: ignore[return-value]
 
-    def forget(self, kind: str) -> None:
-        """The lines at named speeds, where no axis is the speed any more."""
-        if kind == "resonances":
-            figures.put_rows(self.names, [])
-
-    def show_resonances(self, step: Step, data: Any) -> None:
-        """Lines at the named speeds across the chart."""
-        x, y = self.view.axes(self.line)
-        low, high = y.ends
-        inside = [(s / x.size, n) for s, n in zip(data["speed"], data["name"], strict=True) if x.low <= s <= x.high]
-        figures.put_rows(self.names, [(speed, low, speed, high, name) for speed, name in inside])
+    def _tapped(self, event: Any) -> None:
+        """Look at a point of the chart."""
+        at = zip((event.x, event.y), self._factors(), self.view.axes(self.line), strict=True)
+        x, y = (float(value) / factor / axis.size for value, factor, axis in at)
+        self.view.clicked(x, y)
 
     def _zoomed(self, event: Any) -> None:
         """More points of the same chart where the picture shows a part of it."""
         if self.extent is None or self.whole is None:
             return
         ends = []
-        for axis, low, high in ((self.extent[0], event.x0, event.x1), (self.extent[1], event.y0, event.y1)):
-            a, b = max(low * axis.size, axis.low), min(high * axis.size, axis.high)
+        for axis, factor, low, high in zip(
+            self.extent, self._factors(), (event.x0, event.y0), (event.x1, event.y1), strict=True
+        ):
+            a, b = max(low / factor, axis.low), min(high / factor, axis.high)
             if not a < b:
                 return
             ends.append((a, b))
-        if ends == [(axis.low, axis.high) for axis in self.extent]:
-            self.ends = []
-            self._image(self.whole, *self.extent)
+        if np.allclose(ends, [(axis.low, axis.high) for axis in self.extent], rtol=1e-9, atol=0.0):
+            self.ends, self.zoomed = [], None
+            self._draw()
             return
         self.ends = ends
         if not self.is_current("chart"):
@@ -250,15 +217,21 @@ class _Side(Side["StabilityView"]):
 
     async def _refine(self, ends: list[tuple[float, float]]) -> None:
         across, up = (bounded(self.view.settings[key], 2) for key in ("across", "up"))
-        zoom = ((*ends[0], across), (*ends[1], up))
-        whole, extent = self.whole, self.extent
-        data = await self.view.session.ask(self.chart_call, "chart", self.variant, {"zoom": zoom})
+        options = {"unit": unit_of(self.line)[0], "zoom": ((*ends[0], across), (*ends[1], up))}
+        whole = self.whole
+        data = await self.view.session.ask(self.chart_call, "chart", self.variant, options)
 
         def draw() -> None:
-            if extent is not None and self.whole is whole:
-                self._image(data, *extent)
+            if self.whole is whole:
+                self.zoomed = data["picture"].panel
+                self._draw()
 
         self.view.session.locked(draw)
+
+
+def _is_mesh(item: Item) -> bool:
+    """Whether an item is coloured point by point."""
+    return isinstance(item, Mesh | Cells)
 
 
 class StabilityView(View):
@@ -314,23 +287,23 @@ class StabilityView(View):
                 self.settings[end] = float(f"{_now(line, axis) / axis.size:.6g}")
         self.fill()
 
-    def own_axis(self, line: Driveline, key: str) -> Axis:
+    def own_axis(self, line: Driveline, key: str) -> ParameterRange:
         """The axis with ends by themselves, about the value of the line."""
         path = str(self.settings[key])
         if path == SPEED:
             unit, factor = unit_of(line)
-            return Axis(path, *speed_range(line), unit, 1 / factor)
+            return ParameterRange(path, *speed_range(line), unit, 1 / factor)
         if path.endswith(".angle"):
-            return Axis(path, *angle_range(line), "deg", DEGREE)
+            return ParameterRange(path, *angle_range(line), "deg", DEGREE)
         (unit, size), now = shown_unit(line, path), pack(line).value(path)
         low, high = sorted((now / 4, now * 4)) if now else (0.0, size)
-        return Axis(path, low, high, unit, size)
+        return ParameterRange(path, low, high, unit, size)
 
-    def axis(self, line: Driveline, key: str) -> Axis:
+    def axis(self, line: Driveline, key: str) -> ParameterRange:
         """The axis with the ends as typed, or by themselves."""
         return self.own_axis(line, key).typed(self.typed(f"{key}_low"), self.typed(f"{key}_high"))
 
-    def axes(self, line: Driveline) -> tuple[Axis, Axis]:
+    def axes(self, line: Driveline) -> tuple[ParameterRange, ParameterRange]:
         """Both."""
         if self.settings["x"] == self.settings["y"]:
             remedy = "choose another along y"
@@ -354,22 +327,22 @@ class StabilityView(View):
         x, y = self.axes(line)
         fixed = {} if SPEED in (x.path, y.path) else {"speed": at_speed(line, None)}
         across, up = (bounded(self.settings[key], 2) for key in ("across", "up"))
-        steps = []
+        steps, unit = [], {"unit": unit_of(line)[0]}
         if across > COARSE[0] and up > COARSE[1]:
             coarse = Call("tn.stability_chart", (LINE, x.request(COARSE[0]), y.request(COARSE[1])), fixed)
-            steps.append(Step("coarse", coarse, "chart", picture="", files=(), soft=True, preview_of="chart"))
+            steps.append(Step("coarse", coarse, "chart", unit, picture="", files=(), soft=True, preview_of="chart"))
         chart = Call("tn.stability_chart", (LINE, x.request(across), y.request(up)), fixed)
-        unit = {"unit": unit_of(line)[0]}
-        full = Step("chart", chart, "chart", drawing=unit, title="stability chart", soft=True, lasting=True)
-        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "resonances", picture="", files=("csv",),
+        full = Step("chart", chart, "chart", unit, drawing=unit, title="stability chart", soft=True, lasting=True)
+        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "nothing", picture="", files=("csv",),
                      title="resonance speeds", lasting=True)  # fmt: skip
         point, *motions = self._at(line, x, y)
         ranges = (axis.request(0)[:3] for axis in (x, y))
-        regions = Step("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", drawing=unit, files=("nc",),
-                       title="regions of instability", soft=True, lasting=True, rest=REST)  # fmt: skip
+        pixel = {"pixel": (x.high - x.low) / (across - 1)}
+        regions = Step("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", unit | pixel, drawing=unit,
+                       files=("nc",), title="regions of instability", soft=True, lasting=True, rest=REST)  # fmt: skip
         return [*steps, point, full, *motions, *([names] if x.path == SPEED else []), regions]
 
-    def _at(self, line: Driveline, x: Axis, y: Axis) -> tuple[Step, ...]:
+    def _at(self, line: Driveline, x: ParameterRange, y: ParameterRange) -> tuple[Step, ...]:
         """Multipliers at the point looked at, and the motion there without a disturbance and with one."""
         at = dict(zip((x.path, y.path), self.point(line), strict=True))
         speed = at.pop(SPEED, None) or at_speed(line, None)

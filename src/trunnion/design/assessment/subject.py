@@ -146,7 +146,7 @@ class Case:
     def _lost(self, span: Span) -> tuple[Gap, ...]:
         """Speeds at which the line's own motion breaks off."""
         # Loaded where needed: it brings the compiler with it.
-        from trunnion.steady.own.own_breaks import breaks
+        from trunnion.steady.own.own_motions import breaks
 
         assert self.motions is not None
         met = resonances(span)

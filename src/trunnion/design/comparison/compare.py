@@ -61,7 +61,7 @@ def compare(
     >>> print(tn.compare(line, line.replace("Shaft 1", stiffness=1.21e4)))
     before → after: 1 change; no speeds are stated at which both could be judged
       Shaft 1, stiffness: 10 kN*m/rad → 12.1 kN*m/rad
-      natural frequency of mode 1: 17.7941 Hz → 19.5735 Hz (+10 %)
+      natural frequency of mode 1: 17.793 Hz → 19.5725 Hz (+10 %)
       damping ratio of mode 1: 0.01118 → 0.01016 (-9.09 %)
     """
     for name, line in (("a", a), ("b", b)):

@@ -129,7 +129,7 @@ class Comparison(Result):
         ]
 
     def plot(self, axes: Axes | None = None, *, most: int = 12) -> Axes:
-        """Margins of checks before and after, or else frequencies; see ``plots.comparison.draw``."""
+        """Margins of checks before and after, or else frequencies; see ``pictures.design.comparison``."""
         return drawing(self, "plot")(self, axes, most=most)
 
     def _lines(self) -> Iterator[str]:

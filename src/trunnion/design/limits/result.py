@@ -235,7 +235,7 @@ class StableLimit(Result):
         operating: Operation | None = None,
         values: dict[str, float] | None = None,
     ) -> Axes:
-        """Limits over speed; see ``plots.stable_limit.draw``."""
+        """Limits over speed; see ``pictures.stable_limit.stable_limit``."""
         return drawing(self, "plot")(self, axes, unit=unit, operating=operating, values=values)
 
     def _lines(self) -> Iterator[str]:

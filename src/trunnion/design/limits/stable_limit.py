@@ -84,7 +84,7 @@ def stable_limit(
     >>> import trunnion as tn
     >>> found = tn.stable_limit(tn.catalogue("two-shaft-cardan"), "HookeJoint 1.angle", [1.601913], high=0.5)
     >>> print(found.sentence)
-    Stable at 1.60191 rad/s up to angle of HookeJoint 1 17.1887°, set at 1.60191 rad/s.
+    Stable at 1.60191 rad/s up to angle of HookeJoint 1 17.1889°, set at 1.60191 rad/s.
     """
     remedy = "tn.rpm(np.linspace(300, 3000, 200))"
     speed = speeds_of(speeds, remedy)

@@ -71,7 +71,7 @@ class Optimum(Result):
         return [{n: self.words.value(v, u, 5) for n, u, v in zip(names, units, row, strict=True)} for row in rows]
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """The front, or of one aim where the numbers lie between their bounds; see ``plots.optimum.draw``."""
+        """The front, or of one aim where the numbers lie between their bounds; see ``pictures.design.optimum``."""
         return drawing(self, "plot")(self, axes)
 
     def _lines(self) -> Iterator[str]:

@@ -75,8 +75,8 @@ def remedies(
     >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0, name="shaft")
     >>> line = tn.Driveline([engine, shaft, tn.Disk(inertia=0.8)], limits=[tn.Limit(of="shaft", max_torque=400.0)])
     >>> print(tn.remedies(line, (90.0, 115.0), most=1).sentences[0])
-    max torque of shaft: shaft stiffer by 11 % (11.1 kN*m/rad) moves order 2 on mode 2 from 1194 rpm to 1258 rpm: \
-margin 1.52 %
+    max torque of shaft: shaft stiffer by 5.3 % (10.53 kN*m/rad) moves order 2 on mode 2 from 124.96 rad/s \
+to 128.23 rad/s: margin 0.405 %
     """
     subject = subject_of(line, speeds, load_case, unit, partly=True)
     return remedies_of(subject, checks_of(subject), checks=checks, near=near, most=most, progress=progress)

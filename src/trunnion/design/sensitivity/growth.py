@@ -21,7 +21,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
-from trunnion.equations.linear import line_matrices, periodic_linear_system, rigid_motions
+from trunnion.equations.linear import line_matrices, over_mass, periodic_linear_system, rigid_motions
 from trunnion.floquet.propagation.carried_modes import carried_mode, judged_multipliers, propagated
 from trunnion.numerics.spectrum import spectral_radius
 
@@ -108,6 +108,5 @@ def _per_mass(near: Neighbourhood, table: Array, tau: Array) -> tuple[Array, Arr
     """M⁻¹K/Ω² and M⁻¹C/Ω (case, time, n, n) at input angles τ, each case at its own speed."""
     co = near.assembly.coefficients(table)
     m = line_matrices(near.assembly.topology, co, tau)
-    over = 1 / np.einsum("ctii->cti", m.mass)[..., None]
     speed = co.speed[:, None, None, None]
-    return m.stiffness * over / speed**2, m.damping * over / speed
+    return over_mass(m, m.stiffness) / speed**2, over_mass(m, m.damping) / speed

@@ -18,7 +18,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.design.sensitivity.result import EXACT, Quantity, Rows
-from trunnion.equations.aligned import AlignedMatrices, loaded_matrices
+from trunnion.equations.aligned import AlignedMatrices, UnitMasses, loaded_matrices
 from trunnion.modes.natural_frequencies import natural_frequencies
 
 ROUNDING = 1e-11
@@ -39,20 +39,20 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
         return loaded_matrices(topo, assembly.coefficients(table, any_frequency=True), np.zeros(len(table)))
 
     here = matrices(near.row())
-    mass, damping = here.mass[0], here.damping[0]
-    vectors = found.modes.shape[:, first:] / np.sqrt(mass)[:, None]
+    mass, damping = here.inertia[0], here.damping[0]
+    vectors = UnitMasses(mass).rotations(found.modes.shape[:, first:])
     oscillating = np.flatnonzero(~found.overdamped[first:])
     frequency_slope, ratio_slope = np.full((2, len(values), len(directions)), np.nan)
     for d, one in enumerate(directions):
         step = SMOOTH_STEP
         beside = matrices(near.rows(near.row(), one, step * CENTRAL))
         dm, dc, dk, dh = (
-            central(part, step * one.size) for part in (beside.mass, beside.damping, beside.stiffness, beside.loss)
+            central(part, step * one.size) for part in (beside.inertia, beside.damping, beside.stiffness, beside.loss)
         )
         for m in oscillating:
             value, x = values[m], vectors[:, m]
-            top = value**2 * (x * dm) @ x + value * (x @ dc @ x) + x @ (dk + 1j * dh) @ x
-            change = -top / (2 * value * (x * mass) @ x + x @ damping @ x)
+            top = value**2 * (x @ dm @ x) + value * (x @ dc @ x) + x @ (dk + 1j * dh) @ x
+            change = -top / (2 * value * (x @ mass @ x) + x @ damping @ x)
             frequency_slope[m, d], ratio_slope[m, d] = change.imag, _ratio_slope(value, change)
     names = [f"mode {m}" for m in range(first + 1, first + 1 + len(values))]
     refused = [_refused(values, m, first) for m in range(len(values))]

@@ -178,8 +178,8 @@ class Sensitivities(Result):
 
     def plot(self, quantity: str | None = None, axes: Axes | None = None, *, most: int = 10) -> Axes:
         """Bars of what one quantity follows most, by default the first check, torque or growth rate there is; see
-        ``plots.sensitivity.draw``."""
-        return drawing(self, "plot")(self, quantity, axes, most=most)
+        ``pictures.design.sensitivities``."""
+        return drawing(self, "plot")(self, axes, quantity=quantity, most=most)
 
     def _lines(self) -> Iterator[str]:
         many = "quantity" if len(self.quantities) == 1 else "quantities"

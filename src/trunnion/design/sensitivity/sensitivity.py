@@ -88,7 +88,8 @@ def sensitivity(
     >>> found = tn.sensitivity(tn.Driveline(parts), of=["frequencies"])
     >>> print(found)
     sensitivity of 2 quantities to 4 parameters
-      natural frequency of mode 1 (17.7941 Hz): -0.5 % for +1 % of Disk 1.inertia, +0.5 % for +1 % of Shaft 1.stiffness
+      natural frequency of mode 1 (17.793 Hz): +0.5 % for +1 % of Shaft 1.stiffness, \
+-0.5 % for +1 % of Disk 1.inertia, -0.000125 % for +1 % of Shaft 1.damping
       damping ratio of mode 1 (0.01118): +1 % for +1 % of Shaft 1.damping, -0.5 % for +1 % of Disk 1.inertia, \
 -0.5 % for +1 % of Shaft 1.stiffness
     """

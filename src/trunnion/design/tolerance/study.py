@@ -101,7 +101,7 @@ class ToleranceStudy(Result):
             yield from self.checks.declared()
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """The growth rate's distribution, and the parameters by rank; see ``plots.tolerance.draw``."""
+        """The growth rate's distribution, and the parameters by rank; see ``pictures.design.tolerance``."""
         return drawing(self, "plot")(self, axes)
 
     def _lines(self) -> Iterator[str]:

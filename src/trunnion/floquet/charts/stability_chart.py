@@ -18,7 +18,7 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.features import left_out
@@ -213,6 +213,7 @@ def _line_task(
     across.columns.put(corners, across.values[[0, 0, -1, -1]])
     up.columns.put(corners, up.values[[0, -1, 0, -1]])
     require_steady_base(assembly, corners)
+    require_tree(assembly, "charts do")
     family = LineFamily(assembly, across, up, base, twisted)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]

@@ -26,9 +26,11 @@ from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.topology import require_period
+from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.numerics.sparse_matrices import SparseMatrices
 from trunnion.steady.orders.groups import offsets
 from trunnion.steady.orders.hill import HillBlocks
+from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
 REACH = 2
@@ -41,6 +43,8 @@ ASIDE = (0.0, 2e-3 * (1 + 1j), -5e-3 * (1 + 1j))
 does not decide for one of them."""
 STRAYED = 0.2
 """Share of |λ| by which no joint shifts an exponent: the iteration fell into another one."""
+LONG = 8
+"""Unknowns from which on what does not vary is eliminated along the tree."""
 MOST_NUMBERS = 2_000_000
 """Complex numbers of a batch of matrices."""
 
@@ -106,8 +110,13 @@ def meeting_exponents(
     return found
 
 
+def _along_tree(assembly: Assembly) -> bool:
+    return assembly.topology.size >= LONG and not assembly.topology.graph
+
+
 def _batches(cases: Places, sides: SideOrders, assembly: Assembly) -> Iterator[Places]:
-    at_once = max(1, MOST_NUMBERS // (len(sides.harmonics) * assembly.topology.size) ** 2)
+    numbers = len(sides.harmonics) * assembly.topology.size
+    at_once = max(1, MOST_NUMBERS // (8 * numbers if _along_tree(assembly) else numbers**2))
     for begin in range(0, len(cases), at_once):
         yield cases[begin : begin + at_once]
 
@@ -119,6 +128,10 @@ class _Blocks:
         co = assembly.coefficients(table, any_frequency=True)
         tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
+        self.tree: TreeHill | None = None
+        if _along_tree(assembly):
+            self.tree = TreeHill(assembly.topology, tree_matrices(assembly.topology, co, tau), co.loss, self.step)
+            return
         matrices = line_matrices(assembly.topology, co, tau)
         self.blocks = HillBlocks(assembly.topology, matrices, co.loss, self.step)
 
@@ -136,10 +149,22 @@ class _Blocks:
     def step_from(self, value: Complex, x: Complex) -> Complex:
         """A⁻¹A′x of x (case, m, …)."""
         keep_time()
+        if self.tree is not None:
+            found = self._along_tree(self.tree, value, x)
+            return found if np.isfinite(found).all() else self._along_tree(self.tree, value * (1 + 1e-12), x)
         right = self.slope_times(value, x)
         found = self.at(value).solved(right)
         if np.isnan(found).any():  # one lies on an exponent already
             found = self.at(value * (1 + 1e-12)).solved(right)
+        return found
+
+    def _along_tree(self, tree: TreeHill, value: Complex, x: Complex) -> Complex:
+        """``step_from`` of a long line, column by column."""
+        s = value[:, None] + 1j * self.harmonics * self.step[:, None]
+        matrix, slope, found = tree.at(s, self.harmonics), tree.at(s, self.harmonics, slope=True), np.empty_like(x)
+        for k in range(x.shape[2]):
+            one = np.moveaxis(x[..., k].reshape(*s.shape, -1), 2, 0)
+            found[..., k] = np.moveaxis(matrix.eliminated(slope.times(one)), 0, 2).reshape(len(s), -1)
         return found
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.linear import line_matrices
+from trunnion.equations.linear import line_matrices, over_mass
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 
@@ -54,16 +54,15 @@ def _rates(assembly: Assembly, speed: float, tau: Array) -> Array:
     """A (time, 2n, 2n) of x′ = Ax in time, x = (rotations √J ω, their rates √J), ω a typical frequency."""
     table = assembly.table(1, max(speed, 1e-300))
     m = line_matrices(assembly.topology, assembly.coefficients(table, statically_twisted=True), tau)
-    mass, damping, stiffness = m.mass[0], m.damping[0], m.stiffness[0]
+    mass, stiffness = m.mass[0], m.stiffness[0]
     root = np.sqrt(np.einsum("tii->ti", mass).mean(axis=0))
-    own = np.einsum("tii->ti", mass)[:, :, None]
     ratio = root[:, None] / root
     n = len(root)
     typical = float(np.sqrt(np.abs(np.einsum("tii->ti", stiffness) / root**2).mean()))
     a = np.zeros((len(tau), 2 * n, 2 * n))
     a[:, :n, n:] = typical * np.eye(n)
-    a[:, n:, :n] = -stiffness / own * ratio / typical
-    a[:, n:, n:] = -damping / own * ratio
+    a[:, n:, :n] = -over_mass(m, m.stiffness)[0] * ratio / typical
+    a[:, n:, n:] = -over_mass(m, m.damping)[0] * ratio
     return a
 
 

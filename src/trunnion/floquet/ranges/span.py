@@ -18,7 +18,6 @@ from trunnion.driveline.excitation import Excitation
 from trunnion.equations.amplitudes import beyond
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import disk_torques
-from trunnion.equations.loads import mean_loads, static_torque
 from trunnion.equations.mean_clutch import states_a_motion
 from trunnion.equations.stage_laws import has_stages, stage_law
 
@@ -129,8 +128,7 @@ class Span:
 
     def _torque(self, speed: Array) -> Array:
         """Mean torques (case, spring)."""
-        topo, table = self.assembly.topology, self.table(speed)
-        return static_torque(topo, mean_loads(topo, self.assembly.packed.column, table))
+        return self.assembly.static_torque(self.table(speed))
 
     def _changes(self, probes: Array) -> Iterator[float]:
         """Speeds at which the line changes, each as a pair just below and above."""

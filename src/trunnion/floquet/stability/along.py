@@ -2,7 +2,8 @@
 
 All speeds share the work. Up to ``LARGEST_DENSE`` unknowns the monodromy matrices come from exponentials in plain
 NumPy, so that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain
-kernel. Bent lines that start free are taken about their own periodic motions.
+kernel, and of driven lines of ``LONG`` unknowns and more from the modes, each by Hill's blocks.
+Bent lines that start free are taken about their own periodic motions.
 """
 
 from __future__ import annotations
@@ -27,16 +28,21 @@ from trunnion.equations.first_order import (
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
 from trunnion.equations.steady_base import moves_by_itself, require_balance
+from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
+from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
-from trunnion.numerics.spectrum import without
+from trunnion.numerics.spectrum import spectral_radius, without
 from trunnion.results.verdict import Verdict, verdicts
+from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
     from trunnion.steady.own.own_motions import MotionsBySpeed
 
 TOLERANCE = 1e-7
 UNDAMPED = 1e-12
+LONG = 40
+"""Unknowns from which on modes by Hill's blocks cost no more than the chain kernel, and are known far better."""
 OVER_SPEED = ("speed", "radius", "error", "critical", "verdict", "growth_rate")
 
 
@@ -101,8 +107,11 @@ def stability_along(
         return _about_own_motions(assembly, speed, motions)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
-    small = assembly.topology.size <= LARGEST_DENSE
-    return _by_exponentials(assembly, table, statically_twisted) if small else _by_kernel(assembly, co)
+    if assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph:
+        return _by_exponentials(assembly, table, statically_twisted)
+    if assembly.topology.size < LONG or assembly.topology.still:
+        return _by_kernel(assembly, co)
+    return _by_modes(assembly, table, statically_twisted)
 
 
 def straight_decay(assembly: Assembly, speed: float, row: Array | None = None) -> float:
@@ -163,6 +172,25 @@ def _about_own_motions(assembly: Assembly, speed: Array, solved: MotionsBySpeed 
         radius[there], error[there], critical[there] = found.radius, found.error, found.critical
     code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
     return _along(speed, radius, error, critical, code.astype(np.int8), motions.period)
+
+
+def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityAlong:
+    """Speed by speed; where modes cannot be told apart, by the kernel."""
+    topo, period = assembly.topology, period_of(assembly)
+    turns = require_period(assembly.line, topo)
+    parts = []
+    for row in table:
+        keep_time()
+        co = assembly.coefficients(row[None], statically_twisted=twisted)
+        modes = floquet_modes(topo, co, turns)
+        if modes is None or modes.off > TOLERANCE:
+            parts.append(_by_kernel(assembly, co))
+            continue
+        radius, error = (part[None] for part in spectral_radius(modes.multiplier, modes.error))
+        undamped = np.array([abs(modes.trace) < UNDAMPED * topo.size])
+        verdict = verdicts(radius, error, undamped).astype(np.int8)
+        parts.append(_along(row[:1], radius, error, modes.multiplier[:1], verdict, period))
+    return _of_parts({key: np.concatenate([getattr(part, key) for part in parts]) for key in OVER_SPEED}, period)
 
 
 def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:

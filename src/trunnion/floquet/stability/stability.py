@@ -27,6 +27,7 @@ from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.carried_modes import carried_mode, judged_multipliers, propagated
+from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.modes.resonance_speeds import Resonance, Source, sources
@@ -44,6 +45,12 @@ from trunnion.systems.periodic_linear import PeriodicLinearSystem
 if TYPE_CHECKING:
     from trunnion.numerics.chain.dense_monodromy import Propagation
 
+LONG = 16
+"""Unknowns from which on modes by Hill's blocks cost less than the propagator of all states."""
+NAMED, LONGEST = 150, 400
+"""Unknowns up to which the resonance of what grows is named, and up to which the propagator of all states is taken."""
+ROUNDING = 1e-11
+"""Error of a propagator, for each unknown, that is rounding whatever tolerance is asked."""
 NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1
@@ -168,7 +175,8 @@ class Stability(Result):
             at = f" (at {self.words.speed(self.resonance.speed)})" if np.isfinite(self.resonance.speed) else ""
             yield f"  the critical multiplier belongs to the {self.resonance.in_words}{at}"
         if self.set_aside > self.dragged:
-            yield f"  {SET_ASIDE[self.set_aside - self.dragged]}"
+            many = self.set_aside - self.dragged
+            yield f"  {SET_ASIDE.get(many, f'the {many} multipliers at 1 of rigid rotations are set aside')}"
         if self.extra_torque is not None:
             yield (
                 f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
@@ -227,10 +235,20 @@ def stability(
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
-    run = propagated(system, tolerance)
     forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
     turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+    if assembly.topology.size >= LONG and not assembly.topology.graph:
+        modes = floquet_modes(assembly.topology, coefficients, turns)
+        found = None if modes is None else _of_modes(system, modes, forced, tolerance)
+        if found is not None:
+            return found
+        if assembly.topology.size > LONGEST:
+            raise ComputationError(
+                f"not all modes of {assembly.topology.size} unknowns are told apart at this speed, and matrices of the "
+                f"period are taken of up to {LONGEST}: change the speed a little, or join neighbouring parts"
+            )
+    run = propagated(system, tolerance)
     aside = rigid_motions(assembly.topology, coefficients)
     return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
 
@@ -284,7 +302,7 @@ def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Sta
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
         set_aside=1,
-        extra_torque=motion.extra_torque,
+        extra_torque=orbit.values[-1],
         speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
     )
 
@@ -329,6 +347,33 @@ def _judge(
         liouville_defect=float(abs(log_det + run.damping_trace)) if sign > 0 else float("inf"),
         names=system.names,
         set_aside=aside.shape[1],
+    )
+
+
+def _of_modes(
+    system: PeriodicLinearSystem, modes: FloquetModes, forced: Callable[[], LinearResponse], tolerance: float
+) -> Stability | None:
+    """Of the modes of a long line; None where they are known less well than asked, or a name is asked of one."""
+    radius, error = spectral_radius(modes.multiplier, modes.error)
+    undamped = abs(modes.trace) < 1e-13 * system.size
+    verdict = Verdict(int(verdicts(radius, error, undamped)))
+    named = verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and system.size <= NAMED
+    if named or modes.off > max(tolerance, ROUNDING * system.size):
+        return None
+    return Stability(
+        multipliers=modes.multiplier,
+        multiplier_error=modes.error,
+        floquet_modes=modes.states,
+        spectral_radius=float(radius),
+        error_estimate=float(error),
+        verdict=verdict,
+        period=system.period,
+        speed=system.rate,
+        resonance=None,
+        forced=forced,
+        liouville_defect=modes.liouville_defect,
+        names=system.names,
+        set_aside=0,
     )
 
 

@@ -18,7 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import require_steady_base
+from trunnion.equations.steady_base import require_steady_base, require_tree
 from trunnion.equations.topology import Link
 from trunnion.errors import InputError
 from trunnion.features import left_out
@@ -83,7 +83,7 @@ class StabilityCertificate(Result):
         return low.min(axis=0), high.max(axis=0)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """What is proved and what is left open; see ``plots.certificate.draw``."""
+        """What is proved and what is left open; see ``pictures.design.certificate``."""
         return drawing(self, "plot")(self, axes)
 
     def _lines(self) -> Iterator[str]:
@@ -136,6 +136,7 @@ def certify_stability(
     assembly = assemble(line)
     _require_provable(assembly)
     require_steady_base(assembly, assembly.table(1, 1.0))
+    require_tree(assembly, "the bounds of the proof do")
     spreads = read_tolerances(assembly, tolerances)
     _require_rising(assembly, spreads)
     space = _Space(assembly, spreads, span)

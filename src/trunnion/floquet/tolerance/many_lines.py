@@ -14,7 +14,7 @@ from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.steady_base import refuse_own_motion, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
 from trunnion.floquet.charts.chart_pixels import Pixels, judge
@@ -49,6 +49,7 @@ class ManyLines:
         require_period(assembly.line, assembly.topology)
         refuse_own_motion(assembly, "put a ConstantSpeed in front", bends=False)
         require_steady_base(assembly, table)
+        require_tree(assembly, "studies of many lines do")
         return cls(assembly, twisted, threads)
 
     @property

@@ -197,7 +197,7 @@ class Tongues(Result):
         labelled: int = 12,
         wide: bool = False,
     ) -> Axes:
-        """The boundaries as curves, over a chart if ``axes`` shows one; see ``plots.tongues.draw``."""
+        """The boundaries as curves, over a chart if ``axes`` shows one; see ``pictures.tongues.tongues``."""
         return drawing(self, "plot")(self, axes, unit=unit, pixel=pixel, labelled=labelled, wide=wide)
 
     def table(self) -> list[dict[str, object]]:

@@ -124,7 +124,7 @@ class StableWindows(Result):
             yield Variable(f"{name}_region", [end.region for end in ends], "window")
 
     def plot(self, axes: Axes | None = None, *, unit: str | None = None, labelled: int = 12) -> Axes:
-        """The unstable regions over speed and parameter; see ``plots.tongues.draw_windows``."""
+        """The unstable regions over speed and parameter; see ``pictures.tongues.windows``."""
         return drawing(self, "plot")(self, axes, unit=unit, labelled=labelled)
 
     def _lines(self) -> list[str]:

@@ -60,7 +60,7 @@ class BifurcationDiagram(Result):
         yield from about(self.system, self.outcome, **remarks)
 
     def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
-        """One state over the parameter; see ``trunnion.plots.chaos.draw_bifurcations``."""
+        """One state over the parameter; see ``pictures.chaos.bifurcations``."""
         return drawing(self, "plot")(self, axes, state=state)
 
     def __str__(self) -> str:
@@ -93,19 +93,42 @@ def bifurcation_diagram(
     tolerance: float = 1e-9,
     progress: Callable[[float], None] | None = None,
 ) -> BifurcationDiagram:
-    """Points of the Poincaré map over one parameter of the system.
+    """Points of the Poincaré map over one parameter: where a motion doubles its period or becomes chaotic.
+
+    Each value begins with the motion in which its neighbour ended, so that up and down may follow different motions.
 
     Parameters
     ----------
+    subject : a ``System``, or a ``Driveline``.
     parameter : a name among the system's parameters; of a driveline "speed" or "HookeJoint 1.angle", say.
-    values : (first, last, how many), or rising values.
+    values : (first, last, how many), or rising values (values,), in SI units.
     directions : "up", "down", or both.
-    points, transient : kept and left out at each value.
+    points : points of the map kept at each value.
+    transient : points left out at each value.
+    speed : input speed of a driveline [rad/s], where it is not the parameter.
     section : of an autonomous system, as for ``poincare_map``.
+    start : state (n,) at the first value; by default the system's own.
+    tolerance : error allowed per step.
+    progress : called as progress(share done).
+
+    Returns
+    -------
+    BifurcationDiagram: the points at every value and in each direction.
 
     Raises
     ------
     InputError : no such parameter or direction; what ``poincare_map`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.bifurcation_diagram(duffing, "force", (0.1, 0.3, 3), points=8, transient=200)
+    >>> print(found)
+    bifurcation diagram of duffing over force = 0.1 … 0.3, 3 values, 8 points each, every forcing period
+      up: 3 repeat after 1; 0 do not repeat
+      down: 3 repeat after 1; 0 do not repeat
+      every value was reached
     """
     system = as_system(subject, speed)
     chosen = values_of(system, parameter, values)

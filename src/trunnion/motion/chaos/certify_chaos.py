@@ -1,8 +1,8 @@
 """A verdict on a motion: regular, chaotic, unbounded or undecided, with its reasons (THA–LEA–PM).
 
 The three steps of Bugaru and Vasile (Appl. Sci. 12, 2022, 6182), with exponents of the standard definition:
-time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria of
-``chaos_criteria``), Poincaré map (PM: does it repeat). The 0–1 test of the map is a second, independent witness.
+time history (THA: is the motion bounded, has it settled), Lyapunov exponents (LEA: the criteria below), Poincaré map
+(PM: does it repeat). The 0–1 test of the map is a second, independent witness.
 
     unbounded   the motion grows until it cannot be followed, or states and rates grow from block to block of the run;
                 clocks and what turns (states that may move by a period without changing any rate) do not count
@@ -11,6 +11,15 @@ time history (THA: is the motion bounded, has it settled), Lyapunov exponents (L
     chaotic     the largest exponent is above 0 by more than its interval, by more than what a regular motion's
                 slow shear gives in that time, and the 0–1 test agrees
     undecided   anything else: the reasons say what is missing
+
+The criteria (37)–(39) of the method (Bugaru and Vasile, section 5) certify chaos where
+
+    (37) the largest exponent is positive,  (38) one exponent is near 0,  (39) the sum is negative.
+
+(38) holds for every forced system, whose phase is a state with exponent 0, and for every bounded autonomous motion
+that is not at rest, whose tangent has exponent 0. (39) holds for every motion of a system that shrinks volumes
+everywhere, so for every damped one, and for none of a system that preserves them. Where the answer is known
+beforehand they say nothing about the motion.
 """
 
 from __future__ import annotations
@@ -25,16 +34,21 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
-from trunnion.motion.chaos.chaos_criteria import Criterion, criteria
-from trunnion.motion.chaos.chaos_subject import as_system, clocks, first_starts, phases, turns
+from trunnion.motion.chaos.chaos_subject import (
+    as_system,
+    clocks,
+    first_starts,
+    motion_size,
+    phases,
+    turn_of,
+    turns,
+    usual_section,
+)
 from trunnion.motion.chaos.chaos_zero_one import FEWEST as FEWEST_FOR_TEST
 from trunnion.motion.chaos.chaos_zero_one import ZeroOne, zero_one_test
 from trunnion.motion.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
-from trunnion.motion.chaos.lyapunov_result import LyapunovSpectrum, shear_bound
-from trunnion.motion.chaos.lyapunov_spectrum import FEWEST, FIRST, lyapunov_spectrum
+from trunnion.motion.chaos.lyapunov_spectrum import FEWEST, FIRST, LyapunovSpectrum, lyapunov_spectrum, shear_bound
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.motion.chaos.usual_section import turn_of, usual_section
-from trunnion.motion.simulation.long_motion import motion_size
 from trunnion.numerics.integration.integration import End
 from trunnion.results.declared import Held, Result, remark, remarks
 from trunnion.results.drawing import Figure, drawing
@@ -42,8 +56,11 @@ from trunnion.results.outcome import Outcome
 from trunnion.steady.shooting.repetition import modulo
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
+from trunnion.systems.user_functions import REACH, STEP
 from trunnion.waiting import OutOfTime, keeps_time, time_is_up
 
+EXACT, DIFFERENCED = 1e-14, 1e-11
+"""Divergence over the size of ∂f/∂x (differenced: times that of the state, too) that rounding may give."""
 POINTS = 3000
 """Points of the Poincaré map."""
 BLOCKS, GROWN = 8, 2.0
@@ -59,6 +76,80 @@ SWEPT, SWEEP_POINTS, SWEEP_PERIODS = 0.1, 25, 400
 SPECTRUM_SHARE = 0.6
 """Of the time, where the exponents are also swept."""
 SWEPT_NAMES = ("excitation", "frequency", "speed")
+
+
+@dataclass(frozen=True)
+class Criterion:
+    """name, value [1/s], whether it holds, whether it could have failed for this system, and why."""
+
+    name: str
+    value: float
+    holds: bool
+    discriminates: bool
+    why: str
+
+    def __str__(self) -> str:
+        use = "discriminates" if self.discriminates else "cannot discriminate"
+        return f"{self.name}: {self.value:+.4g} 1/s, {'holds' if self.holds else 'fails'}; {use}: {self.why}"
+
+
+def criteria(
+    system: System, spectrum: LyapunovSpectrum, *, clock: bool, at_rest: bool, bounded: bool = True
+) -> tuple[Criterion, ...]:
+    """The three criteria for one motion; ``clock``: one of the states is a phase that runs evenly."""
+    exponents, width = spectrum.exponents, spectrum.half_width
+    forced = system.forcing_period is not None
+    first = Criterion(
+        "(37) largest exponent positive", spectrum.largest, spectrum.positive, True,
+        "a motion may part from its neighbours or not",
+    )  # fmt: skip
+    automatic = forced or clock or (bounded and not at_rest)
+    near = 0.0 if forced else float(exponents[np.argmin(np.abs(exponents))])
+    if forced:
+        why = "every forced system has an exponent 0, that of its phase"
+    elif clock:
+        why = "one state is a phase that runs evenly and has exponent 0, whatever the motion does"
+    elif not bounded:
+        why = "the motion is not bounded, so the exponent of its own direction may be any"
+    elif not at_rest:
+        why = "every bounded autonomous motion that is not at rest has an exponent 0, that of its own direction"
+    elif spectrum.largest < 0:
+        why = "the motion has come to rest"
+    else:
+        why = "the motion is at rest on an unstable equilibrium"
+    holds = automatic or bool(np.any(np.abs(exponents) <= width))
+    second = Criterion("(38) an exponent near 0", near, holds, not automatic, why)
+    return first, second, _third(system, spectrum)
+
+
+def _third(system: System, spectrum: LyapunovSpectrum) -> Criterion:
+    name, total = "(39) sum of the exponents negative", spectrum.sum
+    if system.regimes is not None and system.equations.jump:
+        return Criterion(name, total, bool(total < 0), True, "the jumps of the motion change volumes, too")
+    low, high, rounding = _divergences(system, spectrum)
+    if max(-low, high) <= rounding:
+        why = "volumes are preserved, so the sum is 0 but for rounding, whatever the motion does"
+        return Criterion(name, total, False, False, why)
+    if low > 0 or high < 0:
+        kind, rate = ("shrink", -high) if high < 0 else ("grow", low)
+        told = f"{rate:.6g} 1/s along every motion of this system"
+        if system.divergence is None:
+            told = f"{rate:.4g} 1/s or more everywhere on the motion"
+        return Criterion(name, total, high < 0, False, f"volumes {kind} at {told}")
+    return Criterion(name, total, bool(total < 0), True, "volumes shrink in places and grow in others")
+
+
+def _divergences(system: System, spectrum: LyapunovSpectrum) -> tuple[float, float, float]:
+    """Smallest and largest divergence where the motion was sampled, all around the forcing, and its rounding."""
+    states = np.concatenate([run.states[:: max(len(run.states) // 50, 1)] for run in spectrum.runs])
+    matrices = np.array([system.jacobian(t, x, system.regime_at(t, x)) for x in states for t in phases(system)])
+    size = float(np.max(np.abs(matrices)))
+    if system.divergence is not None:
+        return spectrum.divergence, spectrum.divergence, EXACT * size
+    furthest = 1 + min(float(np.max(np.abs(states) / np.asarray(system.scale))), STEP / REACH)
+    rounding = EXACT * size if system.exact_tangents else DIFFERENCED * size * furthest
+    traces = np.trace(matrices, axis1=1, axis2=2)
+    return float(traces.min()), float(traces.max()), rounding
 
 
 class Verdict(StrEnum):
@@ -120,7 +211,7 @@ class ChaosCertificate(Result):
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
-        return drawing(self, "plot")(self)
+        return drawing(self, "plot")(self).figure
 
     def __str__(self) -> str:
         what = {"": ""}.get(self.kind, f", {self.kind}")
@@ -156,12 +247,20 @@ def certify_chaos(
 
     Parameters
     ----------
-    subject, periods, duration, speed, start, starts, transient, tolerance : as for ``lyapunov_spectrum``.
+    subject : a ``System``, or a ``Driveline`` at ``speed``.
+    periods : forcing periods to average exponents over; by default as ``lyapunov_spectrum`` does.
+    duration : instead of ``periods`` [s].
+    speed : input speed of a driveline [rad/s], by default its operating speed.
+    start : a state (n,), or several (starts, n); by default the system's own and neighbours of it.
+    starts : how many motions to follow.
     section : of the map of an autonomous system; by default the mean of the state that moves most.
     points : of the map.
-    sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the
-        forcing frequency or speed by ± 10 %; False for none.
+    transient : periods to let pass before averaging; by default 500.
+    sweep : (parameter, first, last, how many) for the exponents over a parameter in the figure; by default the forcing
+        frequency or speed by ± 10 %; False for none.
+    tolerance : error allowed per step.
     within : seconds that it may take; what is known by then is judged, and the reasons say what ended it.
+    progress : called as progress(share done).
 
     Returns
     -------
@@ -170,6 +269,14 @@ def certify_chaos(
     Raises
     ------
     InputError : as ``lyapunov_spectrum`` and ``poincare_map``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.certify_chaos(duffing, 300, starts=1, points=300, sweep=False)
+    >>> str(found.verdict)
+    'regular'
     """
     system = as_system(subject, speed)
     request = _sweep_request(system, sweep)

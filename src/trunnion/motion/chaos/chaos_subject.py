@@ -1,8 +1,14 @@
-"""What analyses of long motions take: a system, or a driveline at a speed; its starts; what turns or runs in it."""
+"""What analyses of long motions take: a system, or a driveline at a speed; its starts; what turns or runs in it.
+
+Also how long motions end, how long a turn takes, how large they are, and the section of a map where none is asked for.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
+from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,8 +17,13 @@ from scipy.linalg import null_space
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
+from trunnion.numerics.integration.integration import integrate
+from trunnion.numerics.integration.tangents import Motion
 from trunnion.numerics.memory import require_memory
+from trunnion.results.outcome import Outcome
+from trunnion.steady.shooting.integration_outcomes import GROWN, outcome_of
 from trunnion.steady.shooting.repetition import LONGEST_REPEAT
+from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 SAME = 1e-9
@@ -26,6 +37,8 @@ PHASES = 7
 """Phases of the forcing at which a system is looked at; an odd number meets no two zeros of a half-period."""
 NEIGHBOUR = 1e-2
 """How far from the first start the others are, in units of the system's scale plus the start itself."""
+BYTES_A_VALUE = 512
+"""What a value of a parameter holds: itself, its motion's request and what is found there."""
 
 
 def as_system(subject: System | Driveline, speed: float | str | None = None) -> System:
@@ -206,10 +219,6 @@ def whole_number(key: str, value: object, least: int, most: int | None = None) -
     return int(value)
 
 
-BYTES_A_VALUE = 512
-"""What a value of a parameter holds: itself, its motion's request and what is found there."""
-
-
 def values_of(system: System, parameter: str, values: ArrayLike | tuple[float, float, int]) -> Array:
     """Rising values (m,) of one of the system's parameters, from (first, last, how many) or as they are.
 
@@ -231,3 +240,79 @@ def values_of(system: System, parameter: str, values: ArrayLike | tuple[float, f
         remedy = "write (first, last, how many) with last above first"
         raise InputError("must be rising finite numbers", key=parameter, value=values, remedy=remedy)
     return np.asarray(chosen, dtype=float)
+
+
+def usual_section(system: System, states: Array, turning: Array) -> Event:
+    """The mean of the state that moves most, rising; where all are angles, the first of them passing whole turns."""
+    free = [j for j in range(system.size) if not turning[:, j].any()]
+    if not free:
+        # An angle that wanders away from its mean for ever passes whole turns again and again.
+        turn = turn_of(0, turning)
+        angle = system.states[0] if turn == 2 * np.pi else f"{system.states[0]}·2π/{turn:.6g}"
+        return Event(_sine_of(0, turn), direction=1, name=f"sin({angle}) = 0")
+    j = max(free, key=lambda j: float(np.ptp(states[:, j])) / float(np.asarray(system.scale)[j]))
+    return Event(system.states[j], float(np.mean(states[:, j])), direction=1)
+
+
+def turn_of(place: int, turning: Array) -> float:
+    """By how much a state turns once around; 0 of one that does not turn."""
+    return float(np.abs(turning[:, place]).max(initial=0.0))
+
+
+@cache
+def _sine_of(place: int, turn: float) -> Callable[..., Any]:
+    factor = 2 * np.pi / turn
+
+    def sine(t: float, x: Any, p: Any) -> Any:
+        return np.sin(factor * x[place])
+
+    return sine
+
+
+def failure(system: System, motion: Motion, length: float, before: str) -> Outcome:
+    """What stopped a motion: met again in the interpreter, which can say what it was."""
+    again = integrate(
+        system.equations, motion.time, motion.time + length, motion.state, regime=motion.regime,
+        tolerance=motion.tolerance, most_steps=motion.most_steps, dense=False,
+    )  # fmt: skip
+    told = outcome_of(system, again, motion.tolerance, system.regimes.guards if system.regimes else ())
+    if told.ok:
+        return Outcome(False, "refused", f"{before}the tangents could not be followed any further")
+    return Outcome(False, told.kind, f"{before}{told.sentence}")
+
+
+def usual_time(system: System, state: Array, tolerance: float, steps: int = 32) -> float:
+    """A time in which the motion of an autonomous system gets about once around, rounded to one figure.
+
+    Where a system comes to rest the integrator's steps grow without bound, so the fastest rate of its linear
+    part bounds the time too: at the end of a trial, or at the start if the trial runs away.
+    """
+    trial = integrate(
+        system.equations, 0.0, 1e9, state, regime=system.regime_at(0.0, state), tolerance=tolerance,
+        most_steps=2000, dense=False,
+    )  # fmt: skip
+    half = trial.length[trial.steps // 4 :]
+    interval = steps * float(np.median(half)) if len(half) else 1.0
+    last = trial.state[-1]
+    away = not np.all(np.abs(last) <= GROWN * np.maximum(np.abs(state), np.asarray(system.scale)))
+    last, regime = (state, system.regime_at(0.0, state)) if away else (last, trial.final_regime)
+    matrix = system.jacobian(0.0, last, regime)
+    if np.all(np.isfinite(matrix)):
+        fastest = float(np.max(np.abs(np.linalg.eigvals(matrix))))
+        interval = min(interval, 2 * np.pi / fastest) if fastest > 0 else min(interval, 1.0)
+    power = 10.0 ** np.floor(np.log10(interval))
+    return float(max(np.floor(interval / power), 1.0) * power)
+
+
+def motion_size(system: System, state: Array, interval: float, tolerance: float) -> Array:
+    """Largest minus smallest value (n,) of each state over the next few intervals."""
+    run = integrate(
+        system.equations,
+        0.0,
+        8 * interval,
+        state,
+        regime=system.regime_at(0.0, state),
+        tolerance=tolerance,
+        dense=False,
+    )
+    return np.ptp(run.state, axis=0) if run.steps else np.zeros(system.size)

@@ -48,15 +48,34 @@ class ZeroOne:
 
 
 def zero_one_test(series: ArrayLike, *, scale: float = 0.0) -> ZeroOne:
-    """The test on a series (points,) sampled once per period or per crossing of a section.
+    """The 0–1 test for chaos on a series sampled once per period, or once per crossing of a section.
 
-    ``scale``: a spread below 1e-7 of it counts as none. A series sampled too finely looks regular whatever it is. A
-    strange attractor without chaos (two incommensurate forcings of a strongly damped system, say) diffuses as well, K
-    near 1, while its exponents are not positive: only the exponents tell, and ``certify_chaos`` asks both.
+    K is near 0 for a regular series and near 1 for a chaotic one. A series sampled too finely looks regular whatever it
+    is. A strange attractor without chaos (two incommensurate forcings of a strongly damped system, say) diffuses as
+    well, K near 1, while its exponents are not positive: only the exponents tell, and ``certify_chaos`` asks both.
+
+    Parameters
+    ----------
+    series : (points,) in any unit, 200 or more.
+    scale : size of the quantity, in its unit; a spread below 1e-7 of it counts as none. By default 0: any spread
+        counts.
+
+    Returns
+    -------
+    ZeroOne: ``k`` [-], and what it ``says``: regular, chaotic or undecided.
 
     Raises
     ------
     InputError : fewer than 200 points, or not finite.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> logistic = [0.3]
+    >>> for _ in range(999):
+    ...     logistic.append(4 * logistic[-1] * (1 - logistic[-1]))
+    >>> tn.zero_one_test(logistic).says, tn.zero_one_test(np.sin(np.arange(1000.0))).says
+    ('chaotic', 'regular')
     """
     phi = np.asarray(series, dtype=float)
     if phi.ndim != 1 or len(phi) < FEWEST or not np.all(np.isfinite(phi)):

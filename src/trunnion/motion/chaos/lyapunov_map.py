@@ -18,11 +18,11 @@ from trunnion.motion.chaos.chaos_subject import (
     as_system,
     first_starts,
     tilted_frame,
+    usual_time,
     values_of,
     whole_number,
 )
-from trunnion.motion.chaos.lyapunov_result import shear_bound
-from trunnion.motion.simulation.long_motion import usual_time
+from trunnion.motion.chaos.lyapunov_spectrum import shear_bound
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
@@ -114,7 +114,7 @@ class LyapunovMap(Result):
         yield from about(self.system, self.outcome, **effort)
 
     def plot(self, axes: Axes | None = None) -> Axes:
-        """The map in colour, white at 0; see ``trunnion.plots.chaos.draw_lyapunov_map``."""
+        """The map in colour, white at 0; see ``pictures.chaos.lyapunov_map``."""
         return drawing(self, "plot")(self, axes)
 
     def __str__(self) -> str:
@@ -143,17 +143,38 @@ def lyapunov_sweep(
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> LyapunovSweep:
-    """Exponents at every value of one parameter, each motion beginning at ``start``.
+    """Lyapunov exponents at every value of one parameter, each motion beginning at ``start``.
 
     Parameters
     ----------
-    parameter, values : as for ``bifurcation_diagram``.
-    periods, transient : averaged over, and left out before.
+    subject : a ``System``, or a ``Driveline``.
+    parameter : a name among the system's parameters; of a driveline "speed" or "HookeJoint 1.angle", say.
+    values : (first, last, how many), or rising values (values,), in SI units.
+    periods : averaged over.
+    transient : periods left out before.
+    exponents : how many, the largest first; by default all.
+    speed : input speed of a driveline [rad/s], where it is not the parameter.
+    start : state (n,); by default the system's own.
     interval : length of a period [s] where the system has none; by default about once around.
+    tolerance : error allowed per step.
+    threads : by default one per processor.
+    progress : called as progress(share done).
+
+    Returns
+    -------
+    LyapunovSweep: exponents (values, exponents) [1/s] and half the widths of their intervals of confidence.
 
     Raises
     ------
     InputError : no such parameter; a wrong count.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.lyapunov_sweep(duffing, "force", (0.1, 0.3, 3), periods=200, transient=100)
+    >>> found.exponents.shape, bool((found.exponents < 0).all())
+    ((3, 2), True)
     """
     system = as_system(subject, speed)
     chosen = values_of(system, parameter, values)
@@ -183,16 +204,36 @@ def lyapunov_map(
     threads: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> LyapunovMap:
-    """The largest exponent over two parameters, each motion beginning at ``start``.
+    """The largest Lyapunov exponent over two parameters, each motion beginning at ``start``.
 
     Parameters
     ----------
-    x, y : (parameter, first, last, how many).
+    subject : a ``System``, or a ``Driveline``.
+    x, y : (parameter, first, last, how many), in SI units.
+    periods : averaged over.
+    transient : periods left out before.
+    speed : input speed of a driveline [rad/s], where it is not a parameter of the map.
+    start : state (n,); by default the system's own.
+    interval : length of a period [s] where the system has none; by default about once around.
+    tolerance : error allowed per step.
     threads : by default one per processor.
+    progress : called as progress(share done).
+
+    Returns
+    -------
+    LyapunovMap: the exponent [1/s] at every pair of values, and an outcome for those that were not reached.
 
     Raises
     ------
     InputError : no such parameter; a wrong count or range.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.lyapunov_map(duffing, ("force", 0.1, 0.3, 3), ("frequency", 0.9, 1.1, 2), periods=50)
+    >>> found.exponent.shape, bool((found.exponent < 0).all())
+    ((2, 3), True)
     """
     system = as_system(subject, speed)
     columns, rows = values_of(system, x[0], x[1:]), values_of(system, y[0], y[1:])

@@ -14,10 +14,10 @@ A forced system is counted without its phase; with the phase as a state it has o
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import repeat
 
 import numpy as np
@@ -26,17 +26,27 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
-from trunnion.motion.chaos.chaos_subject import as_system, clocks, first_starts, tilted_frame, whole_number
-from trunnion.motion.chaos.lyapunov_result import LyapunovSpectrum, Run, shear_bound
-from trunnion.motion.simulation.long_motion import failure, usual_time
-from trunnion.numerics.averages import BATCHES, average, batch_means, pooled
+from trunnion.motion.chaos.chaos_subject import (
+    as_system,
+    clocks,
+    failure,
+    first_starts,
+    tilted_frame,
+    usual_time,
+    whole_number,
+)
+from trunnion.numerics.averages import BATCHES, CONFIDENCE, average, batch_means, pooled
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.integration.tangents import Motion, Samples
+from trunnion.results.declared import Held, Result, about, axis, over
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 from trunnion.waiting import time_is_up
 
+HISTORY = 400
+"""Points of a history of convergence."""
 PRECISION = 0.018
 """Width of the interval of the largest exponent over its size at which the default effort is content."""
 FIRST, LAST = 4096, 131072
@@ -62,6 +72,153 @@ ROUNDING = 0.01
 """Error per sample over the tolerance, below which no interval goes: errors of steps mostly cancel."""
 
 
+def shear_bound(samples: int, interval: float) -> float:
+    """Twice ln N / T [1/s], N samples in time T: neighbours of a regular motion part in proportion to time where their
+    frequencies differ, so that for so long they seem to part at the rate ln t / t."""
+    return 2 * float(np.log(max(samples, 2))) / (max(samples, 1) * interval)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One motion: growth (samples, k) of its frame, ∫ tr ∂f/∂x dt (samples,) where it was needed, states
+    (1 + samples, n) before, between and after the samples, how it ended, samples wanted."""
+
+    growth: Array
+    divergence: Array
+    states: Array
+    end: End
+    wanted: int
+
+
+@dataclass(frozen=True, repr=False)
+class LyapunovSpectrum(Result):
+    """Exponents of a system's motion, the largest first.
+
+    exponents, half_width (k,) [1/s]: means over all starts and half of their intervals of confidence (95 %), never
+    less than the error of the sum, nor than ``shear`` where exponents lie together at 0. by_start,
+    by_start_half_width (starts, k). divergence [1/s]: what the sum must be, NaN where not all exponents were asked for
+    or the motion jumps. interval [s] of a sample; windowed: averaged with a smooth window (see ``numerics.averages``).
+    """
+
+    system: System
+    exponents: Array
+    half_width: Array
+    starts: Array
+    by_start: Array
+    by_start_half_width: Array
+    divergence: float
+    interval: float
+    transient: int
+    runs: tuple[Run, ...]
+    tolerance: float
+    windowed: bool
+    outcome: Outcome
+
+    @property
+    def largest(self) -> float:
+        """The largest exponent [1/s]."""
+        return float(self.exponents[0])
+
+    @property
+    def sum(self) -> float:
+        """Sum of the exponents [1/s]."""
+        return float(self.exponents.sum())
+
+    @property
+    def sum_error(self) -> float:
+        """How far the sum is from the mean divergence [1/s]; NaN where that is not known."""
+        return abs(self.sum - self.divergence)
+
+    @property
+    def samples(self) -> int:
+        """Samples of the shortest run."""
+        return min(len(run.growth) for run in self.runs)
+
+    @property
+    def positive(self) -> bool:
+        """Whether the largest exponent is above 0 by more than its interval, and above what shear alone may show."""
+        return bool(self.exponents[0] > max(self.half_width[0], self.shear))
+
+    @property
+    def shear(self) -> float:
+        """What the largest exponent of a regular motion may seem to be [1/s] after so long; see ``shear_bound``."""
+        return shear_bound(self.samples, self.interval)
+
+    @property
+    def agree(self) -> bool:
+        """Whether every start gives the same exponents, to three times their intervals.
+
+        A difference below 1e-4 of the largest exponent in size is none.
+        """
+        low = float(np.nanmax(np.abs(self.exponents), initial=0.0)) * 1e-4
+        apart = np.abs(self.by_start - np.nanmean(self.by_start, axis=0)) if len(self.by_start) > 1 else np.zeros(1)
+        allowed = 3 * self.by_start_half_width + low if len(self.by_start) > 1 else np.ones(1)
+        return not bool(np.any(apart > allowed))
+
+    @property
+    def dimension(self) -> float:
+        """Kaplan–Yorke dimension of the attractor, a forced system's phase not counted; NaN if not all exponents
+        were asked for, or volumes do not shrink."""
+        if len(self.exponents) < self.system.size:
+            return float("nan")
+        total = np.cumsum(self.exponents)
+        if total[-1] >= 0:
+            return float(self.system.size) if total[-1] <= self.half_width.sum() else float("nan")
+        k = int(np.argmax(total < 0))
+        return float(k + (total[k - 1] if k else 0.0) / -self.exponents[k])
+
+    @property
+    def histories(self) -> tuple[Array, Array]:
+        """Times (points,) [s] and running means (starts, points, k) of the exponents up to each."""
+        samples = self.samples
+        if samples == 0:
+            return np.empty(0), np.empty((len(self.runs), 0, len(self.exponents)))
+        places = np.unique(np.geomspace(1, samples, HISTORY).astype(int))
+        means = [
+            np.cumsum(r.growth[:samples], axis=0)[places - 1] / (places[:, None] * self.interval) for r in self.runs
+        ]
+        return places * self.interval, np.array(means)
+
+    def declared(self) -> Iterator[Held]:
+        """Exponents [1/s] with half-widths, of each start too, their running means over time, and the sum rule."""
+        time, history = self.histories
+        yield axis("order", np.arange(1, len(self.exponents) + 1))
+        yield axis("time", time, "s")
+        yield axis("state", self.system.states)
+        yield over("order", "exponent", self.exponents, "1/s")
+        yield over("order", "half_width", self.half_width, "1/s")
+        yield over("start order", "exponent_of_start", self.by_start, "1/s")
+        yield over("start order", "half_width_of_start", self.by_start_half_width, "1/s")
+        yield over("start time order", "running_mean", history, "1/s")
+        yield over("start state", "start_state", self.starts)
+        rule = {} if np.isnan(self.divergence) else {"divergence": self.divergence, "sum_error": self.sum_error}
+        yield from about(
+            self.system, self.outcome, sum=self.sum, **rule, confidence=CONFIDENCE, interval=self.interval,
+            samples=self.samples, transient=self.transient, tolerance=self.tolerance,
+            averaging="windowed" if self.windowed else "plain",
+        )  # fmt: skip
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Running means of the exponents over time."""
+        return drawing(self, "plot")(self, axes)
+
+    def __str__(self) -> str:
+        unit = "forcing period" if self.system.forcing_period is not None else "sample"
+        head = (
+            f"Lyapunov exponents of {self.system.name}, natural logarithm, {len(self.runs)} × {self.samples} "
+            f"{unit}s of {self.interval:.6g} s after {self.transient}"
+        )
+        rows = [
+            f"  L{i} = {value:+.6g} ± {width:.2g} 1/s"
+            for i, (value, width) in enumerate(zip(self.exponents, self.half_width, strict=True), start=1)
+        ]
+        rule = "not checked" if np.isnan(self.divergence) else f"{self.divergence:.10g}, off by {self.sum_error:.1e}"
+        rows.append(f"  sum {self.sum:.10g} 1/s (mean divergence: {rule})")
+        if np.isfinite(self.dimension) and self.outcome.ok:
+            rows.append(f"  Kaplan–Yorke dimension {self.dimension:.4g}")
+        return "\n".join([head, *rows, f"  {self.outcome}"])
+
+
 def lyapunov_spectrum(
     subject: System | Driveline,
     periods: int | None = None,
@@ -80,24 +237,39 @@ def lyapunov_spectrum(
 
     Parameters
     ----------
-    subject : a ``System``, or a ``Driveline`` at ``speed`` [rad/s].
-    periods : forcing periods to average over; or ``duration`` [s]. By default as many as it takes to know the
-        largest exponent to ``precision`` (width of its interval over its size), from 4096 to 131072.
+    subject : a ``System``, or a ``Driveline`` at ``speed``.
+    periods : forcing periods to average over. By default as many as it takes to know the largest exponent to
+        ``precision``, from 4096 to 131072.
+    duration : instead of ``periods`` [s].
+    speed : input speed of a driveline [rad/s], by default its operating speed.
     start : a state (n,), or several (starts, n); by default the system's own and neighbours of it.
     starts : how many motions to follow, in parallel; they are compared.
     exponents : how many, the largest first; by default all.
     transient : periods to let pass before averaging; by default 500.
+    precision : width of the interval of the largest exponent over its size, to reach where neither ``periods`` nor
+        ``duration`` is given.
     tolerance : error allowed per step.
+    progress : called as progress(share done).
 
     Returns
     -------
-    LyapunovSpectrum: ``exponents`` and ``half_width`` [1/s], ``sum`` beside ``divergence``, what each start
-    gave, the history of convergence, and an ``outcome``.
+    LyapunovSpectrum: ``exponents`` and ``half_width`` [1/s], ``sum`` beside ``divergence``, what each start gave, the
+    history of convergence, and an ``outcome``.
 
     Raises
     ------
-    InputError : no start, a wrong count or duration, both ``periods`` and ``duration``, periods of an
-        autonomous system.
+    InputError : no start, a wrong count or duration, both ``periods`` and ``duration``, periods of an autonomous
+        system.
+
+    Examples
+    --------
+    A damped motion that settles: both exponents are half of minus the damping, 0.05.
+
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.lyapunov_spectrum(duffing, 200, starts=1)
+    >>> found.exponents.round(3), round(float(found.sum), 6)
+    (array([-0.025, -0.025]), -0.05)
     """
     system = as_system(subject, speed)
     count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)

@@ -17,8 +17,15 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
-from trunnion.motion.chaos.chaos_subject import as_system, first_starts, turns, whole_number
-from trunnion.motion.simulation.long_motion import failure, motion_size, usual_time
+from trunnion.motion.chaos.chaos_subject import (
+    as_system,
+    failure,
+    first_starts,
+    motion_size,
+    turns,
+    usual_time,
+    whole_number,
+)
 from trunnion.numerics.integration.integration import End
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, about, over
@@ -86,7 +93,7 @@ class PoincareMap(Result):
         )  # fmt: skip
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
-        """One state over another; see ``trunnion.plots.chaos.draw_map``."""
+        """One state over another; see ``pictures.chaos.poincare_map``."""
         return drawing(self, "plot")(self, axes, x=x, y=y, points=points)
 
     def __str__(self) -> str:
@@ -116,16 +123,21 @@ def poincare_map(
     longest: float | None = None,
     tolerance: float = 1e-10,
 ) -> PoincareMap:
-    """Points of a settled motion on a section.
+    """Points of a settled motion, once per forcing period or at every crossing of a section.
 
     Parameters
     ----------
-    subject : a ``System``, or a ``Driveline`` at ``speed`` [rad/s].
-    section : crossings of an event with a direction; by default stroboscopic, at ``phase`` [s] of the forcing.
+    subject : a ``System``, or a ``Driveline`` at ``speed``.
+    points : how many.
+    speed : input speed of a driveline [rad/s], by default its operating speed.
+    section : crossings of an ``Event`` with a direction; by default stroboscopic, once per forcing period.
     every : time [s] between stroboscopic points instead of the forcing period.
+    phase : time [s] within the forcing period at which stroboscopic points are taken.
+    start : state (n,); by default the system's own.
     transient : points left out at the beginning.
-    longest : time [s] after which a section counts as not met any more; by default 1000 forcing periods, or as
-        many times what the motion needs to get about once around.
+    longest : time [s] after which a section counts as not met any more; by default 1000 forcing periods, or as many
+        times what the motion needs to get about once around.
+    tolerance : error allowed per step.
 
     Returns
     -------
@@ -134,6 +146,14 @@ def poincare_map(
     Raises
     ------
     InputError : neither a forcing period nor a section nor ``every``; a section without a direction.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> found = tn.poincare_map(duffing, 20)
+    >>> found.points.shape, [round(float(x), 4) for x in found.points[-1]]
+    ((20, 2), [-0.4136, 0.07])
     """
     system = as_system(subject, speed)
     whole_number("points", points, 1)

@@ -11,6 +11,10 @@ knowing the answer.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,21 +24,332 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.errors import InputError
-from trunnion.motion.linearity.linearity_result import LinearityCheck, LinearShaft, Passage
 from trunnion.motion.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
+from trunnion.motion.passing.capture import RunUpEnding
 from trunnion.motion.passing.run_up import run_up
 from trunnion.numerics.curves import extremes, fourier
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.response.speed_sweep import sweep_speeds
+from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.speeds import show_acceleration, show_speed
+from trunnion.results.units import angle_words, order_words
+from trunnion.results.verdict import Verdict
+from trunnion.steady.orders.forced_response import LINEAR_RANGE
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE
 
+SMALL = 0.01
+"""A spring whose largest order is below this share of the largest of all is measured against that share."""
+FLUCTUATION = 0.1
+"""Speed fluctuation over mean speed from which a load with the square of the speed is no longer its tangent."""
 WIDTH = 0.2
 """A passage runs from this share of the speed below it to as much above."""
 PASSED = 161
 """Speeds of the linear response over a passage, and those about the peaks besides."""
 STUCK = 1e-9
 """Twist [rad] that a clutch which does not move is linearised at: its sliders stick."""
+
+
+@dataclass(frozen=True)
+class LinearShaft:
+    """What stands for a clutch in the linear equations.
+
+    swing [rad]: half of the peak-to-peak twist of the nonlinear motion; frequency [rad/s]: of its largest order; torque
+    [N m]: its mean;
+    stiffness [N m/rad] and damping [N m s/rad] of the Shaft at those; slipping: how many of its sliders slip.
+    """
+
+    clutch: str
+    swing: float
+    frequency: float
+    torque: float
+    stiffness: float
+    damping: float
+    slipping: int
+
+
+@dataclass(frozen=True)
+class Passage:
+    """A run from speed ``low`` to ``high`` [rad/s] at ``acceleration`` [rad/s²].
+
+    vibration (spring,) [N m]: largest distance of the torque from the quasi-static one, at ``vibration_speed``
+    [rad/s]; linear (spring,) [N m]: largest linear vibratory torque in that range, at ``linear_speed`` [rad/s]; ending:
+    how a line that starts free came through, None where the speed is prescribed.
+    """
+
+    springs: tuple[str, ...]
+    low: float
+    high: float
+    acceleration: float
+    vibration: Array
+    vibration_speed: Array
+    linear: Array
+    linear_speed: Array
+    ending: RunUpEnding | None = None
+
+    @property
+    def kind(self) -> str:
+        """How it ended, as the outcome of ``run_up`` has it."""
+        return "reached" if self.ending is None else self.ending.kind
+
+
+@dataclass(frozen=True, repr=False)
+class LinearityCheck(Result):
+    """Linear and nonlinear response of a line at one speed.
+
+    linear, nonlinear: both analyses (``linear`` None where no nonlinear motion was found that tells how a clutch is to
+    be linearised). order (order,) in cycles per turn of the input, fixed frequencies as frequency over speed;
+    linear_torque, nonlinear_torque (order, spring) [N m], complex, phases counting from zero rotation of the input.
+    stand_ins: shafts that stand for clutches; passage: what ``acceleration`` asked for. NaN where no nonlinear motion
+    was found.
+    """
+
+    linear: OrderResponse | None
+    nonlinear: PeriodicResponse
+    order: Array
+    linear_torque: Complex
+    nonlinear_torque: Complex
+    stand_ins: tuple[LinearShaft, ...]
+    allowed: float
+    passage: Passage | None
+
+    @property
+    def springs(self) -> tuple[str, ...]:
+        """Names of shafts, meshes and couplings; massless shafts in series count as one."""
+        return self.nonlinear.shafts
+
+    @property
+    def speed(self) -> float:
+        """Input speed [rad/s]."""
+        return self.nonlinear.speed
+
+    @property
+    def unit(self) -> str:
+        """Unit that speeds are printed in: that of the line's description."""
+        return self.nonlinear.unit
+
+    @property
+    def difference(self) -> Array:
+        """|linear − nonlinear| (order, spring) [N m], phases counted."""
+        return np.abs(self.linear_torque - self.nonlinear_torque)
+
+    @cached_property
+    def largest(self) -> Array:
+        """Largest order (spring,) [N m] of either response."""
+        size = np.fmax(np.abs(self.linear_torque), np.abs(self.nonlinear_torque))
+        return np.asarray(size.max(axis=0, initial=0.0))
+
+    @cached_property
+    def relative_difference(self) -> Array:
+        """Largest difference over the largest order, spring by spring (spring,).
+
+        A spring that vibrates less than a hundredth as much as the most loaded one is measured against that hundredth;
+        0 where nothing vibrates.
+        """
+        against = np.maximum(self.largest, SMALL * self.largest.max(initial=0.0))
+        if not self.nonlinear.outcome.ok or self.linear is None:
+            return np.full(len(self.springs), np.nan)
+        return np.asarray(self.difference.max(axis=0, initial=0.0) / np.where(against > 0, against, 1.0))
+
+    @property
+    def departure(self) -> float:
+        """The largest relative difference of any spring; NaN where one of the two responses does not exist."""
+        return float(np.max(self.relative_difference, initial=0.0))
+
+    @property
+    def holds(self) -> bool:
+        """Whether linear theory holds: the motion exists, is not unstable, and departs by ``allowed`` at most."""
+        return bool(self.departure <= self.allowed and self.nonlinear.verdict is not Verdict.UNSTABLE)
+
+    @property
+    def peak_torque(self) -> Array:
+        """Largest |torque| (2, spring) [N m] over the cycle: linear, nonlinear."""
+        linear = self.linear.peak_torque[0] if self.linear is not None else np.full(len(self.springs), np.nan)
+        return np.stack([linear, self.nonlinear.peak_torque])
+
+    @property
+    def vibratory_torque(self) -> Array:
+        """Half of the peak-to-peak torque (2, spring) [N m]: linear, nonlinear."""
+        linear = self.linear.vibratory_torque[0] if self.linear is not None else np.full(len(self.springs), np.nan)
+        return np.stack([linear, self.nonlinear.torque_amplitude])
+
+    @cached_property
+    def because(self) -> tuple[str, ...]:
+        """What the line does there that linear equations do not have, gravest first; () where nothing stands out."""
+        return tuple(_causes(self))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
+        return self.findings_in(self.unit)
+
+    def findings_in(self, unit: str) -> tuple[Finding, ...]:
+        """What to read first, gravest first, speeds in ``unit``."""
+        said = self.linear.remarks if self.linear is not None else ()
+        return by_gravity([*_findings(self, unit), *said])
+
+    def declared(self) -> Iterator[Held]:
+        """Both responses by order and spring, their difference, and their sums over the cycle."""
+        yield axis("order", self.order, "1", "cycles per turn of the input")
+        yield axis("spring", self.springs)
+        yield axis("response", ("linear", "nonlinear"))
+        yield from fields_over("order spring", self, linear_torque="N*m", nonlinear_torque="N*m", difference="N*m")
+        yield over("spring", "relative_difference", self.relative_difference, "1")
+        yield from fields_over("response spring", self, peak_torque="N*m", vibratory_torque="N*m")
+        yield from fields_over("", self, departure="1", speed="rad/s")
+        if self.passage is not None:
+            yield over("spring", "passing_vibration", self.passage.vibration, "N*m")
+            yield over("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
+            yield over("spring", "passing_linear", self.passage.linear, "N*m")
+            yield from remarks(passing_outcome=self.passage.kind)
+        yield from remarks(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
+        yield from ending(self.nonlinear.outcome)
+
+    def plot(self, axes: Axes | None = None, *, spring: str | None = None, unit: str | None = None) -> Axes:
+        """Both amplitudes of every order of one spring; see ``pictures.motion.linearity``."""
+        return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
+
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        unit = unit or self.unit
+        rows = [f"linear and nonlinear response at {show_speed(self.speed, unit)}"]
+        if self.nonlinear.outcome.ok:
+            rows += [self._of_spring(s) for s in range(len(self.springs))]
+        rows += [f"  {finding}" for finding in self.findings_in(unit)]
+        return "\n".join(rows)
+
+    def _of_spring(self, s: int) -> str:
+        (linear, true), name = self.vibratory_torque[:, s], self.springs[s]
+        if not len(self.order) or self.largest[s] <= WORTH_SHOWING * self.largest.max():
+            return f"  {name}: does not vibrate"
+        k = int(np.argmax(self.difference[:, s]))
+        return (
+            f"  {name}: vibratory ±{linear:.4g} N m by linear theory, ±{true:.4g} N m nonlinear; order "
+            f"{self.order[k]:.6g} differs most, {abs(self.linear_torque[k, s]):.4g} for "
+            f"{abs(self.nonlinear_torque[k, s]):.4g} N m, apart by {100 * self.relative_difference[s]:.2g} % of the "
+            "largest order"
+        )
+
+    def __str__(self) -> str:
+        return self.describe()
+
+
+def _causes(result: LinearityCheck) -> Iterator[str]:
+    if result.linear is None or not result.nonlinear.outcome.ok:
+        return
+    for contact in result.nonlinear.contacts:
+        if np.count_nonzero(contact.stage_shares > 0) > 1:
+            if contact.rattles and _has_play(result, contact.spring):
+                yield f"contact is lost, {contact}"
+            else:
+                yield f"{contact.spring} passes through more than one of its stages, of which linear theory has one"
+    for one in result.stand_ins:
+        if one.slipping:
+            yield (
+                f"{one.clutch} slips: linear theory has it at the stiffness and loss of this one swing, "
+                f"±{angle_words(one.swing)}, which it does not find by itself"
+            )
+    for name, swing in zip(result.linear.joints, result.linear.joint_rotations[0], strict=True):
+        if swing > LINEAR_RANGE:
+            yield (
+                f"the input of {name} swings by {angle_words(swing)}, beyond the linear range of "
+                f"{angle_words(LINEAR_RANGE)}: its speed ratio moves with the vibration"
+            )
+    yield from _loads_by_speed(result)
+
+
+def _has_play(result: LinearityCheck, spring: str) -> bool:
+    """Whether the softest stage of a spring carries nothing."""
+    line = result.nonlinear.line.assembly.line
+    element = line.elements[line.index(spring)]
+    slopes = getattr(element, "stiffnesses", ()) or (getattr(element, "stiffness_ratio", 0.0),)
+    return min(slopes) == 0
+
+
+def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
+    """Disks with a load by the square of the speed that fluctuates too much for a tangent."""
+    linear = result.linear
+    assert linear is not None
+    line, topo = result.nonlinear.line.assembly.line, result.nonlinear.line.assembly.topology
+    for station, place in topo.disks:
+        name = line.names[place]
+        if not getattr(line.elements[place], "quadratic_load", 0.0) or name not in linear.inertias:
+            continue
+        fluctuation = float(linear.speed_fluctuation[0, linear.inertias.index(name)])
+        share = fluctuation / (abs(float(topo.speed_ratio[station])) * result.speed)
+        if share > FLUCTUATION:
+            yield (
+                f"the speed of {name} fluctuates by {100 * share:.0f} %, so that its load by "
+                "the square of the speed is not its tangent"
+            )
+
+
+def _findings(result: LinearityCheck, unit: str) -> Iterator[Finding]:
+    at = show_speed(result.speed, unit)
+    if not result.nonlinear.outcome.ok:
+        yield Finding(
+            Gravity.CAUTION,
+            f"No periodic motion was found at {at} ({result.nonlinear.outcome}), so that linear theory is not checked.",
+        )
+        return
+    if not np.isfinite(result.departure):
+        yield Finding(Gravity.DANGER, f"Linear theory has no steady state at {at}: undamped resonance.")
+        return
+    if result.nonlinear.verdict is Verdict.UNSTABLE:
+        yield Finding(
+            Gravity.DANGER,
+            f"Both responses are of a motion at {at} that is unstable: a disturbance grows by "
+            f"{result.nonlinear.growth_rate:.3g} 1/s, and neither is reached; ask tn.periodic_branch where it goes.",
+        )
+    yield _sentence(result, at)
+    for one in result.stand_ins:
+        doing = "sticks" if not one.slipping else f"slips ({one.slipping} of its sliders)"
+        yield Finding(
+            Gravity.NOTE,
+            f"{one.clutch} {doing} and stands in the linear line as a shaft of {one.stiffness:.4g} N m/rad and "
+            f"{one.damping:.4g} N m s/rad, its mean at ±{angle_words(one.swing)} and "
+            f"{one.frequency / (2 * np.pi):.4g} Hz.",
+        )
+    if result.passage is not None:
+        yield _passing(result.passage, unit)
+
+
+def _sentence(result: LinearityCheck, at: str) -> Finding:
+    share = 100 * result.departure
+    if not result.largest.max(initial=0.0):
+        return Finding(Gravity.NOTE, f"Nothing vibrates at {at}: there is nothing to compare.")
+    if result.departure <= result.allowed:
+        return Finding(Gravity.NOTE, f"Linear theory holds at {at}: no order is off by more than {share:.2g} %.")
+    s = int(np.argmax(result.relative_difference))
+    k = int(np.argmax(result.difference[:, s]))
+    reason = "; ".join(result.because) or (
+        "no single part stands out: what is left out is of second order in excitations and joint angles, which "
+        "resonance magnifies"
+    )
+    return Finding(
+        Gravity.CAUTION,
+        f"Linear theory misleads at {at}: {order_words(result.order[k])} of {result.springs[s]} is "
+        f"{abs(result.linear_torque[k, s]):.4g} N m by it and {abs(result.nonlinear_torque[k, s]):.4g} N m truly, "
+        f"{share:.2g} % of the largest order apart, phases counted; {reason}.",
+    )
+
+
+def _passing(passage: Passage, unit: str) -> Finding:
+    share = np.where(passage.linear > 0, passage.vibration / np.where(passage.linear > 0, passage.linear, 1.0), 0.0)
+    s, rate = int(np.argmax(passage.vibration)), show_acceleration(passage.acceleration, unit)
+    way = f"from {show_speed(passage.low, unit)} to {show_speed(passage.high, unit)}"
+    passed = passage.ending is None or passage.kind == "reached"
+    begin = f"Passed at {rate} {way}"
+    if passage.ending is not None and not passed:
+        begin = f"Run at {rate} {way} the line does not pass ({passage.ending.sentence(unit)}); until then"
+    return Finding(
+        Gravity.NOTE if passed else Gravity.CAUTION,
+        f"{begin}, {passage.springs[s]} vibrates by {passage.vibration[s]:.4g} N m, at "
+        f"{show_speed(float(passage.vibration_speed[s]), unit)}: {share[s]:.3g} times the {passage.linear[s]:.4g} N m "
+        f"that linear theory gives where it is largest, at {show_speed(float(passage.linear_speed[s]), unit)}.",
+    )
 
 
 def linearity_check(
@@ -72,8 +387,8 @@ def linearity_check(
     >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), tn.Shaft(stiffness=2e4), engine, shaft,
     ...     tn.Disk(inertia=0.8)])
     >>> check = tn.linearity_check(line, 60.0)
-    >>> check.holds, bool(check.departure < 1e-3)
-    (True, True)
+    >>> check.holds, round(check.departure, 4)
+    (True, 0.0047)
     """
     if not 0 < one_number(allowed, "allowed", "0.05 is 5 %") < 1:
         raise InputError("must be between 0 and 1", key="allowed", value=float(allowed), remedy="0.05 is 5 %")
@@ -128,10 +443,10 @@ def _linear_shaft(true: PeriodicResponse, line: Driveline, name: str) -> LinearS
     clutch = line.elements[line.index(name)]
     assert isinstance(clutch, Clutch)
     place = next(e for e, c in enumerate(true.line.assembly.topology.compliances) if line.index(name) in c.shafts)
-    run = true.orbit.trajectory
+    run = true.trajectory
 
     def twist(times: Array) -> Array:
-        return true.line.observe(true.orbit.system, times, run.at(times)).twist[:, place : place + 1]
+        return true.line.observe(true.system, times, run.at(times)).twist[:, place : place + 1]
 
     swing = float(extremes(twist, run.time_of_state).span[0]) / 2
     cycles = np.abs(fourier(twist, run.time_of_state, max(int(ORDERS * true.turns), 1))[1:, 0])

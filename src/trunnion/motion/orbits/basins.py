@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.motion.orbits.exact_map import OscillatorMap
-from trunnion.motion.orbits.exact_orbit_result import PiecewiseOrbit
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit, refuse_unbounded
+from trunnion.motion.orbits.exact_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
 from trunnion.numerics.memory import require_memory
 from trunnion.results.declared import Held, Result, axis, over
 from trunnion.results.drawing import Axes, drawing
@@ -50,7 +49,7 @@ class Basins(Result):
         yield over("attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str))
 
     def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
-        """Map of the starts; see ``trunnion.plots.frequency_response``."""
+        """Map of the starts; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length)
 
     def __str__(self) -> str:
@@ -64,9 +63,32 @@ class Basins(Result):
 
 
 def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
-    """Basins of attraction at the oscillator's own frequency, from all pairs of ``position`` and ``velocity``.
+    """Basins of attraction at the oscillator's own frequency: where the motions from a grid of starts settle.
 
     Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.
+
+    Parameters
+    ----------
+    oscillator : a ``PiecewiseOscillator``.
+    position : starting x (positions,), in its unit of length.
+    velocity : starting x′ (velocities,), in that unit per second.
+    most : forcing periods that a motion may take to settle.
+
+    Returns
+    -------
+    Basins: ``number`` (positions, velocities) of the attractor that each start ends in, and the ``attractors``.
+
+    Raises
+    ------
+    InputError : an undamped linear resonance; more starts than memory holds.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> found = tn.basins(gap, [-2.0, 0.0, 2.0], [-1.0, 1.0])
+    >>> found.number.shape, len(found.attractors), found.shares
+    ((3, 2), 1, array([1.]))
     """
     refuse_unbounded(oscillator)
     x, v = (np.atleast_1d(np.asarray(a, dtype=float)) for a in (position, velocity))

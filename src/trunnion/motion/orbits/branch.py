@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -102,10 +102,10 @@ class PeriodicBranch(Result):
     """Periodic motions along a branch.
 
     parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a line which starts free
-    sets aside; verdict (points,) codes; peak_to_peak (points,
-    curves): of the shaft torques [N m] of a line, or of the states of a system, named by ``curves``; largest: their
-    largest absolute values; amplitude (points, n): of the fundamental of every state; special:
-    folds and other special points in order; outcome: where the branch ended and why.
+    sets aside; verdict (points,) codes; peak_to_peak (points, curves): of the shaft torques [N m] of a line, or of the
+    states of a system, named by ``curves``; largest: their largest absolute values; amplitude (points, n): of the
+    fundamental of every state; special: folds and other special points in order; outcome: where the branch ended and
+    why.
     """
 
     label: str
@@ -164,7 +164,7 @@ class PeriodicBranch(Result):
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
-        """Response curve with its jumps; see ``trunnion.plots.response_curve``."""
+        """Response curve with its jumps; see ``pictures.frequency_response.branch``."""
         return drawing(self, "plot")(self, axes, curve=curve, unit=unit, jumps=jumps)
 
     @property
@@ -181,6 +181,9 @@ class PeriodicBranch(Result):
         low, high = self.parameter.min() * axis.factor, axis.number(float(self.parameter.max()))
         head = f"branch of periodic motions over {self.label} from {low:.6g} to {high}: {counts}"
         return "\n".join([head, *rows, f"  {self.outcome}"])
+
+
+B = TypeVar("B", bound=PeriodicBranch)
 
 
 def followed(
@@ -352,9 +355,16 @@ def _on_circle(values: Complex) -> bool:
     return any(size > 1e-6 for size in near)
 
 
-def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outcome) -> PeriodicBranch:
-    """The branch from its points and the kinds of the special ones among them."""
-    points, kinds, n = [p for p, _ in walk], [kind for _, kind in walk], problem.size
+def collect(
+    problem: Problem,
+    walk: list[tuple[CurvePoint, str]],
+    outcome: Outcome,
+    kind: Callable[..., B] = PeriodicBranch,  # type: ignore[assignment]
+    **more: Any,
+) -> B:
+    """The branch from its points and the kinds of the special ones among them; ``more``: what a ``kind`` of branch
+    knows besides."""
+    points, n = [p for p, _ in walk], problem.size
     observed = [problem.observed(p) for p in points]
     counting = [problem.multipliers(p) for p in points]
     multipliers = np.full((len(points), n), np.nan, dtype=complex)
@@ -363,11 +373,11 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
     radius = np.array([np.abs(values).max(initial=0.0) for values in counting])
     verdict = [_verdict(problem, p, float(r)) for p, r in zip(points, radius, strict=True)]
     special = tuple(
-        SpecialPoint(kind, point.parameter, problem.start(point), values, seen[2], seen[0])
-        for point, kind, values, seen in zip(points, kinds, multipliers, observed, strict=True)
-        if kind
+        SpecialPoint(what, point.parameter, problem.start(point), values, seen[2], seen[0])
+        for (point, what), values, seen in zip(walk, multipliers, observed, strict=True)
+        if what
     )
-    return PeriodicBranch(
+    return kind(
         label=problem.over.label,
         unit=problem.over.unit,
         period=np.array([o[3] for o in observed]),
@@ -384,6 +394,7 @@ def collect(problem: Problem, walk: list[tuple[CurvePoint, str]], outcome: Outco
         outcome=outcome,
         problem=problem,
         unknowns=np.array([p.z for p in points]).reshape(len(points), len(problem.scale)),
+        **more,
     )
 
 

@@ -8,10 +8,10 @@ the end of a piece (grazing) has none.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -19,9 +19,11 @@ from trunnion.arrays import Array, Integers
 from trunnion.equations.staged_line import StagedLine
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
+from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
+from trunnion.motion.simulation.exact_motion import stage_events
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage, kernel, stages_of
-from trunnion.systems.maps import Observed, Passage
+from trunnion.systems.maps import MOMENT, Observed, Passage
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.regimes import SLACK
 
@@ -29,8 +31,8 @@ SAMPLES = 512
 """Of a period, for the fundamental; a power of two times any usual number of periods."""
 LEAST_TWIST = 1e-6
 """What a twist counts as at least when an orbit is closed [rad]."""
-MOMENT = 0.02
-"""Share of the period within which a slider that sticks may slip by rounding."""
+SIDES = ("none", "upper", "lower", "both")
+"""Sides touched, by the code of the measurement."""
 REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
@@ -59,6 +61,25 @@ class ExactMap(ABC):
     def settle(self, x: Array, periods: int) -> Array | None:
         found = self.steady(x, periods * self.periods, periods * self.periods, 0.0)
         return found.state if found.done else None
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """Number of states."""
+
+    def nowhere(self, values: int = 0) -> Passage:
+        """A motion that changes its pieces too often to come to an end; its derivatives by so many values."""
+        nothing = np.full((self.size, self.size + values), np.nan)
+        return Passage(nothing[:, 0], nothing[:, : self.size], nothing[:, self.size :], -1, False, None)
+
+    @property
+    @abstractmethod
+    def unmeasured(self) -> dict[str, Any]:
+        """What ``measured`` tells of a motion that is not known: NaN."""
+
+    @abstractmethod
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array] | None:
+        """What the motion from x does, by the names of results, and where it ends; None where it cannot be followed."""
 
     @abstractmethod
     def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
@@ -94,7 +115,7 @@ class OscillatorMap(ExactMap):
         try:
             run = piecewise.period(o.regimes, o.coefficients, self.value, x, self.periods)
         except piecewise.TooManyEventsError:
-            return _broken(2, len(by))
+            return self.nowhere(len(by))
         changes = int((run.events[:, 3] >= 0).sum())
         return Passage(run.state, run.tangents[:, :2], run.tangents[:, 2 : 2 + len(by)], changes, True, run)
 
@@ -118,13 +139,34 @@ class OscillatorMap(ExactMap):
         )  # fmt: skip
         return np.where(periods[:, None] > 0, ends, np.nan)
 
-    def measure(self, x: Array) -> dict[str, float]:
-        """What the motion from x does; see ``piecewise.measure``."""
+    @property
+    def unmeasured(self) -> dict[str, Any]:
+        return self._told(dict.fromkeys(piecewise.COLUMNS, np.nan))
+
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array]:
+        found = self._told(self._measured(x))
+        return found, found["state"]
+
+    def _told(self, seen: dict[str, float]) -> dict[str, Any]:
+        sides = SIDES[int(seen["contact"])] if np.isfinite(seen["contact"]) else "none"
+        return {
+            "lowest": seen["low"],
+            "highest": seen["high"],
+            "mean": seen["mean"],
+            "impacts": seen["impacts"],
+            "impact_energy": self.oscillator.inertia * seen["energy"],
+            "impact_impulse": self.oscillator.inertia * seen["impulse"],
+            "sides": sides,
+            "contact": contact_state(sides),
+            "state": np.array([seen["x"], seen["v"]]),
+        }
+
+    def _measured(self, x: Array) -> dict[str, float]:
         o = self.oscillator
         return piecewise.measure(o.regimes, o.coefficients, self.value, x, self.periods)
 
     def observe(self, x: Array, passage: Passage) -> Observed:
-        found = self.measure(x)
+        found = self._measured(x)
         low, high = found["low"], found["high"]
         # At the forcing frequency, of a subharmonic motion too.
         fundamental = float(np.hypot(found["real"], found["imaginary"]))
@@ -135,17 +177,14 @@ class OscillatorMap(ExactMap):
 
 @dataclass(frozen=True)
 class LineMap(ExactMap):
-    """Twists and rates over ``periods`` of the excitation.
+    """Twists and rates over ``periods`` of the excitation; sliders ``held`` are kept from slipping.
 
     Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
-    the map, whose states stand at the places ``kept`` of the line's. Neither is the deflection of a slider that sticks
-    throughout: what it has beside the twist comes back whatever it is, and ``stuck`` holds (row, that [rad]) of each.
-    Such a slider is kept from slipping here, which rounding could let it; the motion found is asked whether it stays
-    within what it holds.
+    the map, whose states stand at the places ``kept`` of the line's.
     """
 
     line: StagedLine
-    stuck: tuple[tuple[int, float], ...] = ()
+    held: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
@@ -158,48 +197,51 @@ class LineMap(ExactMap):
     @cached_property
     def kept(self) -> Integers:
         """Places of the map's states among the line's."""
-        still = {row for row, _ in self.stuck}
-        return np.array([i for i in self.line.kept if i not in still])
+        return self.line.kept
 
     @cached_property
     def flow(self) -> StagedFlow:
         """The line's flow at the value."""
-        return self.line.holding([row for row, _ in self.stuck], self.value)
+        return self.line.holding([self.line.slider_rows[i] for i in self.held], self.value)
 
     def whole(self, part: Array) -> Array:
         """The line's state (2m,) from the map's, deflections beyond what sliders hold brought back to it."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
-        state = self.line.within_limits(state)
-        for row, beside in self.stuck:
-            state[row] = state[self.line.source[row]] + beside
-        return state
+        free = self.line.within_limits(state)
+        rows = [self.line.slider_rows[i] for i in self.held]
+        free[rows] = state[rows]
+        return free
 
-    @cached_property
-    def spread(self) -> Array:
-        """Derivative (2m, n) of the line's state by the map's."""
-        matrix = np.eye(2 * self.line.size)
-        for row, _ in self.stuck:
-            matrix[row] = matrix[self.line.source[row]]
-        return matrix[:, self.kept]
+    @property
+    def sliders(self) -> int:
+        return len(self.line.sliders)
 
-    def sticking(self, rows: Iterable[int], start: Array) -> Self:
-        """The map in which the sliders in these rows stick with the deflections that they have in ``start`` (2m,)."""
-        beside = start[: self.line.size] - start[self.line.source]
-        return replace(self, stuck=tuple((row, float(beside[row])) for row in sorted(rows)))
+    @property
+    def deflections(self) -> Integers:
+        return np.searchsorted(self.kept, self.line.slider_rows)
 
-    def idle(self, passage: StagedPassage, start: Array) -> set[int]:
-        """Rows of the sliders that slip for no more than a moment in a watched passage from ``start`` (2m,), and stay
-        within what they hold."""
-        k, first, found = kernel(), stages_of(self.flow, start), set()
-        for row in self.line.slider_rows:
+    def holding(self, which: tuple[int, ...]) -> Self:
+        return replace(self, held=which)
+
+    def idle(self, x: Array) -> tuple[int, ...]:
+        k, passage = kernel(), self.watched(x)
+        first, found = stages_of(self.flow, self.whole(x)), []
+        for i, row in enumerate(self.line.slider_rows if passage.done else ()):
             own = passage.events[:, 1] == row
             times = np.concatenate([[0.0], passage.events[own, 0], [self.length]])
             slips = np.concatenate([[first[row]], passage.events[own, 2]]) != STICKS
             furthest = np.abs(passage.seen[row, [k.LOW, k.HIGH]]).max()
             if np.diff(times) @ slips <= MOMENT * self.length and furthest <= (1 + SLACK) * self.line.knots[row]:
-                found.add(row)
-        return found
+                found.append(i)
+        return tuple(found)
+
+    def conserved(self, x: Array, which: tuple[int, ...]) -> Array:
+        rows, unit = [self.line.slider_rows[i] for i in which], np.eye(2 * self.line.size)
+        return (unit[rows] - unit[self.line.source[rows]])[:, self.kept]
+
+    def within_limits(self, x: Array) -> Array:
+        return self.whole(x)[self.kept]
 
     def scale(self, start: Array) -> Array:
         """Size of every state of the map that counts as one, from a start (2m,) of the line."""
@@ -210,11 +252,12 @@ class LineMap(ExactMap):
 
     def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
         slope = self.length * self.line.period_slope(self.value)
-        run = staged_flow.period(self.flow, self.whole(x), self.length, slope, watch=watch)
+        start = self.whole(x)
+        run = staged_flow.period(self.flow, start, self.length, slope, watch=watch)
         if not (run.done and np.isfinite(run.tangents).all()):
-            return _broken(self.size, len(by))
-        by_state = self.spread * (self.whole(x)[self.kept] == x)  # beyond what it holds a deflection is brought back
-        matrix = (run.tangents[:, : 2 * self.line.size] @ by_state)[self.kept]
+            return self.nowhere(len(by))
+        within = start[self.kept] == x  # beyond what it holds a deflection is brought back
+        matrix = run.tangents[self.kept][:, self.kept] * within
         by_value = run.tangents[self.kept, 2 * self.line.size :][:, : len(by)]
         return Passage(run.state[self.kept], matrix, by_value, len(run.events), True, run)
 
@@ -235,6 +278,47 @@ class LineMap(ExactMap):
         """The motion from x with what it shows of every spring."""
         return staged_flow.move(self.flow, self.whole(x), 0.0, self.length, watch=True)
 
+    @property
+    def unmeasured(self) -> dict[str, Any]:
+        line, nan = self.line, np.nan
+        nothing = [SpringContact(line.springs[e], np.zeros(0), nan, "none", np.zeros(0), nan) for e in line.staged]
+        return self._told(np.full((line.size, kernel().SHARES), nan), np.full(2 * line.size, nan), tuple(nothing))
+
+    def measured(self, x: Array) -> tuple[dict[str, Any], Array] | None:
+        run = self.watched(x)
+        return (self.told_of(x, run), run.state[self.kept]) if run.done else None
+
+    def told_of(self, x: Array, run: StagedPassage) -> dict[str, Any]:
+        """What a watched passage from x shows.
+
+        An impact is a passage from the softest stage of a spring to another, its energy ½ m q̇² with the inertia m that
+        the rest of the line opposes to a push between the ends of the spring.
+        """
+        line, start, contacts = self.line, self.whole(x), []
+        first, events = stages_of(line.flow(), start), stage_events(line, run.events)
+        for e in line.staged:
+            own = events.spring == e
+            sides = np.concatenate([[line.sides[e, first[e]]], events.side[own]])
+            speeds = np.abs(events.rate[own][(sides[1:] != 0) & (sides[:-1] == 0)])
+            shares, stages = run.seen[e, kernel().SHARES :][: line.counts[e]] / self.length, line.sides[e]
+            inertia = 1 / line.inverse[e, e]
+            contacts.append(SpringContact.of(line.springs[e], shares, stages[: line.counts[e]], speeds, inertia))
+        return self._told(run.seen, start, tuple(contacts))
+
+    def _told(self, seen: Array, start: Array, contacts: tuple[SpringContact, ...]) -> dict[str, Any]:
+        k, springs = kernel(), seen[: len(self.line.springs)]
+        return {
+            "torque_low": springs[:, k.TORQUE_LOW],
+            "torque_high": springs[:, k.TORQUE_HIGH],
+            "torque_mean": springs[:, k.TORQUE_SUM] / self.length,
+            "twist_low": springs[:, k.LOW],
+            "twist_high": springs[:, k.HIGH],
+            "twist_mean": springs[:, k.TWIST_SUM] / self.length,
+            "clearance": float(springs[:, k.CLEARANCE].min()),
+            "contacts": contacts,
+            "state": start,
+        }
+
     def observe(self, x: Array, passage: Passage) -> Observed:
         k, count = staged_flow.kernel(), SAMPLES * self.periods
         seen = passage.run.seen[: len(self.line.springs)]
@@ -244,9 +328,3 @@ class LineMap(ExactMap):
         # At the frequency of the excitation, of a subharmonic motion too.
         amplitude = 2 * np.abs(np.fft.rfft(states, axis=0)[self.periods]) / count
         return Observed(high - low, np.maximum(np.abs(low), np.abs(high)), amplitude[self.kept])
-
-
-def _broken(size: int, values: int) -> Passage:
-    """A motion that changes its pieces too often to come to an end."""
-    nothing = np.full((size, size + values), np.nan)
-    return Passage(nothing[:, 0], nothing[:, :size], nothing[:, size:], -1, False, None)

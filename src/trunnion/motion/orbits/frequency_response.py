@@ -27,21 +27,18 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.stage_laws import has_stages
 from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import PeriodicBranch
-from trunnion.motion.orbits.free_play import require_contact, require_forced
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.harmonic_balance import harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import SpringBalance, balance_springs
-from trunnion.motion.orbits.periodic_branch import periodic_branch
-from trunnion.motion.orbits.piecewise_branch import piecewise_branch
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.motion.orbits.piecewise_sweep import sweep
+from trunnion.motion.orbits.periodic_branch import periodic_branch, piecewise_branch
+from trunnion.motion.orbits.sweep import sweep
 from trunnion.motion.perturbation.averaging import averaging
 from trunnion.motion.perturbation.describing_function import DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales
-from trunnion.motion.perturbation.slow_flow import ApproximateResponse, largest_stable
+from trunnion.motion.perturbation.slow_flow import ApproximateResponse, ResponseCurves, largest_stable
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.curves import at_place, meetings
 from trunnion.results.declared import Described, Held, ending, fields_over, over, remarks
-from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.verdict import Verdict
@@ -70,7 +67,7 @@ SWEPT, SAMPLES = 101, 1024
 
 
 @dataclass(frozen=True, repr=False)
-class FrequencyResponse(Described):
+class FrequencyResponse(ResponseCurves, Described):
     """Half peak-to-peak over frequency by one method.
 
     frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
@@ -121,19 +118,6 @@ class FrequencyResponse(Described):
         yield from remarks(method=self.method, curve=self.curve)
         yield from ending(self.outcome)
 
-    def plot(
-        self,
-        axes: Axes | None = None,
-        *,
-        length: str = "",
-        unit: str | None = None,
-        marks: bool = True,
-        jumps: bool = True,
-        top: float | None = None,
-    ) -> Axes:
-        """The curve, full where stable; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
-
     def describe(self, unit: str | None = None) -> str:
         """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``, by default in its own ``unit``."""
         unit = unit or self.unit
@@ -152,7 +136,7 @@ class FrequencyResponse(Described):
 
 
 @dataclass(frozen=True, repr=False)
-class ResponseComparison(Described):
+class ResponseComparison(ResponseCurves, Described):
     """Several methods side by side; the first is what the others are measured against."""
 
     responses: Mapping[str, FrequencyResponse]
@@ -189,19 +173,6 @@ class ResponseComparison(Described):
         yield over("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
         yield over("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
         yield over("point", "stable", np.concatenate([r.stable for r in found]))
-
-    def plot(
-        self,
-        axes: Axes | None = None,
-        *,
-        length: str = "",
-        unit: str | None = None,
-        marks: bool = True,
-        jumps: bool = True,
-        top: float | None = None,
-    ) -> Axes:
-        """All on one picture."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def describe(self, unit: str | None = None) -> str:
         """The table as text."""
@@ -258,36 +229,52 @@ def frequency_response(
     fit_range: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> FrequencyResponse:
-    """The frequency response between two frequencies by one method.
+    """The frequency response between two frequencies by one method, with folds, jumps and stability.
+
+    What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
+    ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
+    ``multiple_scales``.
 
     Parameters
     ----------
-    system : a piecewise oscillator; a ``SecondOrder`` system, by harmonic balance; a system forced at its parameter
-        ``frequency``; or a driveline over its input speed.
-    low, high : [rad/s].
+    system : a ``PiecewiseOscillator``; a ``SecondOrder`` system, by harmonic balance; a ``System`` forced at its
+        parameter ``frequency``; or a ``Driveline`` over its input speed.
+    low, high : ends of the range [rad/s].
     method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
         "shooting" (default of drivelines with backlash or stages, the only one of those that start free) for the
         others; "exact" also for a driveline that ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
     begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.
-    start : near the first motion: a state, or of harmonic balance a series; of sweeps the first start.
+    start : near the first motion: a state (n,), or of harmonic balance a series (n, 2H + 1); of sweeps the first start.
     periods : forcing periods in one of the motion.
     longest_step : of the continuation, over the range and over the size of the motion.
     most_points : of the continuation.
     tolerance : of the integration (shooting).
-    harmonics, tail : how many, or how small the last ones have to be (harmonic balance).
-    points : frequencies of a sweep; least, most : forcing periods at each.
-    epsilon, fit_range : of multiple scales and averaging.
+    harmonics : how many (harmonic balance).
+    tail : how small the last harmonics have to be, over the largest (harmonic balance).
+    points : frequencies of a sweep.
+    least, most : forcing periods of a sweep at each frequency.
+    epsilon : of multiple scales and averaging.
+    fit_range : of multiple scales and averaging, in units of x.
     progress : called with the share done (exact, shooting; the others do not call it).
 
-    What is None is left to the method, whose own function says its default: ``piecewise_branch`` (exact),
-    ``periodic_branch`` (shooting), ``harmonic_balance``, ``balance_springs``, ``sweep``, ``averaging``,
-    ``multiple_scales``.
+    Returns
+    -------
+    FrequencyResponse: half peak-to-peak over ``frequency`` (points,) [rad/s], and the method's own result as
+    ``detail``.
 
     Raises
     ------
     InputError : an unknown method, an argument that the method does not take, or what it refuses itself.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> found = tn.frequency_response(gap, 0.85, 0.95)
+    >>> [round(frequency, 5) for frequency in found.folds()]
+    [0.92749]
     """
     known = methods_of(system)
     chosen = method or known[0]
@@ -327,7 +314,31 @@ def compare_responses(
     methods: Sequence[str] = METHODS,
     options: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> ResponseComparison:
-    """The same response by several methods; ``options``: arguments of ``frequency_response`` by method."""
+    """The same frequency response by several methods, side by side.
+
+    Parameters
+    ----------
+    system : a ``PiecewiseOscillator``.
+    low, high : ends of the range [rad/s].
+    methods : some of ``METHODS``; by default all.
+    options : further arguments of ``frequency_response``, by method.
+
+    Returns
+    -------
+    ResponseComparison: peaks, folds and the seconds that each method took, and a picture of all curves.
+
+    Raises
+    ------
+    InputError : what ``frequency_response`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> found = tn.compare_responses(gap, 0.85, 0.95, methods=["exact", "averaging"])
+    >>> list(found.responses)
+    ['exact', 'averaging']
+    """
     more = options or {}
     return ResponseComparison(
         {name: frequency_response(system, low, high, method=name, **more.get(name, {})) for name in methods}
@@ -429,3 +440,43 @@ def _curves(system: PiecewiseOscillator | SecondOrder | System | Driveline, spee
     if isinstance(system, SecondOrder):
         return tuple(system.names)
     return line_system(system, speed).shafts if isinstance(system, Driveline) else system.states
+
+
+def require_forced(o: PiecewiseOscillator) -> None:
+    """Refuse an oscillator that nothing moves.
+
+    Raises
+    ------
+    InputError : neither a force nor harmonics of it.
+    """
+    if not _forces(o):
+        raise InputError("is zero: nothing moves", element=o.name, key="force", value=0.0, remedy="give an amplitude")
+
+
+def require_contact(o: PiecewiseOscillator, lowest: float) -> None:
+    """Refuse a free gap that the motion cannot cross at ``lowest`` rad/s or above: it may float anywhere in it.
+
+    Without a mean force the swing in free play is Σ F_k/(k ω √((k m ω)² + c²)) at most, less at higher frequencies.
+
+    Raises
+    ------
+    InputError : no contact is possible; says which force would reach it.
+    """
+    place = int(np.searchsorted(o.breakpoints, 0.0))
+    if o.mean_force or not 0 < place < len(o.breakpoints) or o.slopes[place] != 0:
+        return
+    damping = o.damping if o.damping_law == "always" else 0.0
+    reach = sum(f / (k * lowest * np.hypot(k * o.inertia * lowest, damping)) for k, f in _forces(o))
+    gap = o.breakpoints[place] - o.breakpoints[place - 1]
+    if 2 * reach < gap:
+        raise InputError(
+            f"moves less than its free play of {gap:.6g}: no contact is possible, and it may float anywhere there",
+            element=o.name, key="force", value=o.force,
+            remedy=f"give a mean_force, or a force {gap / (2 * reach):.3g} times larger",
+        )  # fmt: skip
+
+
+def _forces(o: PiecewiseOscillator) -> list[tuple[int, float]]:
+    """(order, amplitude) of all that shakes it."""
+    found = [(1, abs(o.force)), *((k, float(np.hypot(p, q))) for k, p, q in o.harmonics)]
+    return [(k, f) for k, f in found if f > 0]

@@ -7,13 +7,20 @@ of a piecewise force. Any forced ``System`` will do: an oscillator, a backlash, 
 
 Stability comes from the monodromy matrix along the motion that starts where the series starts; how far that
 motion misses its start after a period is the ``defect``, the error of the series measured by another method.
+
+One driver follows every balance: a branch with so many harmonics, or with as many as its tail asks for. What differs
+is the residual: here of any first-order system, in ``harmonic_balance_springs`` of masses on springs. Own motions of
+free lines (``steady.own.free_balance``) lie on no branch: their speeds are given, and one Newton's method takes its
+steps for all of them together (``numerics.continuation.newton``). Harmonics are doubled alike, and the matrices of the
+balance are the same for all (``numerics.harmonics``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,15 +30,17 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.motion.orbits.balancing import Series, SeriesBranch, balanced
-from trunnion.motion.orbits.branch import STEP
+from trunnion.motion.orbits.branch import STEP, PeriodicBranch, Problem, collect, follow_both_ways
 from trunnion.motion.orbits.periodic_branch import SystemOver, system_over
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.numerics.curves import extremes
+from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.integration.sampled_rates import sampled_rates
-from trunnion.results.declared import Held, over
-from trunnion.steady.shooting.judging import CLEAR, IntegratedClosing
+from trunnion.numerics.threads import on_one_thread
+from trunnion.results.declared import Held, over, remarks
+from trunnion.results.outcome import Outcome
+from trunnion.steady.shooting.closing import CLEAR, IntegratedClosing
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.systems.system import System
 
@@ -46,6 +55,132 @@ FAR = 100.0
 
 
 @dataclass(frozen=True, repr=False)
+class SeriesBranch(PeriodicBranch):
+    """A branch of periodic motions as Fourier series.
+
+    rows (points, n, 2H + 1): mean, cosines, sines of every unknown; tail (points,): the largest of the last harmonics
+    over the largest of all; periods: of the forcing in one of the motion.
+    """
+
+    rows: Array
+    tail: Array
+    periods: int
+
+    @property
+    def harmonics(self) -> int:
+        """H, per period of the motion."""
+        return fourier.order(self.rows)
+
+    @property
+    def branch(self) -> PeriodicBranch:
+        """The branch alone, as other methods give it."""
+        return PeriodicBranch(**{name: getattr(self, name) for name in PeriodicBranch.__dataclass_fields__})
+
+    def declared(self) -> Iterator[Held]:
+        """What every branch has, and the series."""
+        yield from super().declared()
+        yield over("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
+        yield over("point", "tail", self.tail)
+        yield from remarks(harmonics=self.harmonics, periods=self.periods)
+
+    @property
+    def _worst(self) -> str:
+        return f"tail up to {self.tail.max():.1e}"
+
+    def __str__(self) -> str:
+        head = f"harmonic balance with {self.harmonics} harmonics, {self._worst}\n" if len(self.rows) else ""
+        return f"{head}{super().__str__()}"
+
+
+S = TypeVar("S", bound=SeriesBranch)
+
+
+class Balance(Problem, Protocol):
+    """The balance of h harmonics as equations of a curve z = (series, parameter)."""
+
+    h: int
+    periods: int
+
+    def first(self) -> Array:
+        """A series to begin with, (n, 2h + 1)."""
+
+    def rows(self, point: CurvePoint) -> Array:
+        """The series at a point of the curve, (n, 2h + 1)."""
+
+
+class Series:
+    """What every balance shares."""
+
+    h: int
+
+    def rows(self, point: CurvePoint) -> Array:
+        return point.z[:-1].reshape(-1, 2 * self.h + 1)
+
+
+def balanced(
+    kind: type[S],
+    make: Callable[[int], Balance],
+    harmonics: int | None,
+    fewest: int,
+    most: int,
+    limit: float,
+    begin: float,
+    low: float,
+    high: float,
+    most_points: int,
+) -> S:
+    """The branch with ``harmonics``, or doubled from ``fewest`` until the tail is below ``limit`` everywhere."""
+    *tried, last = [harmonics] if harmonics is not None else doubled(fewest, most)
+    with on_one_thread():
+        for h in tried:
+            found = _followed(kind, make(h), begin, low, high, most_points, limit)
+            if found is not None and np.all(found.tail < limit):
+                return found
+        found = _followed(kind, make(last), begin, low, high, most_points, np.inf)
+    assert found is not None
+    return found if harmonics is not None else _judged(found, limit)
+
+
+def _followed(
+    kind: type[S], problem: Balance, begin: float, low: float, high: float, most_points: int, limit: float
+) -> S | None:
+    """The branch; None as soon as a point of it needs more harmonics to keep its tail below the limit."""
+
+    def stop(point: CurvePoint) -> bool:
+        return not tail_of(problem.rows(point)) < limit
+
+    first = np.append(problem.first().ravel(), begin)
+    walk, outcome = follow_both_ways(problem, first, low, high, most_points, stop=stop)
+    if outcome.kind == "stopped" and np.isfinite(limit):
+        return None
+    if not walk:
+        near = problem.over.said(begin)
+        nothing = f"no motion with {problem.h} harmonics was found near {near}; give a start"
+        outcome = Outcome(False, "not found", nothing)
+    shape = -1, (len(problem.scale) - 1) // (2 * problem.h + 1), 2 * problem.h + 1
+    rows = np.array([problem.rows(point) for point, _ in walk]).reshape(shape)
+    tail = np.array([tail_of(row) for row in rows])
+    return collect(problem, walk, outcome, kind, rows=rows, tail=tail, periods=problem.periods)
+
+
+def _judged(found: S, limit: float) -> S:
+    """With the outcome that the tail asked for was not reached, if so."""
+    worst = found.tail.max(initial=0.0)
+    if worst < limit:
+        return found
+    words = f"{found.outcome.sentence}; the last of {found.harmonics} harmonics are still {worst:.1e} of the motion"
+    return replace(found, outcome=Outcome(False, "tail", f"{words}: raise tail above {limit:.1g}, or give harmonics"))
+
+
+def tail_of(rows: Array) -> float:
+    """The last two harmonics over the largest; of all unknowns together, since those of one that hardly moves say
+    nothing."""
+    h = fourier.order(rows)
+    size = np.hypot(rows[:, 1 : h + 1], rows[:, h + 1 :]).max(axis=0)
+    return float(size[max(h - 2, 0) :].max() / max(size.max(), 1e-300))
+
+
+@dataclass(frozen=True, repr=False)
 class HarmonicBalance(SeriesBranch):
     """A branch of periodic motions as Fourier series; see ``SeriesBranch``."""
 
@@ -53,8 +188,8 @@ class HarmonicBalance(SeriesBranch):
     def defect(self) -> Array:
         """Distance (points,) between start and end of the true motion through the series' start, in units of the
         states' scales; NaN where that motion cannot be computed (at a grazing)."""
-        assert isinstance(self.branch.problem, _Balance)
-        return np.array([self.branch.problem.defect(CurvePoint(z, z, 0)) for z in self.branch.unknowns])
+        assert isinstance(self.problem, _Balance)
+        return np.array([self.problem.defect(CurvePoint(z, z, 0)) for z in self.unknowns])
 
     def declared(self) -> Iterator[Held]:
         """What the branch holds, with the series and how far it is off."""
@@ -89,20 +224,36 @@ def harmonic_balance(
 
     Parameters
     ----------
-    line, parameter, low, high, begin, speed, periods, longest_step, most_points : as in ``periodic_branch``;
-        ``periods`` > 1 gives subharmonic motions, an isolated branch is followed from a ``start`` on it.
-    start : a state near the first motion at t = 0, or its series (n, 2H + 1).
+    line : a ``Driveline`` whose speed is prescribed (or its ``Assembly``), or a forced ``System``.
+    parameter : of a line its path ("speed", "HookeJoint 1.angle", a ``Parameter``); of a system its name.
+    low, high : ends of the range, in SI units.
+    begin : where the first motion is sought, by default at ``low``; from inside the range the branch is followed both
+        ways.
+    start : a state (n,) near the first motion at t = 0, or its series (n, 2H + 1); so isolated branches are reached.
+    speed : input speed [rad/s] of a line, where it is not the parameter.
+    periods : forcing periods in one period of the motion; more than 1 gives subharmonic motions.
     harmonics : number of harmonics H of the motion's own period; by default as many as bring the last ones below
         ``tail`` times the motion everywhere on the branch (at most 256; the outcome says if these are too few).
-    tail : 1e-6 by default, 1e-4 for systems with regimes.
+    tail : last harmonics over the largest; 1e-6 by default, 1e-4 for systems with regimes.
+    longest_step : largest step of the parameter, as a share of its range.
+    most_points : points after which the branch ends.
 
     Returns
     -------
-    A branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no points.
+    HarmonicBalance, a branch whose ``outcome`` says where it ended; if no motion was found at ``begin`` it has no
+    points.
 
     Raises
     ------
     InputError : an unknown parameter, a reversed range, an autonomous system, a number of harmonics below 1.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> duffing = tn.reference_system("duffing")
+    >>> branch = tn.harmonic_balance(duffing, "frequency", 0.8, 1.2, harmonics=5, longest_step=0.05)
+    >>> branch.rows.shape[1:], branch.outcome.kind
+    ((2, 11), 'followed')
     """
     if harmonics is not None and not 1 <= harmonics <= 10_000:
         raise InputError("must be a whole number of at least 1", key="harmonics", value=harmonics)

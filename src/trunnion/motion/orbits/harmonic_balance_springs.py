@@ -20,10 +20,11 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
-from trunnion.motion.orbits.balancing import Series, SeriesBranch, balanced
 from trunnion.motion.orbits.branch import STEP
-from trunnion.motion.orbits.piecewise_branch import begun_within
+from trunnion.motion.orbits.harmonic_balance import Series, SeriesBranch, balanced
+from trunnion.motion.orbits.periodic_branch import begun_within
 from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.chain.exponential_monodromy import exponential
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow, once
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
@@ -71,20 +72,39 @@ def balance_springs(
     longest_step: float = 0.01,
     most_points: int = 4000,
 ) -> SpringBalance:
-    """The frequency response by harmonic balance.
+    """The frequency response of masses on nonlinear springs by harmonic balance.
 
     Parameters
     ----------
-    low, high, begin : frequencies ω [rad/s]; followed both ways from ``begin``, by default ``low``.
+    system : a ``SecondOrder`` system of n unknowns.
+    low, high : ends of the range of forcing frequencies ω [rad/s].
     harmonics : H; by default doubled from 10 · ``periods`` until the last two are below ``tail`` of the largest on the
         whole branch, at most 160.
+    begin : frequency [rad/s] to begin at, by default ``low``; the branch is followed both ways from it.
     start : series (n, 2H₀ + 1) near the first motion, by default the linear response; so isolated and subharmonic
         branches are reached.
     periods : forcing periods in one of the motion.
+    tail : the last two harmonics over the largest.
+    longest_step : largest step of the frequency, as a share of its range.
+    most_points : points after which the branch ends.
+
+    Returns
+    -------
+    SpringBalance, a branch of the unknowns; its ``outcome`` says where it ended.
 
     Raises
     ------
     InputError : a range that does not rise, fewer harmonics than the force has, a start of another shape.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> one, force = np.eye(1), np.array([0.2])
+    >>> spring = tn.cubic_spring([1.0], cubic=0.1)
+    >>> system = tn.SecondOrder(one, 0.1 * one, one, (spring,), np.zeros(1), ((1, force, 0 * force),))
+    >>> branch = tn.balance_springs(system, 0.8, 1.3, harmonics=5)
+    >>> round(float(branch.peak_to_peak.max()), 3)
+    3.618
     """
     first = begun_within(low, high, begin)
     needed = periods * max(k for k, _, _ in system.harmonics)
@@ -301,19 +321,12 @@ class _Balance(Series):
         one, two = (self._tangent_matrix(rows, middle + side * GAUSS * h) for side in (-1, 1))
         dt = (h / omega)[:, None, None]
         generator = 0.5 * dt * (one + two) + (np.sqrt(3.0) / 12) * dt**2 * (two @ one - one @ two)
-        eye = np.broadcast_to(np.eye(2 * n), generator.shape)
-        squarings = max(0, int(np.ceil(np.log2(max(np.abs(generator).sum(axis=2).max(), 1e-300) / 0.25))))
-        small = generator / 2**squarings
-        steps_ = eye.copy()
-        for order in range(10, 0, -1):
-            steps_ = eye + small @ steps_ / order
-        for _ in range(squarings):
-            steps_ = steps_ @ steps_
-        while len(steps_) > 1:
-            if len(steps_) % 2:
-                steps_ = np.concatenate([steps_, np.eye(2 * n)[None]])
-            steps_ = steps_[1::2] @ steps_[::2]
-        return np.asarray(steps_[0])
+        passed = exponential(generator)
+        while len(passed) > 1:
+            if len(passed) % 2:
+                passed = np.concatenate([passed, np.eye(2 * n)[None]])
+            passed = passed[1::2] @ passed[::2]
+        return np.asarray(passed[0])
 
     def _tangent_matrix(self, rows: Array, phases: Array) -> Array:
         s, n = self.system, self.n

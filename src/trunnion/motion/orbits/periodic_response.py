@@ -15,26 +15,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex
+from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.operating_speed import operating_speed
 from trunnion.equations.clutch_capacity import carries_static_torque, refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
-from trunnion.equations.steady_base import imbalance, refuse_dragged, require_balance, torques_in_words
+from trunnion.equations.steady_base import bent, imbalance, refuse_dragged, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
-from trunnion.motion.orbits.linear_comparison import LinearComparison, compared
-from trunnion.motion.orbits.rubbing_clutches import continuum_of, slipping_on
+from trunnion.floquet.stability.stability import Stability, stability
+from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
 from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contacts
-from trunnion.motion.orbits.stuck_clutches import StuckClutch
-from trunnion.motion.simulation.simulation import simulate_system
+from trunnion.motion.simulation.simulate import simulate_system
+from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier
 from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark, remarks
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
-from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
     kept_speed_orbit,
@@ -42,7 +42,15 @@ from trunnion.steady.shooting.free_orbit import (
     require_closing,
     torque_driven_orbit,
 )
-from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit, speed_in_words
+from trunnion.steady.shooting.periodic_orbit import (
+    TOLERANCE,
+    IntegratedOrbit,
+    PeriodicOrbit,
+    closing_of,
+    periodic_orbit,
+    speed_in_words,
+)
+from trunnion.systems.maps import SETTLED, IntegratedMap
 from trunnion.systems.system import System
 
 FEWEST_SAMPLES = 2048
@@ -50,8 +58,61 @@ FEWEST_SAMPLES = 2048
 ORDERS = 12
 
 
+@dataclass(frozen=True)
+class LinearComparison:
+    """The same line linearised: about zero twist and about the twist of its static load.
+
+    growth_rate [1/s] of the true motion and of the two linearisations; torque_peak_to_peak (shaft,) [N m] of the
+    true motion and of the linear steady response about static twist.
+    """
+
+    growth_rate: float
+    zero_twist: Stability
+    static_twist: Stability
+    torque_peak_to_peak: Array
+    linear_torque_peak_to_peak: Array
+    shafts: tuple[str, ...]
+
+    @property
+    def agree(self) -> bool:
+        """Whether all three say the same about stability."""
+        signs = {np.sign(round(v, 9)) for v in (self.growth_rate, self.zero_twist.growth_rate)}
+        return len(signs | {np.sign(round(self.static_twist.growth_rate, 9))}) == 1
+
+    def __str__(self) -> str:
+        worst = int(np.argmax(self.torque_peak_to_peak))
+        return (
+            f"growth rate {self.growth_rate:+.6g} 1/s here, {self.zero_twist.growth_rate:+.6g} linearised about zero "
+            f"twist, {self.static_twist.growth_rate:+.6g} about the static twist; torque of {self.shafts[worst]} "
+            f"{self.torque_peak_to_peak[worst]:.5g} N m peak to peak here, "
+            f"{self.linear_torque_peak_to_peak[worst]:.5g} by linear theory"
+        )
+
+
+def compared(
+    speed: float, line: Driveline, growth_rate: float, peak_to_peak: Array, shafts: tuple[str, ...]
+) -> LinearComparison:
+    """The comparison of a motion at ``speed`` [rad/s], with its growth rate and torques (shaft,) [N m] peak to peak.
+
+    Raises
+    ------
+    InputError : the linear equations do not have what the line has.
+    """
+    static = stability(line, speed)
+    if static.response is None:
+        raise ComputationError(f"no linear response: {static.no_response}")
+    return LinearComparison(
+        growth_rate,
+        stability(line, speed, statically_twisted=False),
+        static,
+        peak_to_peak,
+        2 * static.response.torque_amplitude,
+        shafts,
+    )
+
+
 @dataclass(frozen=True, repr=False)
-class PeriodicResponse(Judged):
+class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
     """The periodic motion of a line at one speed.
 
     torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
@@ -61,87 +122,34 @@ class PeriodicResponse(Judged):
 
     line: LineSystem
     speed: float
-    orbit: PeriodicOrbit
-    comparison: LinearComparison | None
-    no_comparison: str
+    comparison: LinearComparison | None = None
+    no_comparison: str = "not asked for"
 
     @property
-    def unit(self) -> str:  # type: ignore[override]
-        """Unit that speeds are printed in: that of the line's description."""
-        return speed_unit(self.line.assembly.line)
-
-    @property
-    def outcome(self) -> Outcome:
-        """Whether a periodic motion was found, in a sentence."""
-        return self.orbit.outcome
-
-    @property
-    def shafts(self) -> tuple[str, ...]:
-        """Names of the shafts; massless shafts in series count as one."""
-        return self.line.shafts
-
-    @property
-    def period(self) -> float:
-        """Period [s]."""
-        return self.orbit.period
+    def orbit(self) -> PeriodicOrbit:
+        """The same as the orbit of a system, its states in place of torques."""
+        return PeriodicOrbit.of(self)
 
     @property
     def turns(self) -> float:
         """Period in turns of the input."""
         return self.period * self.speed / (2 * np.pi)
 
-    @property
-    def multipliers(self) -> Complex:
-        """Multipliers (2n,) of the motion over its period, by falling modulus."""
-        return self.orbit.multipliers
-
-    @property
-    def spectral_radius(self) -> float:
-        """Largest modulus of a multiplier."""
-        return self.orbit.spectral_radius
-
-    @property
-    def error_estimate(self) -> float:
-        """Bound on the error of the spectral radius."""
-        return self.orbit.error_estimate
-
-    @property
-    def growth_rate(self) -> float:
-        """Growth of the fastest disturbance [1/s]."""
-        return self.orbit.growth_rate
-
-    @property
-    def verdict(self) -> Verdict:
-        """Stable, unstable, marginal or undecided."""
-        return self.orbit.verdict
-
     @cached_property
     def time(self) -> Array:
         """Times (points,) over one period, its end left out [s]: enough to show every swing."""
-        count = max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(2 * max(self.orbit.trajectory.steps, 1)))))
-        return self.orbit.time[0] + self.period * np.arange(count) / count
+        count = max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(2 * max(self.trajectory.steps, 1)))))
+        return np.asarray(self.trajectory.time_of_state[0] + self.period * np.arange(count) / count)
 
-    @cached_property
-    def motion(self) -> LineMotion:
-        """Twists, torques and rotations at ``time``."""
-        return self._at(self.time)
-
-    def _at(self, times: Array) -> LineMotion:
-        return self.line.observe(self.orbit.system, times, self.orbit.trajectory.at(times))
-
-    @property
-    def twist(self) -> Array:
-        """Twist [rad] of every shaft (points, shaft)."""
-        return self.motion.twist
-
-    @property
-    def torque(self) -> Array:
-        """Torque [N m] of every shaft (points, shaft), positive with the twist."""
-        return self.motion.torque
+    def motion_at(self, time: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations at times (m,) of the motion; NaN where none was found."""
+        times = np.atleast_1d(np.asarray(time, dtype=float))
+        states = self.trajectory.at(times) if self.outcome.ok else np.full((len(times), self.system.size), np.nan)
+        return self.line.observe(self.system, times, states)
 
     @cached_property
     def _torque_extremes(self) -> Extremes:
-        return extremes(lambda times: self._at(times).torque, self.orbit.trajectory.time_of_state)
+        return extremes(lambda times: self.motion_at(times).torque, self.trajectory.time_of_state)
 
     @property
     def torque_peak_to_peak(self) -> Array:
@@ -164,20 +172,15 @@ class PeriodicResponse(Judged):
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
         return np.asarray(self.order_torque(0)[1][0].real)
 
-    @property
-    def stuck(self) -> tuple[str, ...]:
-        """Names of the sliders that never slip."""
-        return self.orbit.stuck
-
     @cached_property
     def continuum(self) -> tuple[StuckClutch, ...]:
         """The clutches with sliders that never slip, which make the motion one of a continuum, and its range."""
-        return continuum_of(self.line, self.orbit)
+        return _continuum(self.line, self) if self.stuck else ()
 
     @cached_property
     def contacts(self) -> tuple[SpringContact, ...]:
         """What gear meshes with backlash and shafts with stages do: sides touched, time in the play, impacts."""
-        return spring_contacts(self.line, self.orbit)
+        return spring_contacts(self.line, self)
 
     def order_torque(self, highest: float = ORDERS) -> tuple[Array, Complex]:
         """Orders (k,) in cycles per turn of the input, and complex torques (k, shaft) [N m]; order 0 is the mean.
@@ -191,11 +194,11 @@ class PeriodicResponse(Judged):
         orders = np.arange(count) / self.turns
         if not self.outcome.ok:
             return orders, np.full((count, len(self.shafts)), np.nan, dtype=complex)
-        times = self.orbit.trajectory.time_of_state
-        found = fourier(lambda times: self._at(times).torque, times, count - 1)
+        times = self.trajectory.time_of_state
+        found = fourier(lambda times: self.motion_at(times).torque, times, count - 1)
         begun = self.speed * times[0]
         if self.line.assembly.topology.free:  # a shift of time is no change there: count from where the input turns
-            begun += float(fourier(lambda times: self._at(times).rotation[:, :1], times, 0)[0, 0].real)
+            begun += float(fourier(lambda times: self.motion_at(times).rotation[:, :1], times, 0)[0, 0].real)
         return orders, np.asarray(found * np.exp(-1j * orders * begun)[:, None])
 
     def order_spectrum(self, highest: float = ORDERS) -> tuple[Array, Array]:
@@ -218,19 +221,19 @@ class PeriodicResponse(Judged):
         yield from fields_over("shaft", self, torque_peak_to_peak="N*m", peak_torque="N*m", torque_mean="N*m")
         yield over("order shaft", "order_amplitude", amplitude, "N*m")
         yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("multiplier_number", "multiplier_error", self.orbit.multiplier_error, "1")
+        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
         yield from fields_over("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
-        yield from remarks(driveline=self.orbit.system.name, verdict=str(self.verdict))
+        yield from remarks(driveline=self.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
         yield from remarks(continuum="; ".join(map(str, self.continuum)))
         yield remark("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
-        """Torque of every shaft over one period; see ``trunnion.plots.motion``."""
+        """Torque of every shaft over one period; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, unit=unit)
 
     def plot_orders(self, axes: Axes | None = None, *, highest: float = 12.0) -> Axes:
-        """Torque amplitude of every order; see ``trunnion.plots.motion``."""
+        """Torque amplitude of every order; see ``pictures.motion``."""
         return drawing(self, "plot_orders")(self, axes, highest=highest)
 
     def describe(self, unit: str | None = None) -> str:
@@ -246,12 +249,11 @@ class PeriodicResponse(Judged):
         return "\n".join(
             [
                 f"{self.verdict} periodic motion at {at}, period {self.turns:.6g} turns: {MEANING[self.verdict]}",
-                f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}, growth rate "
-                f"{self.growth_rate:+.6g} 1/s",
+                f"  {self.radius_in_words}, growth rate {self.growth_rate:+.6g} 1/s",
                 *rows,
                 *(f"  {contact}" for contact in self.contacts),
                 *(f"  {clutch}" for clutch in self.continuum),
-                *([f"  {speed_in_words(self.orbit)}"] if np.isfinite(self.orbit.speed_multiplier) else []),
+                *([f"  {speed_in_words(self)}"] if np.isfinite(self.speed_multiplier) else []),
                 f"  {against}",
                 f"  {self.outcome}",
             ]
@@ -273,23 +275,34 @@ def periodic_response(
 
     Parameters
     ----------
-    line : a driveline, or a ``System``.
+    line : a ``Driveline`` (or its ``Assembly``), or a ``System``.
     speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, its mean speed,
         kept by the disks with a drive_share; where none has one, a guess of the speed that its torques lead to.
-    start : a state near the motion (2n,); by default that of rigid shafts.
+    start : a state near the motion (2n,): deviations from uniform rotation [rad], then their rates [rad/s]; by default
+        that of rigid shafts.
     period : of an autonomous ``System``, a guess [s].
     periods : of the excitation in one period of the motion (a subharmonic of that order).
+    tolerance : error allowed per step of the integration.
     settle : integrate some hundred periods where shooting fails from ``start``.
     compare : also linearise, and say how far off that is.
 
     Returns
     -------
-    A result whose ``outcome`` says whether a periodic motion was found.
+    PeriodicResponse, of a ``System`` PeriodicOrbit; its ``outcome`` says whether a periodic motion was found.
 
     Raises
     ------
     InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time; a
         clutch that carries more than its friction holds and no spring takes; a start beyond what its friction holds.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> found = tn.periodic_response(line, 20.0)
+    >>> str(found.verdict), found.torque_peak_to_peak.round(2)
+    ('stable', array([35.06]))
     """
     if isinstance(line, System):
         if speed is not None:
@@ -306,8 +319,8 @@ def periodic_response(
     orbit = _forced(prepared, start, periods, tolerance, settle)
     if not orbit.outcome.ok and prepared.sliders:
         refuse_overload(prepared.assembly, prepared.speed)
-        orbit = replace(orbit, outcome=slipping_on(prepared, periods) or orbit.outcome)
-    response = PeriodicResponse(prepared, prepared.speed, orbit, None, "not asked for")
+        orbit = replace(orbit, outcome=_slipping_on(prepared, periods) or orbit.outcome)
+    response = PeriodicResponse.of(orbit, line=prepared, speed=prepared.speed)
     if not compare or not orbit.outcome.ok:
         return response
     try:
@@ -321,7 +334,7 @@ def periodic_response(
 
 def _forced(
     prepared: LineSystem, start: ArrayLike | None, periods: int, tolerance: float, settle: bool
-) -> PeriodicOrbit:
+) -> IntegratedOrbit:
     """The motion of a driven line; soft lines under load lie far from rest, but near their static twist."""
     first = prepared.rest() if start is None else prepared.system.checked_start(start)
     carries = start is None and bool(np.any(prepared.twisted() != first))
@@ -342,14 +355,14 @@ def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settl
     shares = given_shares(assembly.topology, assembly.packed.column, row).any()
     # Constant torques that balance lead to no speed of their own.
     if shares or not (loaded_by_speed(assembly) or imbalance(assembly, row)[0]):
-        found = kept_speed_orbit(prepared, start, tolerance=tolerance, settle=settle)
-        if not found.orbit.outcome.ok:
+        orbit = kept_speed_orbit(prepared, start, tolerance=tolerance, settle=settle)
+        if not orbit.outcome.ok:
             refuse_overload(assembly, prepared.speed)
         words = (
             "does not apply (the line starts free; beyond the balance of its loads its drives give "
-            f"{found.extra_torque:.4g} N m at the input)"
+            f"{orbit.values[-1]:.4g} N m at the input)"
         )
-        return PeriodicResponse(prepared, prepared.speed, found.orbit, None, words)
+        return PeriodicResponse.of(orbit, line=prepared, speed=prepared.speed, no_comparison=words)
     return _torque_driven(prepared, start, tolerance, settle)
 
 
@@ -362,20 +375,58 @@ def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: flo
         require_balance(prepared.assembly, row)  # nothing but dampers could drive it
     speed = prepared.speed
     first = prepared.twisted() if start is None else prepared.system.checked_start(start)
-    orbit, found = torque_driven_orbit(prepared, speed, first, tolerance=tolerance)
+    orbit = torque_driven_orbit(prepared, speed, first, tolerance=tolerance)
     if not orbit.outcome.ok and settle:
         run = simulate_system(prepared.system, periods=400, start=first, tolerance=1e-8, dense=False)
         n = prepared.assembly.topology.size
         speed += float(run.final[n])
         if run.outcome.ok and speed > 0:
             twisted = line_system(prepared.assembly, speed).twisted()
-            orbit, found = torque_driven_orbit(prepared, speed, twisted, tolerance=tolerance)
+            orbit = torque_driven_orbit(prepared, speed, twisted, tolerance=tolerance)
     if not orbit.outcome.ok and left:
         words = f"{orbit.outcome.sentence}; {torques_in_words(prepared.assembly, row[0])}"
         orbit = replace(orbit, outcome=Outcome(False, orbit.outcome.kind, words))
-    return PeriodicResponse(
-        prepared, found, orbit, None, "does not apply (the line starts free: its speed is a result, not given)"
-    )
+    words = "does not apply (the line starts free: its speed is a result, not given)"
+    return PeriodicResponse.of(orbit, line=prepared, speed=orbit.values[-1], no_comparison=words)
+
+
+def _continuum(line: LineSystem, orbit: IntegratedOrbit) -> tuple[StuckClutch, ...]:
+    """The clutches with sliders that never slip in a motion of the line."""
+    system = orbit.system
+    assert system.forcing_period is not None
+    place = IntegratedMap.of(system, periods=round(orbit.period / system.forcing_period), tolerance=TOLERANCE)
+    closing = closing_of(place.holding(tuple(map(system.sliders.index, orbit.stuck))))
+
+    def watch(place: IntegratedMap, start: Array) -> Watched:
+        run = place(start, tangents=False, dense=True).run
+        seen = extremes(lambda times: run.at(times)[:, -place.sliders :], run.time_of_state)
+        mean = fourier(lambda times: line.observe(system, times, run.at(times)).twist, run.time_of_state, 0)
+        return Watched(seen.low, seen.high, mean[0].real)
+
+    return continuum(line.assembly, line.sliders, closing, orbit.start, watch, _shifts_alike(line, closing.map.held))
+
+
+def _shifts_alike(line: LineSystem, stuck: tuple[int, ...]) -> bool:
+    """Whether the motion only shifts with the mean twist of the clutches that these sliders are of: the joints are
+    straight, the springs have one stage, and no torque by order acts where their twist has turned it. Without a spring
+    the clutch may be turned as a whole, as its start is anyway."""
+    topo, elements = line.assembly.topology, line.assembly.line.elements
+    clutches = [elements[topo.compliances[line.sliders[i].compliance].shafts[0]] for i in stuck]
+    springs = [clutch.stiffnesses for clutch in clutches if isinstance(clutch, Clutch)]
+    by_order = any(one.order for one in line.torques)
+    if bent(line.assembly) or any(len(stiffnesses) > 1 for stiffnesses in springs):
+        return False
+    return not by_order or not any(map(any, springs))
+
+
+def _slipping_on(line: LineSystem, periods: int) -> Outcome | None:
+    """What to say of a line where no motion was found because a clutch slips on with every period; None elsewhere."""
+    place = IntegratedMap.of(line.system, periods=periods, tolerance=SETTLED)
+
+    def twists(states: Array) -> Array:
+        return line.observe(line.system, np.zeros(len(states)), states).twist
+
+    return slipping_on(line.assembly, line.speed, line.sliders, place, line.rest(), twists)
 
 
 def require_forced(line: LineSystem) -> None:

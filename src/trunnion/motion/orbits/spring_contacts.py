@@ -16,7 +16,7 @@ from trunnion.arrays import Array, Integers
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.line_regimes import StagedSpring, staged_springs
 from trunnion.equations.line_system import LineSystem
-from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
+from trunnion.steady.shooting.periodic_orbit import IntegratedOrbit
 
 SIDES = {"lower": "drive side", "upper": "coast side", "both": "drive and coast sides"}
 AHEAD = 1e-6
@@ -81,7 +81,7 @@ class SpringContact:
         )
 
 
-def spring_contacts(line: LineSystem, orbit: PeriodicOrbit) -> tuple[SpringContact, ...]:
+def spring_contacts(line: LineSystem, orbit: IntegratedOrbit) -> tuple[SpringContact, ...]:
     """Contact of every gear mesh with backlash and every shaft with stages in a periodic motion of a line; () without
     any."""
     system, assembly = orbit.system, line.assembly
@@ -99,7 +99,9 @@ def spring_contacts(line: LineSystem, orbit: PeriodicOrbit) -> tuple[SpringConta
     return tuple(found)
 
 
-def _contact(line: LineSystem, orbit: PeriodicOrbit, place: int, spring: StagedSpring, inertia: float) -> SpringContact:
+def _contact(
+    line: LineSystem, orbit: IntegratedOrbit, place: int, spring: StagedSpring, inertia: float
+) -> SpringContact:
     run = orbit.trajectory
     stage = run.regime // spring.stride % spring.stages
     shares = np.bincount(stage, weights=run.length, minlength=spring.stages) / run.length.sum()

@@ -178,19 +178,36 @@ def safe_accelerations(
 ) -> SafeAccelerations:
     """Slowest and fastest acceleration whose passage reaches ``last`` and keeps |torque| below ``limit``.
 
-    Parameters
-    ----------
-    limit : [N m] for every shaft, or by the name of the shaft.
-    accelerations : smallest and largest to try [rad/s²]; ``points`` of them evenly in the logarithm, and then
-        the edges of the quietest safe stretch by bisection to 1 %.
-    ramp : as in ``run_up``.
-
     A line that starts free may be captured by a resonance (``run_up``): such an acceleration is not safe, however small
     its torque.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+    first, last : input speeds [rad/s], numbers or texts with a unit; a lower ``last`` runs down.
+    limit : [N m] for every shaft, or by the name of the shaft.
+    accelerations : smallest and largest to try [rad/s²].
+    points : how many of them to try, evenly in the logarithm; then the edges of the safe stretch with the least torque
+        are found by bisection to 1 %.
+    ramp : time [s] over which the acceleration sets in, as in ``run_up``.
+    tolerance : error allowed per step.
+
+    Returns
+    -------
+    SafeAccelerations: ``slowest`` and ``fastest`` [rad/s²], None where none is safe, and every trial.
 
     Raises
     ------
     InputError : no positive limit, a shaft that is not there, a range that is not one, less than two points.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> found = tn.safe_accelerations(line, 15.0, 35.0, limit=80.0, accelerations=(5.0, 80.0), points=4)
+    >>> round(found.slowest, 1), round(found.fastest, 1)
+    (15.6, 80.0)
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
     prepared = line_system(line, first)

@@ -62,10 +62,33 @@ class MultipleScales(FittedSlowFlow):
 def multiple_scales(
     oscillator: PiecewiseOscillator, *, epsilon: float = 0.01, fit_range: float | None = None
 ) -> MultipleScales:
-    """The first-order slow flow by multiple scales; see ``MultipleScales``.
+    """The slow flow of a piecewise oscillator to first order, by multiple scales; see ``MultipleScales``.
+
+    The force of the oscillator is replaced by λ₁x + λ₂x³, which changes where resonances stand: see how the answer
+    moves with ``fit_range``, and compare with ``piecewise_branch``, which takes the force as it is.
+
+    Parameters
+    ----------
+    oscillator : a ``PiecewiseOscillator`` with damping that always acts and one harmonic of force.
+    epsilon : ε > 0, the small number of the method [-]; every answer in x and t is the same whatever it is.
+    fit_range : |x| up to which a cubic is fitted to the force, in units of x; by default three half gaps. It decides
+        the answer: choose about the largest motion expected.
+
+    Returns
+    -------
+    MultipleScales: ``response(low, high)`` gives amplitudes over frequency [rad/s] with their stability, ``rates`` and
+    ``frequencies`` the flow itself.
 
     Raises
     ------
     InputError : a fit range inside the gap, ε not positive, no force, damping that does not always act.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4, frequency=0.7)
+    >>> flow = tn.multiple_scales(gap)
+    >>> [round(frequency, 4) for frequency in flow.frequencies(2.0)]
+    [0.4075, 0.8859]
     """
     return MultipleScales(oscillator, epsilon=epsilon, fit_range=fit_range)

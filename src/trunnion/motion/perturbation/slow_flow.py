@@ -37,8 +37,25 @@ class SteadyState:
     stable: bool
 
 
+class ResponseCurves:
+    """Half peak-to-peak over frequency, by one method or several."""
+
+    def plot(
+        self,
+        axes: Axes | None = None,
+        *,
+        length: str = "",
+        unit: str | None = None,
+        marks: bool = True,
+        jumps: bool = True,
+        top: float | None = None,
+    ) -> Axes:
+        """Half peak-to-peak over frequency; see ``pictures.frequency_response``."""
+        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
+
+
 @dataclass(frozen=True, repr=False)
-class ApproximateResponse(Result):
+class ApproximateResponse(ResponseCurves, Result):
     """A frequency response in order along its curve: frequency [rad/s], amplitude (half peak-to-peak), mean, stable.
 
     A point of NaN parts stretches between which the curve is outside the range.
@@ -73,19 +90,6 @@ class ApproximateResponse(Result):
         yield from fields_over("point", self, frequency="rad/s", amplitude="", mean="", stable="")
         yield from remarks(method=self.method, note=self.note)
         yield from ending(self.outcome)
-
-    def plot(
-        self,
-        axes: Axes | None = None,
-        *,
-        length: str = "",
-        unit: str | None = None,
-        marks: bool = True,
-        jumps: bool = True,
-        top: float | None = None,
-    ) -> Axes:
-        """Half peak-to-peak over frequency; see ``trunnion.plots.frequency_response``."""
-        return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
     def __str__(self) -> str:
         at, size = self.peak

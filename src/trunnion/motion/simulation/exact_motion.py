@@ -20,8 +20,8 @@ from trunnion.equations.sliders import beyond_capacity
 from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged_line
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
-from trunnion.motion.simulation.simulation import positive_time
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move, stages_of
+from trunnion.motion.simulation.simulate import positive_time
+from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
 from trunnion.results.declared import Held, Result, axis, ending, over, remark
 from trunnion.results.outcome import Outcome
 from trunnion.systems.regimes import SLACK
@@ -168,14 +168,15 @@ def exact_motion(
 
     Parameters
     ----------
+    line : a ``Driveline`` or its ``Assembly``.
     duration : [s]; by default up to the last of ``times``.
     speed : mean input speed [rad/s], by default that of the line's operation; only where meshes, orders or viscous
         loads depend on it.
     start : twists [rad] of all springs, then their rates [rad/s], (2m,); by default the line turning uniformly, every
-        disk where rigid shafts would hold it. Sliders start as if last without twist, or as the deflections behind
-        the twists say.
+        disk where rigid shafts would hold it. Sliders start as if last without twist, or as the deflections behind the
+        twists say.
     start_time : time of the start [s].
-    times : rising times to be reported; by default 1025 over the whole run.
+    times : (points,) [s], rising, to be reported; by default 1025 over the whole run.
     most_events : changes of stage after which the run ends.
 
     Returns
@@ -186,6 +187,17 @@ def exact_motion(
     ------
     InputError : a line that has no exact motion, or starts free and leaves the speed that its excitation turns with; no
         duration, a start of the wrong size, times outside the run.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> motor = tn.Disk(inertia=0.05, excitation=[{"order": 2, "amplitude": 20.0}])
+    >>> play = tn.PiecewiseShaft(breakpoints=[-0.02, 0.02], stiffnesses=[2e4, 0.0, 2e4], damping=1.0)
+    >>> drive = [tn.ConstantSpeed(), tn.Shaft(stiffness=3e4, damping=1.5), motor]
+    >>> line = tn.Driveline([*drive, play, tn.Disk(inertia=0.2, load_torque=4.0)])
+    >>> run = tn.exact_motion(line, 0.5, speed=60.0)
+    >>> run.twist.shape, round(float(run.torque_high[1]), 3)
+    ((1025, 2), 1.086)
     """
     prepared = staged_line(line, speed)
     refuse_lost_speed(prepared)
@@ -208,7 +220,7 @@ def exact_motion(
     reached = shown <= run.time
     return ExactMotion(
         prepared, first, start_time, shown[reached], run.states[reached], run.shown_stages[reached],
-        stage_events(prepared, run), run.state, run.time, _outcome(prepared, run),
+        stage_events(prepared, run.events), run.state, run.time, _outcome(prepared, run),
     )  # fmt: skip
 
 
@@ -238,15 +250,10 @@ def start_state(line: StagedLine, start: ArrayLike | None) -> Array:
     return line.within_limits(state)
 
 
-def stage_events(line: StagedLine, run: StagedPassage) -> StageEvents:
-    """The events of a passage."""
-    spring, stage = run.events[:, 1].astype(np.int64), run.events[:, 2].astype(np.int64)
-    return StageEvents(run.events[:, 0], spring, stage, line.sides[spring, stage], run.events[:, 3])
-
-
-def first_stages(line: StagedLine, state: Array) -> Integers:
-    """Stage of every spring (m,) at a state."""
-    return stages_of(line.flow(), state)
+def stage_events(line: StagedLine, events: Array) -> StageEvents:
+    """The events (count, 5) of a passage."""
+    spring, stage = events[:, 1].astype(np.int64), events[:, 2].astype(np.int64)
+    return StageEvents(events[:, 0], spring, stage, line.sides[spring, stage], events[:, 3])
 
 
 def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:

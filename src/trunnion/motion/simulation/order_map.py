@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import LineSimulation
 
 FEWEST_PER_TURN, PER_STEP = 64, 4
 """Samples: what swings faster than two of them would fold back on the orders shown. An integrator takes several steps
@@ -39,11 +39,34 @@ class OrderMap:
 
 
 def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.0) -> OrderMap:
-    """The order map of a simulated run, of ``window`` turns each.
+    """Torque amplitudes of a simulated run by order and time: a run-up shows its orders as lines of constant height.
+
+    Each window of ``window`` turns is weighted by a Hann window and transformed over the rotation; windows overlap by
+    half.
+
+    Parameters
+    ----------
+    run : a ``LineSimulation``, from ``simulate``.
+    window : turns of one window, a whole number from 1; orders are resolved to 1/``window``.
+    highest : highest order shown, in cycles per turn of the input.
+
+    Returns
+    -------
+    OrderMap: ``amplitude`` (window, order, shaft) [N m] over ``time`` (window,) [s] and ``order`` (order,).
 
     Raises
     ------
     InputError : fewer turns than two windows; a line that starts free and turns back, where orders mean nothing.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> found = tn.order_map(tn.simulate(line, speed=20.0, turns=40), highest=3.0)
+    >>> strongest = found.amplitude[-1, 1:, 0].argmax() + 1
+    >>> float(found.order[strongest])
+    2.0
     """
     turns = len(run.whole.turns[1])
     if isinstance(window, bool) or window != int(window) or window < 1 or turns < 2 * window:

@@ -18,11 +18,11 @@ from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import imbalance, require_share
 from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
-from trunnion.motion.simulation.line_simulation import LineSimulation
-from trunnion.motion.simulation.simulation import Simulation, positive_time, rising_times, simulate_system
-from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.motion.simulation.simulation import LineSimulation, Simulation, SystemSimulation
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, integrate
 from trunnion.results.outcome import Outcome
-from trunnion.systems.events import Event
+from trunnion.steady.shooting.integration_outcomes import outcome_of
+from trunnion.systems.events import Event, watch
 from trunnion.systems.system import System
 
 PER_TURN = 128
@@ -47,7 +47,7 @@ def simulate(
     most_steps: int = MOST_STEPS,
     longest_step: float = np.inf,
     dense: bool = True,
-) -> Simulation: ...
+) -> SystemSimulation: ...
 @overload
 def simulate(
     system: Driveline | Assembly,
@@ -79,34 +79,47 @@ def simulate(
     most_steps: int = MOST_STEPS,
     longest_step: float = np.inf,
     dense: bool = True,
-) -> Simulation | LineSimulation:
-    """Integrate a line, or any system, in time.
+) -> SystemSimulation | LineSimulation:
+    """Integrate a driveline, or any system, in time.
 
     Parameters
     ----------
-    duration : [s]; or ``turns`` of a driveline's input, its own where the line starts free; or ``periods`` of a
-    system's forcing; or up to the last of
-        ``times``.
-    speed : input speed of a driveline [rad/s] (default: the file's operating speed), or a ``SpeedProfile``. A line that
-        starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and what
-        accelerates its inertia along a profile; ``input_speed`` and ``turns`` tell how it really turns.
+    system : a ``Driveline`` (or its ``Assembly``), or a ``System``.
+    duration : length of the motion [s]; or one of ``turns``, ``periods`` and ``times`` instead.
+    turns : of a driveline's input, its own where the line starts free; the motion ends when they are made.
+    speed : input speed of a driveline [rad/s], by default the file's operating speed; or a ``SpeedProfile``. A line
+        that starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and
+        what accelerates its inertia along a profile; ``input_speed`` and ``turns`` of the result tell how it really
+        turns.
+    periods : of a system's forcing.
     start : initial state. Of a driveline (2n,): deviations from uniform rotation [rad] and their rates [rad/s], by
         default the line without twist; of a system (n,), by default its own.
     start_time : of a system [s]; the phase of its forcing.
-    times : at which states are wanted (rising) [s]; by default every step of a system, and of a driveline evenly.
-    events : zeros to locate; some may stop the run.
+    times : (points,) [s], rising, at which states are wanted, the last of which may end the motion; by default every
+        step of a system, and of a driveline evenly.
+    events : zeros to locate (``Event``); some may stop the run.
     tolerance : error allowed per step, relative to the scale of a state + |x|.
-    most_steps, longest_step : of the integration; ``longest_step`` [s] of a system.
+    most_steps : steps after which the run ends.
+    longest_step : of a system [s].
     dense : keep what ``at`` and ``times`` need, 8n numbers a step.
 
     Returns
     -------
-    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+    LineSimulation or SystemSimulation; its ``outcome`` says how it ended, and a failure keeps what was computed.
 
     Raises
     ------
     InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
         excitation by the speed on a line that starts free and leaves the speed it begins with.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), shaft, tn.Disk(inertia=0.4)])
+    >>> run = tn.simulate(line, speed=20.0, turns=30)
+    >>> run.torque.shape[1], round(float(run.torque[-200:].max()), 2)
+    (1, 17.55)
     """
     if isinstance(system, System):
         _refuse("belongs to a driveline", "leave it out", turns=turns, speed=speed)
@@ -132,6 +145,100 @@ def _refuse(problem: str, remedy: str, **given: object) -> None:
     for key, value in given.items():
         if value is not None:
             raise InputError(problem, key=key, value=value, remedy=remedy)
+
+
+def simulate_system(
+    system: System,
+    duration: float | None = None,
+    *,
+    start: ArrayLike | None = None,
+    start_time: float = 0.0,
+    times: ArrayLike | None = None,
+    periods: float | None = None,
+    events: Sequence[Event] = (),
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    longest_step: float = np.inf,
+    dense: bool = True,
+) -> SystemSimulation:
+    """Integrate a system from ``start``.
+
+    Parameters
+    ----------
+    duration : [s]; or ``periods`` of the forcing; or up to the last of ``times``.
+    start : initial state (n,); by default the system's own.
+    start_time : [s]; the phase of the forcing.
+    times : at which ``time`` and ``state`` are wanted (rising); by default every step taken.
+    events : zeros to locate; some may stop the run.
+    tolerance : error allowed per step, relative to the scale of a state + |x|.
+    dense : keep what ``at`` and ``times`` need, 8n numbers a step.
+
+    Returns
+    -------
+    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+
+    Raises
+    ------
+    InputError : no or a wrong duration, start, times or tolerance.
+    """
+    end, wanted = _span(system, duration, periods, start_time, times)
+    if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
+        raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
+    if wanted is not None and not dense:
+        raise InputError("is needed for times", element="simulation", key="dense", value=False, remedy="leave it out")
+    first = _start(system, start)
+    run = integrate(
+        system.equations, start_time, end, first, regime=system.regime_at(start_time, first),
+        tolerance=tolerance, most_steps=most_steps,
+        watch=watch(system, events), dense=dense, longest_step=longest_step, partly=True,
+    )  # fmt: skip
+    guards = (*(system.regimes.guards if system.regimes else ()), *(e.label for e in events))
+    return SystemSimulation(system, run, outcome_of(system, run, tolerance, guards), tolerance, guards, wanted)
+
+
+def _span(
+    system: System, duration: float | None, periods: float | None, start: float, times: ArrayLike | None
+) -> tuple[float, Array | None]:
+    wanted = None if times is None else rising_times(times, start)
+    if periods is not None:
+        if system.forcing_period is None:
+            raise InputError(
+                "has no meaning for an autonomous system", element=system.name, key="periods", value=periods,
+                remedy="give a duration",
+            )  # fmt: skip
+        duration = periods * system.forcing_period
+    if duration is None and wanted is not None:
+        return float(wanted[-1]), wanted
+    return start + positive_time(duration, "give a duration in seconds, or periods"), wanted
+
+
+def rising_times(times: ArrayLike, start: float) -> Array:
+    """``times`` as an array that rises from ``start`` on."""
+    try:
+        wanted = np.asarray(times, dtype=float)
+    except (TypeError, ValueError):
+        wanted = np.zeros(0)
+    if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) <= 0):
+        raise InputError("must be a rising list of times", key="times", remedy="np.linspace(0, 1, 200), say")
+    if wanted[0] < start:
+        raise InputError("begins before start_time", key="times", value=float(wanted[0]))
+    return wanted
+
+
+def positive_time(duration: object, remedy: str) -> float:
+    """A duration [s], checked."""
+    number = isinstance(duration, int | float | np.number) and not isinstance(duration, bool)
+    if not number or not (np.isfinite(duration) and duration > 0):  # type: ignore[call-overload,operator]
+        raise InputError("must be a positive time", key="duration", value=duration, remedy=remedy)
+    return float(duration)  # type: ignore[arg-type]
+
+
+def _start(system: System, start: ArrayLike | None) -> Array:
+    if start is None:
+        if system.start is None:
+            raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
+        return system.start
+    return system.checked_start(start)
 
 
 def simulate_line(
@@ -175,10 +282,10 @@ def simulate_line(
         pieces = _made_turns(prepared, profile, state, turns, duration, go)
     else:
         pieces = _along(prepared, profile, state, duration, drive, go)
-    run = LineSimulation(prepared, profile, tuple(pieces), np.array([pieces[-1].end]))
+    run = LineSimulation.of(prepared, profile, pieces)
     if wanted is None:
         return _sampled(run) if dense else run
-    return replace(run, time=wanted[wanted <= run.end])
+    return replace(run, times=wanted)
 
 
 def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: float = TOLERANCE) -> LineSimulation:
@@ -191,13 +298,13 @@ def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: 
     row = run.line.assembly.table(1, run.profile.speed[0])[0]
     system = run.line.system.reading(run.line.numbers(row, course, drive))
     piece = _Going((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
-    return _sampled(replace(run, pieces=(*run.pieces, piece)))
+    return _sampled(LineSimulation.of(run.line, run.profile, [*run.pieces, piece]))
 
 
 def _sampled(run: LineSimulation) -> LineSimulation:
     """The run at even times, so many in a turn."""
     count = int(np.clip(PER_TURN * run.turns, 256, MOST_SAMPLES))
-    return replace(run, time=np.linspace(0.0, run.end, count + 1))
+    return replace(run, times=np.linspace(0.0, run.end, count + 1))
 
 
 @dataclass(frozen=True)
@@ -244,7 +351,7 @@ def _made_turns(
     dense = replace(go, dense=True)
     while True:
         pieces.append(dense.on(system, state, until, until + span))
-        turning = LineSimulation(prepared, profile, tuple(pieces), np.zeros(0)).input
+        turning = LineSimulation.of(prepared, profile, pieces).input
         reached = float(turning.times_at(np.array([TURN * turns]))[0])
         if np.isfinite(reached):
             pieces[-1] = dense.on(system, state, until, reached)

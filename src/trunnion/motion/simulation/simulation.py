@@ -1,47 +1,73 @@
-"""Simulation of a system: a motion from a start, with dense output, events and an outcome."""
+"""A motion in time: of a system, or of a driveline with its twists, its torques and how its input turned."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.line_system import LineMotion, LineSystem
+from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
-from trunnion.numerics.curves import extremes_in
-from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, Trajectory, integrate
-from trunnion.results.declared import Held, Result, axis, ending, over, parameters_of, remark, remarks
+from trunnion.motion.simulation.input_rotation import TURN, InputRotation
+from trunnion.numerics.curves import Extremes, extremes_in
+from trunnion.numerics.integration.integration import Trajectory, joined
+from trunnion.results.declared import (
+    Described,
+    Held,
+    Result,
+    axis,
+    ending,
+    fields_over,
+    over,
+    parameters_of,
+    remark,
+    remarks,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
-from trunnion.steady.shooting.integration_outcomes import outcome_of
-from trunnion.systems.events import Event, watch
+from trunnion.results.speeds import rounded_speed
 from trunnion.systems.system import System
 
 
 @dataclass(frozen=True, repr=False)
-class Simulation(Result):
-    """A motion.
+class Simulation:
+    """A motion in time.
 
-    time (points,) [s] and state (points, n) where asked for (by default at every step); event_time (events,),
-    event_name, and the states before and after each, (events, n); regime (points,) by number. ``at`` gives
-    the state anywhere between; ``outcome`` says how it ended.
+    system, trajectory: what was integrated, and the steps taken; outcome: how it ended; tolerance; guards: names of the
+    events, own guards first; times: those asked for, None for every step. ``at`` gives the state anywhere between.
     """
 
     system: System
-    time: Array
-    state: Array
-    regime: Integers
-    event_time: Array
-    event_name: tuple[str, ...]
-    event_before: Array
-    event_after: Array
-    outcome: Outcome
     trajectory: Trajectory
+    outcome: Outcome
     tolerance: float
+    guards: tuple[str, ...]
+    times: Array | None
+
+    @cached_property
+    def time(self) -> Array:
+        """Times (points,) [s] where asked for; by default at every step."""
+        run, wanted = self.trajectory, self.times
+        return run.time_of_state if wanted is None else wanted[wanted <= run.time]
+
+    @cached_property
+    def state(self) -> Array:
+        """States (points, n) at ``time``."""
+        return self.trajectory.state if self.times is None else self.at(self.time)
+
+    @property
+    def event_time(self) -> Array:
+        """Times of all events (events,) [s]."""
+        return self.trajectory.event_time
 
     @property
     def final(self) -> Array:
@@ -53,6 +79,21 @@ class Simulation(Result):
         """The last time [s]."""
         return self.trajectory.time
 
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return self.trajectory.steps
+
+    @property
+    def cuts(self) -> Array:
+        """Times (steps + 1,) [s] between which the motion is smooth."""
+        return self.trajectory.time_of_state
+
+    @property
+    def time_range(self) -> tuple[float, float]:
+        """First and last time [s]."""
+        return float(self.cuts[0]), self.end
+
     def at(self, time: ArrayLike) -> Array:
         """States at any times of the run, (..., n), to about ten times the tolerance; NaN outside it.
 
@@ -60,22 +101,44 @@ class Simulation(Result):
         ------
         InputError : the run was made with ``dense=False``.
         """
-        if not len(self.trajectory.coefficients) and self.trajectory.steps:
+        if not len(self.trajectory.coefficients) and self.steps:
             raise InputError("was left out", element="simulation", key="dense", value=False, remedy="set dense=True")
-        times = np.asarray(time, dtype=float)
-        inside = (times >= self.time_range[0]) & (times <= self.time_range[1])
-        found = self.trajectory.at(np.where(inside, times, self.time_range[0]))
+        times, (first, last) = np.asarray(time, dtype=float), self.time_range
+        inside = (times >= first) & (times <= last)
+        found = self.trajectory.at(np.where(inside, times, first))
         return np.asarray(np.where(inside[..., None], found, np.nan))
 
-    def without_dense_output(self) -> Simulation:
+    def without_dense_output(self) -> Self:
         """The same without what ``at`` needs."""
         return replace(self, trajectory=replace(self.trajectory, coefficients=self.trajectory.coefficients[:0]))
 
+
+@dataclass(frozen=True, repr=False)
+class SystemSimulation(Simulation, Result):
+    """A motion of a system, its states (points, n) over time."""
+
     @property
-    def time_range(self) -> tuple[float, float]:
-        """First and last time [s]."""
-        start = self.trajectory.start
-        return (float(start[0]) if len(start) else self.trajectory.time), self.trajectory.time
+    def regime(self) -> Integers:
+        """Number of the regime (points,)."""
+        run = self.trajectory
+        if not run.steps:
+            return np.full(len(self.time), run.final_regime, dtype=np.int64)
+        return run.regime[np.searchsorted(run.start[1:], self.time, side="right")]
+
+    @property
+    def event_name(self) -> tuple[str, ...]:
+        """Names of the events (events,)."""
+        return tuple(self.guards[int(i)] for i in self.trajectory.event_which)
+
+    @property
+    def event_before(self) -> Array:
+        """States (events, n) before each event."""
+        return self.trajectory.event_before
+
+    @property
+    def event_after(self) -> Array:
+        """States (events, n) behind each event."""
+        return self.trajectory.event_after
 
     @cached_property
     def range(self) -> tuple[Array, Array]:
@@ -101,19 +164,16 @@ class Simulation(Result):
         yield over("event state", "state_after", self.event_after)
         yield remark("system", self.system.name)
         yield from ending(self.outcome)
-        yield from remarks(
-            tolerance=self.tolerance,
-            steps=self.trajectory.steps,
-            tangents="exact" if self.system.exact_tangents else "differenced",
-        )
+        tangents = "exact" if self.system.exact_tangents else "differenced"
+        yield from remarks(tolerance=self.tolerance, steps=self.steps, tangents=tangents)
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
-        """Time histories; see ``trunnion.plots.motion``."""
+        """Time histories; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, states=states)
 
     def plot_portrait(self, axes: Axes | None = None, *, x: str = "", y: str = "", from_time: float = 0.0) -> Axes:
-        """One state over another; see ``trunnion.plots.motion``."""
+        """One state over another; see ``pictures.motion``."""
         return drawing(self, "plot_portrait")(self, axes, x=x, y=y, from_time=from_time)
 
     def __str__(self) -> str:
@@ -127,121 +187,209 @@ class Simulation(Result):
         ]
         events = f", {len(self.event_time)} events" if self.event_name else ""
         head = (
-            f"motion of {self.system.name} from t = {low:g} to {high:.6g} s: {self.trajectory.steps} steps at "
+            f"motion of {self.system.name} from t = {low:g} to {high:.6g} s: {self.steps} steps at "
             f"tolerance {self.tolerance:g}{events}"
         )
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
-def simulate_system(
-    system: System,
-    duration: float | None = None,
-    *,
-    start: ArrayLike | None = None,
-    start_time: float = 0.0,
-    times: ArrayLike | None = None,
-    periods: float | None = None,
-    events: Sequence[Event] = (),
-    tolerance: float = TOLERANCE,
-    most_steps: int = MOST_STEPS,
-    longest_step: float = np.inf,
-    dense: bool = True,
-) -> Simulation:
-    """Integrate a system from ``start``.
+class OfShafts(ABC):
+    """What a motion of a line shows of its shafts."""
 
-    Parameters
-    ----------
-    duration : [s]; or ``periods`` of the forcing; or up to the last of ``times``.
-    start : initial state (n,); by default the system's own.
-    start_time : [s]; the phase of the forcing.
-    times : at which ``time`` and ``state`` are wanted (rising); by default every step taken.
-    events : zeros to locate; some may stop the run.
-    tolerance : error allowed per step, relative to the scale of a state + |x|.
-    dense : keep what ``at`` and ``times`` need, 8n numbers a step.
+    line: LineSystem
 
-    Returns
-    -------
-    A result whose ``outcome`` says how it ended; a failure keeps what was computed.
+    @property
+    @abstractmethod
+    def time(self) -> Array:
+        """Times (points,) [s] that are shown."""
 
-    Raises
-    ------
-    InputError : no or a wrong duration, start, times or tolerance.
+    @abstractmethod
+    def motion_at(self, time: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations at times (m,) of the motion."""
+
+    @cached_property
+    def motion(self) -> LineMotion:
+        """Twists, torques and rotations at ``time``."""
+        return self.motion_at(self.time)
+
+    @property
+    def twist(self) -> Array:
+        """Twist [rad] of every shaft, (points, shaft)."""
+        return self.motion.twist
+
+    @property
+    def torque(self) -> Array:
+        """Torque [N m] of every shaft (points, shaft), positive with the twist."""
+        return self.motion.torque
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the shafts; massless shafts in series count as one."""
+        return self.line.shafts
+
+    @property
+    def unit(self) -> str:
+        """Unit that speeds are printed in: that of the line's description."""
+        return speed_unit(self.line.assembly.line)
+
+
+@dataclass(frozen=True, repr=False)
+class LineSimulation(Simulation, OfShafts, Described):
+    """A motion of a line.
+
+    time (points,) [s]; rotation (points, coordinate): deviation [rad] from the uniform rotation of ``profile``, and
+    rate [rad/s]; twist [rad] and torque [N m] of every shaft (points, shaft), positive with the twist; pieces: one
+    motion per straight piece of the speed profile.
+
+    ``rotation`` of the input, its ``input_speed`` and the ``turns`` it made are those of the profile where a
+    ConstantSpeed prescribes them, and those of its own rotation where the line starts free.
     """
-    end, wanted = _span(system, duration, periods, start_time, times)
-    if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
-        raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
-    if wanted is not None and not dense:
-        raise InputError("is needed for times", element="simulation", key="dense", value=False, remedy="leave it out")
-    first = _start(system, start)
-    regime = system.regime_at(start_time, first)
-    run = integrate(
-        system.equations, start_time, end, first, regime=regime, tolerance=tolerance, most_steps=most_steps,
-        watch=watch(system, events), dense=dense, longest_step=longest_step, partly=True,
-    )  # fmt: skip
-    guards = (*(system.regimes.guards if system.regimes else ()), *(e.label for e in events))
-    outcome = outcome_of(system, run, tolerance, guards)
-    time = run.time_of_state if wanted is None else wanted[wanted <= run.time]
-    return Simulation(
-        system=system,
-        time=time,
-        state=run.state if wanted is None else run.at(time),
-        regime=_regimes(run, time, regime),
-        event_time=run.event_time,
-        event_name=tuple(guards[int(i)] for i in run.event_which),
-        event_before=run.event_before,
-        event_after=run.event_after,
-        outcome=outcome,
-        trajectory=run,
-        tolerance=tolerance,
-    )
 
+    line: LineSystem
+    profile: SpeedProfile
+    pieces: tuple[Simulation, ...]
 
-def _regimes(run: Trajectory, time: Array, first: int) -> Integers:
-    if not run.steps:
-        return np.full(len(time), first, dtype=np.int64)
-    return run.regime[np.searchsorted(run.start[1:], time, side="right")]
+    @classmethod
+    def of(cls, line: LineSystem, profile: SpeedProfile, pieces: Sequence[Simulation]) -> Self:
+        """Pieces that follow each other, at the end of the last."""
+        one, last = pieces[0].trajectory, pieces[-1]
+        run = one if len(pieces) == 1 else joined([piece.trajectory for piece in pieces])
+        shared: dict[str, Any] = {name: getattr(last, name) for name in Simulation.__dataclass_fields__}
+        shared |= {"trajectory": run, "times": np.array([last.end])}
+        return cls(**shared, line=line, profile=profile, pieces=tuple(pieces))
 
+    def motion_at(self, time: ArrayLike) -> LineMotion:
+        """Twists, torques and rotations at times (m,) of the run."""
+        return LineMotion(*self._observed(time, LineMotion._fields))
 
-def _span(
-    system: System, duration: float | None, periods: float | None, start: float, times: ArrayLike | None
-) -> tuple[float, Array | None]:
-    wanted = None if times is None else rising_times(times, start)
-    if periods is not None:
-        if system.forcing_period is None:
-            raise InputError(
-                "has no meaning for an autonomous system", element=system.name, key="periods", value=periods,
-                remedy="give a duration",
-            )  # fmt: skip
-        duration = periods * system.forcing_period
-    if duration is None and wanted is not None:
-        return float(wanted[-1]), wanted
-    return start + positive_time(duration, "give a duration in seconds, or periods"), wanted
+    def torque_at(self, time: ArrayLike) -> Array:
+        """Torque (m, shaft) [N m] of every shaft at times (m,) of the run."""
+        return self._observed(time, ("torque",))[0]
 
+    def _observed(self, time: ArrayLike, names: tuple[str, ...]) -> list[Array]:
+        times = np.atleast_1d(np.asarray(time, dtype=float))
+        order = np.argsort(times, kind="stable")
+        states, times = self.at(times[order]), times[order]
+        ends = np.searchsorted(times, [*(piece.time_range[0] for piece in self.pieces), np.nextafter(self.end, np.inf)])
+        parts = [
+            self.line.observe(piece.system, times[i:j], states[i:j])
+            for piece, i, j in zip(self.pieces, ends, ends[1:], strict=False)
+        ]
+        whole = []
+        for columns in ([getattr(part, name) for part in parts] for name in names):
+            found = np.full((len(times), columns[0].shape[1]), np.nan)
+            found[order[ends[0] : ends[-1]]] = np.concatenate(columns)
+            whole.append(found)
+        return whole
 
-def rising_times(times: ArrayLike, start: float) -> Array:
-    """``times`` as an array that rises from ``start`` on."""
-    try:
-        wanted = np.asarray(times, dtype=float)
-    except (TypeError, ValueError):
-        wanted = np.zeros(0)
-    if wanted.ndim != 1 or not len(wanted) or not np.all(np.isfinite(wanted)) or np.any(np.diff(wanted) <= 0):
-        raise InputError("must be a rising list of times", key="times", remedy="np.linspace(0, 1, 200), say")
-    if wanted[0] < start:
-        raise InputError("begins before start_time", key="times", value=float(wanted[0]))
-    return wanted
+    @property
+    def starts_free(self) -> bool:
+        """Whether nothing prescribes how the line turns."""
+        return self.line.assembly.topology.free
 
+    @cached_property
+    def input(self) -> InputRotation:
+        """How the input turned."""
+        return InputRotation(self.profile, self.end, self.cuts, self._deviation if self.starts_free else None)
 
-def positive_time(duration: object, remedy: str) -> float:
-    """A duration [s], checked."""
-    number = isinstance(duration, int | float | np.number) and not isinstance(duration, bool)
-    if not number or not (np.isfinite(duration) and duration > 0):  # type: ignore[call-overload,operator]
-        raise InputError("must be a positive time", key="duration", value=duration, remedy=remedy)
-    return float(duration)  # type: ignore[arg-type]
+    def _deviation(self, times: Array) -> tuple[Array, Array]:
+        """Deviation of the input [rad] from the profile and its rate [rad/s]."""
+        states, place = self.at(times), self._place
+        return states[:, place], states[:, len(self.line.names) + place]
 
+    @cached_property
+    def whole(self) -> InputRotation:
+        """How the whole line turned, Σ Jρφ/Σ Jρ² over the input's mean speed: as the input, but for its vibration."""
+        return InputRotation(self.profile, self.end, self.cuts, self._mean_deviation if self.starts_free else None)
 
-def _start(system: System, start: ArrayLike | None) -> Array:
-    if start is None:
-        if system.start is None:
-            raise InputError("is missing", element=system.name, key="start", remedy=f"give {', '.join(system.states)}")
-        return system.start
-    return system.checked_start(start)
+    def _mean_deviation(self, times: Array) -> tuple[Array, Array]:
+        """Deviation of the mean rotation [rad] from the profile and its rate [rad/s]."""
+        states, n = self.at(times), len(self.line.names)
+        return states[:, :n] @ self._share, states[:, n : 2 * n] @ self._share
+
+    @cached_property
+    def _share(self) -> Array:
+        line = self.line
+        return line.shares(line.untwisted(line.assembly.table(1, self.profile.speed[0])).inertia[0])
+
+    @property
+    def _place(self) -> int:
+        """Of the input among the unknown rotations of a line that starts free."""
+        return int(self.line.assembly.topology.unknown_of[0])
+
+    @property
+    def input_speed(self) -> Array:
+        """Input speed [rad/s] at ``time``."""
+        return self.input.speed(self.time)
+
+    @property
+    def turns(self) -> float:
+        """Turns that the input made."""
+        angle = float(self.profile.angle(self.end))
+        if self.starts_free:
+            angle += float(self.final[self._place] - self.trajectory.state[0, self._place])
+        return angle / TURN
+
+    @property
+    def torque_peak_to_peak(self) -> Array:
+        """Largest minus smallest torque of every shaft [N m] from the first to the last of ``time``."""
+        return self.torque_extremes.span
+
+    @cached_property
+    def torque_extremes(self) -> Extremes:
+        """Lowest and highest torque of every shaft [N m] from the first to the last of ``time``, and when; found on the
+        dense output, whose error is about ten times the tolerance."""
+        return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
+
+    def declared(self) -> Iterator[Held]:
+        """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
+        n = len(self.line.names)
+        yield axis("time", self.time, "s")
+        yield axis("coordinate", self.line.names)
+        yield axis("shaft", self.shafts)
+        yield over("time coordinate", "rotation", self.state[:, :n], "rad")
+        yield over("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
+        if self.line.sliders:
+            yield axis("slider", [slider.name for slider in self.line.sliders])
+            yield over("time slider", "deflection", self.state[:, 2 * n :], "rad")
+        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
+        yield over("time", "input_speed", self.input_speed, "rad/s")
+        yield over("time", "input_angle", self.input.angle(self.time), "rad")
+        if self.starts_free:
+            yield over("time", "reference_speed", self.profile.at(self.time), "rad/s", "that rotations deviate from")
+        yield remark("driveline", self.system.name)
+        yield from ending(self.outcome)
+        yield from remarks(tolerance=self.tolerance, steps=self.steps)
+
+    def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
+        """Torques over time; see ``pictures.motion``."""
+        return drawing(self, "plot")(self, axes, shafts=shafts, unit=unit)
+
+    def plot_order_map(
+        self, axes: Axes | None = None, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = ""
+    ) -> Axes:
+        """Torque spectrum over time or speed; see ``pictures.motion.map_of_orders``."""
+        return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
+
+    def describe(self, unit: str | None = None) -> str:
+        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
+        rows = [
+            f"  {name}: torque {low:.6g} … {high:.6g} N m"
+            for name, low, high in zip(self.shafts, self.torque_extremes.low, self.torque_extremes.high, strict=True)
+        ]
+        head = f"motion of {self.system.name} over {self.end:.6g} s ({self.turns:.6g} turns): "
+        own = [f"  {self._turning(unit or self.unit)}"] if self.starts_free else []
+        return "\n".join([f"{head}{self.steps} steps", *own, *rows, f"  {self.outcome}"])
+
+    def _turning(self, unit: str) -> str:
+        """How fast a line that starts free turned."""
+        speed, last = self.whole.turns[1], self.whole.last_turn()[1]
+        if not len(speed):
+            return "the line starts free: it made no turn"
+        back = self.whole.turned_back
+        if back is not None:
+            return f"the line starts free: it turns back at t = {back:.4g} s"
+        return (
+            f"the line starts free: it turns at {rounded_speed(float(speed[0]), unit)} in its first turn and at "
+            f"{rounded_speed(last, unit)} in its last"
+        )

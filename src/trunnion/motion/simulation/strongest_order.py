@@ -13,7 +13,7 @@ from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.line_simulation import LineSimulation
+from trunnion.motion.simulation.simulation import LineSimulation
 
 MOST_TURNS, PER_TURN = 16, 128
 """Turns that are looked at, the last ones of the stretch, and samples of each."""

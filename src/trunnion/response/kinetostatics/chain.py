@@ -175,6 +175,13 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
                 remedy="replace it by a Disk with the load_torque it exerts",
             )
     stations, draft = stations_of(line, even=True), _Draft(line, lengths or {})
+    knots = [station.element for station in stations.stations if station.link is Link.SUM]
+    knots += [compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None]
+    if knots:
+        raise InputError(
+            "ties a shaft to two others, which kinetostatics do not follow", element=line.names[knots[0]],
+            remedy="leave out one leg, or one way round, and write a Ratio in its place",
+        )  # fmt: skip
     step_of: list[int] = []
     for station, speed in zip(stations.stations, stations.speed_ratio, strict=True):
         step_of.append(draft.add(station, speed, step_of[station.before] if station.before >= 0 else -1))

@@ -252,8 +252,8 @@ class Kinetostatics(Result):
         return rows
 
     def plot(self, *, unit: str | None = None) -> Figure:
-        """Speeds, accelerations, torques and couples over the turn; see ``plots.kinetostatics.draw``."""
-        return drawing(self, "plot")(self, unit=unit)
+        """Speeds, accelerations, torques and couples over the turn; see ``pictures.kinetostatics``."""
+        return drawing(self, "plot")(self, unit=unit).figure
 
     @property
     def _printed(self) -> tuple[Finding, ...]:

@@ -80,7 +80,7 @@ def order_response(
     >>> line = tn.Driveline([engine, tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
     >>> r = tn.order_response(line, [100.0])
     >>> print(r.order, round(float(r.vibratory_torque[0, 0]), 3))
-    [2.] 106.781
+    [2.] 221.04
     """
     assembly = assemble(line, load_case)
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"

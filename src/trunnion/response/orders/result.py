@@ -296,7 +296,7 @@ class OrderResponse(Result):
         limit: float | None = None,
         limits: Mapping[str, float] | None = None,
     ) -> Axes:
-        """Torque by order over speed of the most loaded spring; see ``plots.order_response.draw``."""
+        """Torque by order over speed of the most loaded spring; see ``pictures.orders.order_response``."""
         return drawing(self, "plot")(
             self, axes, spring=spring, unit=unit, operating=operating, limit=limit, limits=limits
         )

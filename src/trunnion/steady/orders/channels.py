@@ -7,12 +7,13 @@ that of the points whose motion is shown: disks, each where it is, behind its jo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Integers
+from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.equations.topology import Topology
 
 
@@ -55,13 +56,17 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     """
     places = channels_of(topo)
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
+    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
+    if topo.graph:
+        seen[..., places.twist], seen[..., places.deviation] = x @ topo.elongations.T, x
+        seen[..., places.joint_input.start :] = x @ topo.turning[at].T
+        return seen
     for e, (far, near) in enumerate(topo.ends):
         if far >= 0:
             seen[..., e] += x[..., far]
         if near >= 0:
             seen[..., e] -= ratio[..., e] * x[..., near]
     seen[..., places.deviation] = x
-    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
     for k, station in enumerate(at, start=places.joint_input.start):
         if (i := topo.unknown_of[station]) >= 0:
             seen[..., k] = relative[..., station] * x[..., i]
@@ -75,9 +80,33 @@ def channels_of_harmonics(
 
     ratio and relative as of ``motion_channels``, at ``times`` samples of the period.
     """
-    middle = int(h[len(h) // 2])
-    spectrum = np.zeros((len(x), times, x.shape[2]), dtype=complex)
-    spectrum[:, (h - middle) % times] = x
-    grid = np.fft.ifft(spectrum, axis=1) * times
-    seen = motion_channels(topo, grid, ratio, relative)
-    return np.asarray(np.fft.fft(seen, axis=1)[:, (h - middle) % times] / times)
+    places, middle = channels_of(topo), int(h[len(h) // 2])
+    at = np.array([topo.stations[joint].before for joint in topo.joints] + [s for s, _ in topo.points], dtype=np.intp)
+    near = [near for _, near in topo.ends]
+    seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
+    seen[..., places.twist] = _passed(x, h - middle, near, ratio, times)
+    seen[..., places.twist] *= -1
+    far = np.array([far for far, _ in topo.ends], dtype=np.intp)
+    moves = np.flatnonzero(far >= 0)
+    seen[..., moves] += x[..., far[moves]]
+    seen[..., places.deviation] = x
+    stop = places.joint_input.start + len(at)
+    seen[..., places.joint_input.start : stop] = _passed(x, h - middle, topo.unknown_of[at], relative[..., at], times)
+    return seen
+
+
+def _passed(x: Complex, h: Integers, of: Sequence[int] | Places, factor: Array, times: int) -> Complex:
+    """Harmonics (case, h, m) of x (case, h, n) ``of`` m unknowns, 0 of −1, times a ``factor`` (case, time, m)."""
+    of = np.asarray(of, dtype=np.intp)
+    found = np.zeros((*x.shape[:2], len(of)), dtype=complex)
+    moves = of >= 0
+    varies = moves & np.any(np.ptp(factor, axis=1) > 0, axis=0)
+    same = np.flatnonzero(moves & ~varies)
+    found[..., same] = factor[:, :1, same] * x[..., of[same]]
+    uneven = np.flatnonzero(varies)
+    if len(uneven):
+        spectrum = np.zeros((len(x), times, len(uneven)), dtype=complex)
+        spectrum[:, h % times] = x[..., of[uneven]]
+        grid = np.fft.ifft(spectrum, axis=1) * factor[..., uneven]
+        found[..., uneven] = np.fft.fft(grid, axis=1)[:, h % times]
+    return found

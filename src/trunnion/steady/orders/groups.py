@@ -46,6 +46,24 @@ class Group:
         return h, np.array([depth[int(j)] == reach for j in h])
 
 
+@dataclass(frozen=True)
+class SideOrders:
+    """Harmonics about each member of a group: ``layers`` of each offset, the ``outermost`` of which tells what leaving
+    out the rest costs."""
+
+    layers: dict[int, int]
+    outermost: int
+
+    @property
+    def width(self) -> int:
+        """The largest offset."""
+        return max(self.layers)
+
+    def of(self, group: Group) -> tuple[Integers, Flags]:
+        """Harmonics h (h,) about the members and which of them are the outermost (h,)."""
+        return group.harmonics(self.layers, self.outermost)
+
+
 def offsets(rates: set[int], reach: int) -> dict[int, int]:
     """Sums Σ m_j rate_j with Σ |m_j| ≤ reach, each with the least Σ |m_j| it takes."""
     found = {0: 0}

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Integers
-from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import (
     BaseOfExcitation,
@@ -29,14 +28,20 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
 from trunnion.equations.steady_base import bent, moves_by_itself, require_steady_base
 from trunnion.equations.topology import require_period
+from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
 from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.tree_blocks import AT_ONCE
 from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
-from trunnion.steady.orders.groups import OWN, Group, groups_of, offsets
+from trunnion.steady.orders.groups import OWN, Group, SideOrders, groups_of, offsets
 from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
-from trunnion.steady.orders.straight import straight_about_first, straight_response
+from trunnion.steady.orders.prices import places_left, tree_pays
+from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
+from trunnion.steady.orders.straight import coupled_response, straight_response
+from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.steady.orders.unbalanced import balanced
 from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
@@ -75,7 +80,20 @@ def order_spectrum(
     ------
     InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
     """
-    case = _Case(assembly, statically_twisted, _numbers(assembly, speed, table), linearised, rough, motions)
+    numbers = _numbers(assembly, speed, table)
+
+    def solved(*, whole: bool) -> tuple[_Case, OrderSpectrum]:
+        case = _Case(assembly, statically_twisted, numbers, linearised, rough, motions, whole)
+        return case, _at_all(case, speed, progress)
+
+    case, found = solved(whole=False)
+    if case.along_tree and not rough and not balanced(case.assembly, found, numbers, case.twisted, first=linearised):
+        found = solved(whole=True)[1]
+    return found
+
+
+def _at_all(case: _Case, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
+    """At every ``speed`` (speed,), batch by batch."""
     parts: list[OrderSpectrum] = []
     for done in range(0, len(speed), case.batch):
         keep_time()
@@ -123,10 +141,10 @@ class _Written:
     table: Array
     co: LineCoefficients
     groups: list[Group]
-    layers: dict[int, int]
-    matrices: LineMatrices
+    sides: SideOrders
+    matrices: LineMatrices | TreeMatrices
     base: BaseOfExcitation
-    blocks: HillBlocks
+    blocks: HillBlocks | TreeHill
 
 
 class _Case:
@@ -140,7 +158,9 @@ class _Case:
         linearised: bool,
         rough: bool,
         motions: MotionsBySpeed | None,
+        whole: bool,
     ) -> None:
+        """With ``whole`` matrices however long the line is."""
         self.linearised, self.rough = linearised, rough
         self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
@@ -161,10 +181,14 @@ class _Case:
             from trunnion.steady.orders.own_orders import OwnOrders
 
             self.own = OwnOrders(assembly, motions)
-        self.reach = ROUGH_REACH if rough else _reach(one.joints)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
+        self.fall: dict[int, float] | None = None
+        self.reach: float = ROUGH_REACH if rough else _reach(one.joints)
+        self.along_tree = self.varies and self.own is None and not whole and self._tree_pays()
+        if self.along_tree and not rough:
+            self.fall, self.reach = spreads(self.topo, one, self.turns), DECADES
         self.few: Array | None = None
-        self.written: dict[int, _Written] = {}
+        self.written: dict[float, _Written] = {}
         torques = disk_torques(assembly)
         # A frequency that the speed turns round has a sign, which a loss factor's torque follows.
         turns_round = bool(one.loss.any()) and any(torque.frequency for torque in torques)
@@ -183,19 +207,28 @@ class _Case:
     def coefficients(self, table: Array) -> LineCoefficients:
         return self.assembly.coefficients(table, statically_twisted=self.twisted, any_frequency=True)
 
-    def _plan(self, reach: int) -> tuple[list[Group], dict[int, int], int]:
-        """Groups, the offsets of their harmonics, and samples over the period that resolve them."""
-        layers = offsets(self.rates, reach)
-        width = max(layers)
-        groups = [OWN, *groups_of(self.acting, 1 / self.turns, width)]
-        widest = max(int(np.ptp(g.harmonics(layers, reach)[0])) for g in groups) + 1
-        return groups, layers, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+    def _plan(self, reach: float) -> tuple[list[Group], SideOrders, int]:
+        """Groups, the side orders of their harmonics, and samples over the period that resolve them."""
+        if self.fall is None:
+            sides = SideOrders(offsets(self.rates, int(reach)), int(reach))
+        else:
+            sides = SideOrders(side_orders(self.fall, reach), OUTERMOST)
+        groups = [OWN, *groups_of(self.acting, 1 / self.turns, sides.width)]
+        widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
+        return groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+
+    def _tree_pays(self) -> bool:
+        groups, sides, _ = self._plan(self.reach)
+        harmonics = [len(sides.of(group)[0]) for group in groups]
+        return not (self.topo.graph or self.topo.dragged) and tree_pays(self.topo, harmonics, len(self.numbers))
 
     def _batch(self) -> int:
         """Speeds together, by the largest arrays of one."""
-        groups, layers, times = self._plan(self.reach)
+        groups, sides, times = self._plan(self.reach)
         n = self.topo.size
-        most = max(len(g.harmonics(layers, self.reach)[0]) for g in groups) * n
+        most = max(len(sides.of(group)[0]) for group in groups) * n
+        if self.along_tree:
+            return max(1, MOST_NUMBERS // (most if self.few is not None else max(most, times * n)))
         # To look around, equations that stand for all speeds are written out once.
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
         return max(1, MOST_NUMBERS // max(most**2, written))
@@ -214,13 +247,20 @@ class _Case:
             return self._straight(table), np.zeros(len(table))
         while True:
             found, last = self._bent(table, self.reach)
-            if self.rough or self.reach >= MOST or not np.any(last > SMALL_ENOUGH):
+            most = MOST if self.fall is None else MOST_DECADES
+            if self.rough or self.reach >= most or not np.any(last > SMALL_ENOUGH):
                 return found, last
-            self.reach = min(MOST, self.reach + max(1, self.reach // 2))
+            self.reach = min(most, self.reach + self._further(float(np.nanmax(last))))
+
+    def _further(self, last: float) -> float:
+        """By how much to raise the reach, where the outermost harmonics have the share ``last``."""
+        return max(1, self.reach // 2) if self.fall is None else max(2.0, 1.0 + np.log10(last / SMALL_ENOUGH))
 
     def _straight(self, table: Array) -> OrderSum:
         topo, co, once = self.topo, self.coefficients(table), np.zeros(1, dtype=np.int64)
-        matrices, base = line_matrices(topo, co, np.zeros(1)), self._base(table, co, np.zeros(1))
+        base = self._base(table, co, np.zeros(1))
+        respond: Callable[..., Complex] = coupled_response if topo.graph else straight_response
+        matrices = (line_matrices if topo.graph else tree_matrices)(topo, co, np.zeros(1))
         total = OrderSum(len(table), self.places)
         groups = groups_of(self.acting, None, 0)
         if groups:
@@ -229,9 +269,8 @@ class _Case:
                 self._sources(group, once, table, co, base, at[:, None], matrices.wave)
                 for group, at in zip(groups, nu, strict=True)
             ]
-            solve = straight_about_first if self.linearised else straight_response
             right = np.stack([force[:, 0] for force, _ in sources])
-            y = solve(topo, matrices, aligned_matrices(topo, co).loss, nu, right)
+            y = respond(topo, matrices, co.loss, nu, right, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
                 if topo.free:  # driven away by a constant torque, without bound
@@ -240,7 +279,7 @@ class _Case:
         self._add_static(total, co)
         return total
 
-    def _written(self, reach: int, cases: Array) -> _Written:
+    def _written(self, reach: float, cases: Array) -> _Written:
         """The equations at the speeds that stand for all, or at those of ``cases``."""
         if self.few is not None and reach in self.written:
             return self.written[reach]
@@ -249,13 +288,19 @@ class _Case:
             table = np.repeat(self.numbers[:1], len(self.few), axis=0)
             table[:, 0] = self.few
         co = self.coefficients(table)
-        groups, layers, times = self._plan(reach)
-        self._require_room_for(max(len(g.harmonics(layers, reach)[0]) for g in groups), times, len(table))
+        groups, sides, times = self._plan(reach)
+        self._require_room_for(max(len(sides.of(group)[0]) for group in groups), times, len(table))
         tau = 2 * np.pi * float(self.turns) * np.arange(times) / times
-        matrices, base = line_matrices(self.topo, co, tau), self._base(table, co, tau)
-        step = table[:, 0] / float(self.turns)
-        blocks = HillBlocks(self.topo, matrices, co.loss, step, linearised=self.linearised)
-        found = _Written(table, co, groups, layers, matrices, base, blocks)
+        base, step = self._base(table, co, tau), table[:, 0] / float(self.turns)
+        matrices: LineMatrices | TreeMatrices
+        blocks: HillBlocks | TreeHill
+        if self.along_tree:
+            matrices = tree_matrices(self.topo, co, tau)
+            blocks = TreeHill(self.topo, matrices, co.loss, step, linearised=self.linearised)
+        else:
+            matrices = line_matrices(self.topo, co, tau)
+            blocks = HillBlocks(self.topo, matrices, co.loss, step, linearised=self.linearised)
+        found = _Written(table, co, groups, sides, matrices, base, blocks)
         if self.few is not None:
             self.written[reach] = found
         return found
@@ -266,6 +311,9 @@ class _Case:
         # Complex: the matrices of the nodes, those of a batch of cases and their factors; and what is sampled.
         matrices = nodes + 2 * min(self.batch, len(self.numbers))
         needed = 16.0 * (matrices * (harmonics * n) ** 2 + 4 * nodes * times * n**2)
+        if self.along_tree:
+            left = places_left(self.topo)
+            needed = 16.0 * (8 * n * (matrices * harmonics + nodes * times) + max(AT_ONCE, 4 * left * harmonics**2))
         element, orders = (
             Counter(one.name for one in self.acting).most_common(1)[0] if self.acting else ("driveline", 0)
         )
@@ -274,10 +322,11 @@ class _Case:
             element=element,
             key="excitation",
             value=f"{orders} orders",
-            remedy="leave out the orders that matter least; with straight joints each is solved by itself",
+            remedy=f"its joints and meshes make {harmonics} side orders together: leave out the orders that matter "
+            "least; with straight joints each is solved by itself",
         )
 
-    def _bent(self, cases: Array, reach: int) -> tuple[OrderSum, Array]:
+    def _bent(self, cases: Array, reach: float) -> tuple[OrderSum, Array]:
         topo, speed = self.topo, cases[:, 0]
         weights, out = weights_at(self.few, speed), self._written(reach, cases)
         every = self.springs if self.few is not None else out.co
@@ -287,7 +336,7 @@ class _Case:
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in out.groups:
             carrier = group.carrier_at(out.table[:, 0])
-            h, rim = group.harmonics(out.layers, reach)
+            h, rim = out.sides.of(group)
             nu = carrier[:, None] + h * out.blocks.step[:, None]
             right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
             if group.own:
@@ -297,7 +346,7 @@ class _Case:
             seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
             self._gather(total, group, h, seen, carried(weights, error), carried(weights, nu), every, wave)
             last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
-        self._add_base(total, out.base.rotation[alike], max(out.layers))
+        self._add_base(total, out.base.rotation[alike], out.sides.width)
         self._add_static(total, every)
         return total, self._share(last, total, least)
 
@@ -356,7 +405,9 @@ class _Case:
             if isinstance(one, MeshError):
                 error[:, at, one.mesh.compliance] += size
             near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
-            right[:, near] += self._harmonics(force / mass, h[near] - m)
+            acted = np.flatnonzero(force.any(axis=(0, 1)))
+            over = mass[..., acted] if isinstance(mass, np.ndarray) else mass
+            right[:, np.flatnonzero(near)[:, None], acted] += self._harmonics(force[..., acted] / over, h[near] - m)
         return right, error
 
     def _harmonics(self, values: NDArray[Any], h: Integers) -> Complex:

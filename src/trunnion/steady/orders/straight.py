@@ -5,22 +5,21 @@
 with H the part of the stiffness that damps whatever the frequency. What stands still, w = 0, is a constant torque: it
 drives a line that starts free away, against the loads that go with its speed or else against its inertia, and twists
 it. The matrix has the pattern of the line's tree, so elimination from the leaves solves all orders and speeds together;
-where that loses figures, a dense solution follows.
+where that loses figures, bands with exchange of pivots do.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Integers, Places
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.aligned import at_rest, rigid_rotation
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
-from trunnion.numerics.tree_solve import tree_solve
+from trunnion.equations.tree_matrices import TreeMatrices
+from trunnion.numerics.condensation import Plan
+from trunnion.numerics.tree_blocks import TreeMatrix
 
-RESIDUAL = 1e-13
 DRAGGED = 1e-9
 """Share of the largest damping from which dampers resist the line as a whole: less is rounding."""
 ROUNDING = 1e-15
@@ -29,86 +28,144 @@ SINGULAR = 1e-13
 """Share of |A| |Y| below which the forces that hold a motion against nothing count as none: undamped resonance."""
 
 
-def straight_response(topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex) -> Complex:
+def straight_response(
+    topo: Topology, matrices: TreeMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
+) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, n, n) is H. NaN where the line resonates without damping. Of a line that
-    starts free and is driven away the deviations are those beside what it turns as a whole.
+    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping. Of a
+    line that starts free and is driven away the deviations are those beside what it turns as a whole.
+    With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
-    mass, damping, stiffness = matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0]
-    parent = np.full(topo.size, -1, dtype=np.int64)
-    for far, near in topo.ends:
-        if far >= 0:
-            parent[far] = near
     orders, cases, n = right.shape
-    tied = np.where(parent >= 0, parent, 0)
-    every = np.arange(n)
+    sign = np.sign(frequency)
 
-    def dynamic(rows: Places, columns: Places) -> Complex:
-        m, c, k, h = (part[:, rows, columns].T[:, None] for part in (mass, damping, stiffness, loss))
-        w = frequency[None]
-        return np.asarray(k - w**2 * m + 1j * (w * c + np.sign(w) * h)).reshape(n, orders * cases)
+    def dynamic(k: Array, c: Array, m: Array) -> Complex:
+        k, c, m = (part[:, None] for part in (k, c, m))
+        return np.asarray(k - frequency**2 * m + 1j * frequency * c)
 
-    diagonal, coupling = dynamic(every, every), dynamic(every, tied)
-    coupling[parent < 0] = 0.0
-    b = np.moveaxis(right, 2, 0).reshape(n, orders * cases)
-    x, residual = tree_solve(diagonal, coupling, parent, b)
-    force = np.abs(b).max(axis=0)
-    with np.errstate(invalid="ignore"):
-        lost = np.flatnonzero(~(np.abs(residual).max(axis=0) <= RESIDUAL * force))
-    for j in lost:
-        x[:, j] = _dense(diagonal[:, j], coupling[:, j], parent, b[:, j])
-    weight = np.maximum(np.abs(diagonal), np.abs(coupling)) * np.abs(x)
-    x[:, force < SINGULAR * weight.max(axis=0)] = np.nan
-    if topo.still:
-        for j in np.flatnonzero(frequency.ravel() == 0):
-            joined = at_rest(topo, stiffness[j % cases])
-            if topo.free:
-                x[:, j] = _driven_away(rigid_rotation(topo), mass[j % cases], damping[j % cases], joined, b[:, j])
-            else:
-                x[:, j] = np.linalg.solve(joined, b[:, j])
-    x[:, force == 0] = 0.0
-    return np.moveaxis(x.reshape(n, orders, cases), 0, 2)
+    three = matrices.stiffness, matrices.damping, matrices.mass
+    own = dynamic(*(part.own[..., 0] for part in three))
+    coupling = dynamic(*(part.down[..., 0] for part in three))
+    for e, (far, near) in enumerate(topo.ends):
+        if not loss[:, e].any():
+            continue
+        lossy, ratio = 1j * loss[:, e] * sign, matrices.ratio[:, 0, e]
+        if far >= 0:
+            own[far] += lossy
+        if near >= 0:
+            own[near] += ratio**2 * lossy
+        if far >= 0 and near >= 0:
+            coupling[far] -= ratio * lossy
+    _join(topo, matrices, own, coupling, frequency == 0)
+    plan, g = Plan.of(matrices.parent, np.zeros(n, dtype=bool)), np.moveaxis(right, 2, 0)
+    if linearised:
+        # Orders are solved together at the first speed, and stand for themselves at the others.
+        each = [(part[:, k, :, None] for part in (own, coupling, g)) for k in range(orders)]
+        every = [about_first(TreeMatrix(plan, matrices.parent, a, b, []), force) for a, b, force in each]
+        y = np.stack([part[..., 0].T for part in every])
+    else:
+        flat = (n, orders * cases, 1)
+        matrix, b = TreeMatrix(plan, matrices.parent, own.reshape(flat), coupling.reshape(flat), []), g.reshape(flat)
+        y = np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
+    for k in np.flatnonzero((frequency == 0).any(axis=1)) if topo.free else ():
+        still = frequency[k] == 0
+        y[k, still] = _driven_away(topo, plan, matrices, right[k], linearised)[still]
+    return y
 
 
-def straight_about_first(
-    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex
+def coupled_response(
+    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
 ) -> Complex:
-    """The same to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀)."""
-    cases = right.shape[1]
-    held = replace(
-        matrices,
-        **{key: np.repeat(getattr(matrices, key)[:1], cases, axis=0) for key in ("mass", "damping", "stiffness")},
+    """The same as ``straight_response`` where masses couple unknowns: dense, order by order and speed by speed."""
+    mass, damping, stiffness = (part[:, 0] for part in (matrices.mass, matrices.damping, matrices.stiffness))
+    lossy = np.einsum("ei,se,ej->sij", topo.elongations, loss, topo.elongations)
+    w = frequency[..., None, None]
+    stiffness = np.where(w == 0, at_rest(topo, stiffness), stiffness) if topo.dragged else stiffness
+    matrix = stiffness - w**2 * mass + 1j * (w * damping + np.sign(w) * lossy)
+    if not linearised:
+        return _one_by_one(matrix, right)
+    # To first order about the first case, whose matrix stands for all.
+    held = np.broadcast_to(matrix[:, :1], matrix.shape)
+    first = _one_by_one(held, np.broadcast_to(right[:, :1], right.shape))
+    taken = (matrix @ first[..., None])[..., 0]
+    rest = right - taken
+    rest[np.abs(rest).max(axis=2) <= ROUNDING * (np.abs(matrix) @ np.abs(first)[..., None])[..., 0].max(axis=2)] = 0.0
+    return first + _one_by_one(held, rest)
+
+
+def _one_by_one(matrix: Complex, right: Complex) -> Complex:
+    """Solutions (order, case, n); NaN where a motion needs no force, 0 where nothing acts."""
+    found = np.zeros(right.shape, dtype=complex)
+    for at in np.argwhere(right.any(axis=2)):
+        one = tuple(at)
+        try:
+            found[one] = np.linalg.solve(matrix[one], right[one])
+        except np.linalg.LinAlgError:
+            found[one] = np.nan
+        holds = np.abs(matrix[one]) @ np.abs(found[one])
+        if np.abs(right[one]).max() < SINGULAR * holds.max():
+            found[one] = np.nan
+    return found
+
+
+def about_first(matrix: TreeMatrix, right: Complex) -> Complex:
+    """Solutions to first order about the first case: X₀ + A₀⁻¹(G − AX₀)."""
+    alone = matrix.of(slice(0, 1))
+    first = bounded(alone, right[:, :1], alone.solved(right[:, :1]))
+    product = matrix.times(np.broadcast_to(first, right.shape))
+    rest = right - product
+    size = np.abs(right) + np.abs(matrix.own * first)
+    rest[:, np.all(np.abs(rest) <= ROUNDING * size.max(axis=(0, 2), keepdims=True), axis=(0, 2))] = 0.0
+    return np.asarray(first + alone.solved(rest))
+
+
+def bounded(matrix: TreeMatrix, right: Complex, x: Complex) -> Complex:
+    """NaN where a motion needs no force, resonance without damping; 0 where nothing acts."""
+    force = np.abs(right).max(axis=(0, 2))
+    with np.errstate(invalid="ignore"):
+        x[:, force < SINGULAR * np.abs(matrix.own * x).max(axis=(0, 2))] = np.nan
+    x[:, force == 0] = 0.0
+    return x
+
+
+def _join(topo: Topology, matrices: TreeMatrices, own: Complex, coupling: Complex, still: Flags) -> None:
+    """Add to stiffness on the diagonal (n, …, case) and beside it what joins rings that oil alone drags along to what
+    they are on, where the line stands ``still`` (…, case): see ``aligned.at_rest``."""
+    weight = np.abs(matrices.stiffness.own[..., 0]).max(axis=0) * still
+    for far, near, ratio in ((*topo.ends[e], matrices.ratio[:, 0, e]) for e in topo.dragged):
+        own[far] += weight
+        if near >= 0:
+            own[near] += ratio**2 * weight
+            coupling[far] -= ratio * weight
+
+
+def _driven_away(topo: Topology, plan: Plan, matrices: TreeMatrices, torque: Complex, linearised: bool) -> Complex:
+    """Twists (case, n) under constant ``torque`` (case, n) of a line that turns as a whole: what resists there balances
+    it. With ``linearised`` to first order about the first case."""
+    turn, some = rigid_rotation(topo), slice(0, 1) if linearised else slice(None)
+    stiffness, damping, mass = (
+        TreeMatrix(plan, matrices.parent, part.own.astype(complex), part.down.astype(complex), [])
+        for part in (matrices.stiffness, matrices.damping, matrices.mass)
     )
-    steady = np.repeat(loss[:1], cases, axis=0), np.repeat(frequency[:, :1], cases, axis=1)
-    first = straight_response(topo, held, *steady, np.repeat(right[:, :1], cases, axis=1))
-    w = frequency[..., None]
-    mass, damping, stiffness, lossy = (
-        (part[None] @ first[..., None])[..., 0]
-        for part in (matrices.mass[:, 0], matrices.damping[:, 0], matrices.stiffness[:, 0], loss)
-    )
-    parts = (-(w**2) * mass, 1j * w * damping, stiffness + 1j * np.sign(w) * lossy)
-    rest = right - sum(parts)
-    size = np.max([np.abs(part).max(axis=2) for part in (right, *parts)], axis=0)
-    rest[np.abs(rest).max(axis=2) <= ROUNDING * size] = 0.0
-    return np.asarray(first + straight_response(topo, held, *steady, rest))
+    _join(topo, matrices, stiffness.own[..., 0], stiffness.coupling[..., 0], np.ones(len(torque), dtype=bool))
+    whole = np.broadcast_to(turn[:, None, None], stiffness.own.shape).astype(complex)
+    drag, inertia = damping.times(whole), mass.times(whole)
+    drags = np.abs(drag).max(axis=0) > DRAGGED * np.abs(damping.own).max(axis=0)
+    resists = np.where(drags, drag, inertia)[:, some]
+    # Of a line without a torque on the whole it does not matter what is held.
+    held = stiffness.of(some)
+    held.own = held.own.copy()
+    held.own[0] += np.abs(held.own).max(axis=0)
 
+    def twists(acting: Complex) -> Complex:
+        left = acting - resists * np.tensordot(turn, acting, 1) / np.tensordot(turn, resists, 1)
+        x = held.solved(left)
+        return np.asarray(x - whole[:, :1] * np.tensordot(turn, x, 1) / (turn @ turn))
 
-def _driven_away(turn: Array, mass: Array, damping: Array, stiffness: Array, torque: Complex) -> Complex:
-    """Twists under a constant ``torque`` (n,) of a line that turns as ``turn`` (n,): what resists there balances it."""
-    drag = damping @ turn
-    resists = drag if np.abs(drag).max() > DRAGGED * np.abs(damping).max() else mass @ turn
-    left = torque - resists * (turn @ torque) / (turn @ resists)
-    whole = np.outer(turn, turn) * np.abs(stiffness).max() / (turn @ turn)
-    return np.asarray(np.linalg.solve(stiffness + whole, left))
-
-
-def _dense(diagonal: Complex, coupling: Complex, parent: Integers, right: Complex) -> Complex:
-    matrix = np.diag(diagonal)
-    for i, p in enumerate(parent):
-        if p >= 0:
-            matrix[i, p] = matrix[p, i] = coupling[i]
-    try:
-        return np.asarray(np.linalg.solve(matrix, right))
-    except np.linalg.LinAlgError:
-        return np.full_like(right, np.nan)
+    right = torque.T[..., None].astype(complex)
+    if not linearised:
+        return twists(right)[..., 0].T
+    first = twists(right[:, :1])
+    rest = right - stiffness.times(np.broadcast_to(first, right.shape))
+    return np.asarray(first + twists(rest))[..., 0].T

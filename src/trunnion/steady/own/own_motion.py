@@ -32,11 +32,10 @@ PER_CYCLE = 8
 
 @dataclass(frozen=True)
 class OwnMotion:
-    """The motion at ``speed`` [rad/s], and the torque [N m at the input] beyond the balance; ``assembly`` is the line
-    without excitations."""
+    """The motion at ``speed`` [rad/s], its last value the torque [N m at the input] beyond the balance; ``assembly`` is
+    the line without excitations."""
 
     orbit: PeriodicOrbit
-    extra_torque: float
     assembly: Assembly
     speed: float
 
@@ -91,8 +90,7 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed)
     refuse_dragged(prepared.assembly)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
-    found = kept_speed_orbit(prepared, tolerance=tolerance)
-    orbit = found.orbit
+    orbit = kept_speed_orbit(prepared, tolerance=tolerance)
     if not orbit.outcome.ok:
         raise ComputationError(f"no periodic motion of the free line was found to judge: {orbit.outcome}")
-    return OwnMotion(orbit, found.extra_torque, prepared.assembly, speed)
+    return OwnMotion(orbit, prepared.assembly, speed)

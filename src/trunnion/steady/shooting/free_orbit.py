@@ -11,7 +11,7 @@ The disturbance that shifts the phase, x′ + R Ω, comes back exactly: its mult
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,22 +24,13 @@ from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
-from trunnion.steady.shooting.closing import Phase, close
-from trunnion.steady.shooting.judging import IntegratedClosing, Neutral
+from trunnion.steady.shooting.closing import IntegratedClosing, Neutral, Phase, close
 from trunnion.steady.shooting.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, PeriodicOrbit, closing_of, judged
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
 BESIDE = 1e-5
 """Step of differences by the mean speed, over it."""
-
-
-@dataclass(frozen=True)
-class FreeOrbit:
-    """The motion, and the torque at the input [N m] that its drives give beyond the balance of the loads."""
-
-    orbit: PeriodicOrbit
-    extra_torque: float
 
 
 def kept_speed_orbit(
@@ -49,8 +40,9 @@ def kept_speed_orbit(
     tolerance: float = TOLERANCE,
     settle: bool = True,
     driven: Callable[[float], System] | None = None,
-) -> FreeOrbit:
-    """The periodic motion of a free line at its mean speed ``line.speed``.
+) -> PeriodicOrbit:
+    """The periodic motion of a free line at its mean speed ``line.speed``; its last value is the torque at the input
+    [N m] that its drives give beyond the balance of the loads.
 
     ``driven`` : torque beyond the balance → system, by default those of ``line`` as described.
 
@@ -68,14 +60,12 @@ def kept_speed_orbit(
         scale = np.asarray(driving.system.scale)
         return replace(closing_of(driving, Phase.held(0, float(guess[0]), scale), (torque,)), neutral=neutral)
 
-    closing, root = close(first, held, (0.0,), settle=settle)
-    return FreeOrbit(judged(closing, root), float(root.x[-1]))
+    return judged(*close(first, held, (0.0,), settle=settle))
 
 
-def torque_driven_orbit(
-    line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE
-) -> tuple[PeriodicOrbit, float]:
-    """The periodic motion of a line whose speed follows from its torques, and that speed [rad/s], guessed as ``speed``.
+def torque_driven_orbit(line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE) -> PeriodicOrbit:
+    """The periodic motion of a line whose speed follows from its torques; its last value is that speed [rad/s], guessed
+    as ``speed``.
 
     The line is observed from a frame that turns at a mean speed Ω, in which the motion closes after 2π/Ω per turn for
     the right Ω only: unknown are the state and Ω, and the first rotation is zero at the start, which chooses one point
@@ -85,8 +75,7 @@ def torque_driven_orbit(
     phase = Phase.held(0, 0.0, np.asarray(turning.system.scale))
     closing = closing_of(turning, phase, (speed,), (speed / LONGEST, speed * LONGEST))
     closing.neutral = neutral_motions(line)
-    root = closing.solve(np.append(start, speed))
-    return judged(closing, root), float(root.x[-1])
+    return judged(closing, closing.solve(np.append(start, speed)))
 
 
 def closes(line: LineSystem) -> bool:

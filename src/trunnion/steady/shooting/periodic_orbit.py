@@ -10,14 +10,15 @@ from the difference of Φ at two tolerances, and checked by Liouville's identity
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Complex, Integers
+from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import extremes, fourier
@@ -30,21 +31,25 @@ from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
 from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict, verdicts
-from trunnion.steady.shooting.closing import Phase, close
+from trunnion.steady.shooting.closing import (
+    COARSER,
+    IntegratedClosing,
+    Phase,
+    close,
+    divergence_of,
+    keeps_volume,
+    rests,
+    sticking,
+)
 from trunnion.steady.shooting.integration_outcomes import outcome_of
-from trunnion.steady.shooting.judging import COARSER, IntegratedClosing, divergence_of, keeps_volume, never_slip, rests
 from trunnion.steady.shooting.repetition import repetition
 from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
-from trunnion.systems.regimes import SLACK
-from trunnion.systems.sticking import holding
 from trunnion.systems.system import System
 
 TOLERANCE = 1e-11
 SAMPLES = 512
 LEFT = 200.0
 """Residual at which an orbit counts as closed, over the tolerance of its integration."""
-MOMENT = 0.02
-"""Share of the period within which a slider that sticks may slip by rounding."""
 RUNAWAY = 1e-4
 """Residual, in units of the states' scale, that no motion leaves which really closes."""
 MOST_SHARES = 12
@@ -58,36 +63,50 @@ LONGEST = 10.0
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicOrbit(Result):
-    """A periodic motion and its stability.
+class Orbit:
+    """A periodic motion, whatever map it closes under.
 
-    start (n,); period [s]; time (points,) and state (points, n) over one period, ends included; multipliers
-    (n,) by falling modulus with multiplier_error (n,), without the 1 of each of the sliders ``stuck`` that
-    never slip; spectral_radius and error_estimate leave out the
+    start: its state at the beginning; period [s]; multipliers by falling modulus, without the 1 of each of the sliders
+    that never slip; monodromy; verdict; iterations of the shooting; outcome: whether it was found, else numbers are
+    NaN.
+    """
+
+    start: Array
+    period: float
+    multipliers: Complex
+    monodromy: Array = field(repr=False)
+    verdict: Verdict
+    iterations: int
+    outcome: Outcome
+
+
+@dataclass(frozen=True, repr=False)
+class IntegratedOrbit(Orbit):
+    """The orbit of a system with n states, integrated.
+
+    multiplier_error (n,): bound on the error of each multiplier; spectral_radius and error_estimate leave out the
     trivial multiplier of an autonomous system that moves (one at rest has none: outcome "at rest"), and the
-    ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); monodromy (n, n);
-    liouville_defect: |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the
-    states' scale; regime_changes: how often the motion changes its regime in a period.
+    ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); liouville_defect:
+    |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the states' scale;
+    values: what was unknown besides the start, as the period of an autonomous system or the torque of a free line;
+    stuck: names of the sliders that never slip.
     """
 
     system: System
-    start: Array
-    period: float
-    time: Array
-    state: Array
-    multipliers: Complex
     multiplier_error: Array
-    monodromy: Array
     spectral_radius: float
     error_estimate: float
-    verdict: Verdict
     liouville_defect: float
     residual: float
-    iterations: int
-    outcome: Outcome
     trajectory: Trajectory
-    speed_multiplier: float = float("nan")
-    stuck: tuple[str, ...] = ()
+    values: tuple[float, ...]
+    speed_multiplier: float
+    stuck: tuple[str, ...]
+
+    @classmethod
+    def of(cls, orbit: IntegratedOrbit, **more: Any) -> Self:
+        """An orbit as one of this kind, with what that knows besides."""
+        return cls(**{name: getattr(orbit, name) for name in IntegratedOrbit.__dataclass_fields__}, **more)
 
     @property
     def growth_rate(self) -> float:
@@ -95,16 +114,31 @@ class PeriodicOrbit(Result):
         return float(np.log(self.spectral_radius) / self.period) if self.spectral_radius > 0 else -np.inf
 
     @property
-    def _growth(self) -> str:
-        if self.spectral_radius > self.error_estimate:
-            return f"{self.growth_rate:+.6g} 1/s"
-        most = np.log(self.spectral_radius + self.error_estimate) / self.period
-        return f"below {most:+.3g} 1/s"
+    def radius_in_words(self) -> str:
+        """The spectral radius to the digits that are known."""
+        return f"spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}"
+
+
+@dataclass(frozen=True, repr=False)
+class PeriodicOrbit(IntegratedOrbit, Result):
+    """A periodic motion of a system; see ``IntegratedOrbit``."""
 
     @property
     def regime_changes(self) -> int:
         """How often the motion changes its regime in a period."""
         return len(self.trajectory.event_time)
+
+    @cached_property
+    def time(self) -> Array:
+        """Times (points,) over one period, both ends included [s]; where none was found, of the last trial's steps."""
+        if not self.outcome.ok:
+            return self.trajectory.time_of_state
+        return np.asarray(self.trajectory.start[0] + self.period * np.arange(SAMPLES + 1) / SAMPLES)
+
+    @cached_property
+    def state(self) -> Array:
+        """States (points, n) at ``time``."""
+        return self.trajectory.at(self.time) if self.outcome.ok else self.trajectory.state
 
     @property
     def mean(self) -> Array:
@@ -141,8 +175,15 @@ class PeriodicOrbit(Result):
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
-        """Portrait of the orbit; see ``trunnion.plots.motion``."""
+        """Portrait of the orbit; see ``pictures.motion``."""
         return drawing(self, "plot")(self, axes, x=x, y=y)
+
+    @property
+    def _growth(self) -> str:
+        if self.spectral_radius > self.error_estimate:
+            return f"{self.growth_rate:+.6g} 1/s"
+        most = np.log(self.spectral_radius + self.error_estimate) / self.period
+        return f"below {most:+.3g} 1/s"
 
     def __str__(self) -> str:
         if not self.outcome.ok:
@@ -159,15 +200,14 @@ class PeriodicOrbit(Result):
             [
                 f"{self.verdict} {what} of {self.system.name}, period {self.period:.8g} s{changes}: "
                 f"{MEANING[self.verdict]}",
-                f"  spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}, growth rate "
-                f"{self._growth}{tangents}",
+                f"  {self.radius_in_words}, growth rate {self._growth}{tangents}",
                 *rows,
                 f"  {self.outcome}",
             ]
         )
 
 
-def speed_in_words(orbit: PeriodicOrbit) -> str:
+def speed_in_words(orbit: IntegratedOrbit) -> str:
     """What becomes of a change of the mean speed of a free line none of whose torques depends on the speed."""
     rate = float(np.log(orbit.speed_multiplier) / orbit.period) if orbit.speed_multiplier > 0 else np.nan
     return (
@@ -247,16 +287,15 @@ def closing_of(
     return IntegratedClosing(place, scale, phase, LEFT * place.tolerance, within)
 
 
-def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
+def judged(free: IntegratedClosing, root: Root) -> PeriodicOrbit:
     """The orbit where shooting ended: its multipliers, their error and the verdict; or why there is none."""
     if not root.converged:
-        return _failed(closing, root)
-    n, system = closing.size, closing.place(root.x).system
-    closing, root, stuck = _sticking(closing, root)
-    place, x = closing.place(root.x), root.x[:n]
+        return _failed(free, root)
+    closing, root, stuck = sticking(free, root) or (free, root, ())
+    n, x, place, system = free.size, root.x[: free.size], closing.place(root.x), free.place(root.x).system
     length, scale = place.length, np.asarray(system.scale)
     run, coarse = place(x, dense=True).run, place(x, looser=COARSER).run
-    found, matrix = closing.judged(place, x, run, coarse, root.size, stuck), run.final[1:].T
+    found, matrix = closing.judged(place, x, run, coarse, root.size), run.final[1:].T
     radius, radius_error = np.array(0.0), np.array(0.0)
     if len(found.counted):
         radius, radius_error = spectral_radius(found.counted, found.counted_bound)
@@ -267,61 +306,31 @@ def judged(closing: IntegratedClosing, root: Root) -> PeriodicOrbit:
     left = float(np.abs(root.residual[:n] / scale).max())
     if closing.phase is None and left > RUNAWAY and abs(found.values[nearest] - 1) <= found.bound[nearest]:
         # Relative to a motion that ran away, what is left is small.
-        return _failed(closing, root, _unbounded(system, x))
+        return _failed(free, root, _unbounded(system, x))
     still, words = rests(place, run), f"closes to {root.size:.1e} after {root.iterations} iterations"
     if still:
         words = f"the motion is at rest: an equilibrium, of which every multiplier counts; {words}"
     elif (shares := _shares(place, run, x)) > 1:
         words += f"; it closes {shares} times in this period: the least period is {length / shares:.8g} s"
-    time = place.phase + length * np.arange(SAMPLES + 1) / SAMPLES
     return PeriodicOrbit(
-        system=system,
         start=system.within_limits(x),
         period=length,
-        time=time,
-        state=run.at(time),
         multipliers=found.values,
-        multiplier_error=found.bound,
         monodromy=matrix,
-        spectral_radius=float(radius),
-        error_estimate=float(radius_error),
         verdict=Verdict(int(verdicts(radius, radius_error, keeps_volume(divergence, n)))),
-        liouville_defect=np.nan if jumps else float(abs(log_det - divergence)) if sign > 0 else np.inf,
-        residual=root.size,
         iterations=root.iterations,
         outcome=Outcome(True, "at rest" if still else "found", words),
+        system=system,
+        multiplier_error=found.bound,
+        spectral_radius=float(radius),
+        error_estimate=float(radius_error),
+        liouville_defect=np.nan if jumps else float(abs(log_det - divergence)) if sign > 0 else np.inf,
+        residual=root.size,
         trajectory=run,
+        values=tuple(root.x[n:].tolist()),
         speed_multiplier=found.speed,
         stuck=tuple(system.sliders[one] for one in stuck),
     )
-
-
-def _sticking(closing: IntegratedClosing, root: Root) -> tuple[IntegratedClosing, Root, Integers]:
-    """The sliders that never slip, and the closing and root with rounding kept from letting them.
-
-    A motion that settles by slipping less and less just reaches in the end where its sliders slip. One that slips for a
-    moment is held and the motion closed again; where it stays within what the slider holds, the slider sticks.
-    """
-    place, n = closing.place(root.x), closing.size
-    stuck = never_slip(place.system, place(root.x[:n], tangents=False).run, MOMENT)
-    limits = place.system.within_limits(np.full(n, np.inf))
-    while len(stuck):
-        family = partial(_held, closing.map.family, stuck)
-        held = replace(closing, map=replace(closing.map, family=family))
-        again = held.solve(root.x)
-        run = held.place(again.x)(again.x[:n], tangents=False, dense=True).run
-        if not again.converged or run.end is not End.REACHED:
-            return closing, root, stuck[:0]
-        beyond = extremes(run.at, run.time_of_state).largest > (1 + SLACK) * limits
-        slips = beyond[n - len(place.system.sliders) :][stuck]
-        if not slips.any():
-            return held, replace(again, iterations=root.iterations + again.iterations), stuck
-        stuck = stuck[~slips]
-    return closing, root, stuck
-
-
-def _held(family: Callable[..., System], stuck: Integers, *values: float) -> System:
-    return holding(family(*values), stuck)
 
 
 def _unbounded(system: System, x: Array) -> Outcome:
@@ -372,21 +381,23 @@ def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = No
             f"{_ended(root)} (residual {root.size:.1e}); start closer, "
             "for example from the end of a longer simulation, or follow the motion from a parameter where it is known",
         )
+    nothing = np.full(n, nan)
     return PeriodicOrbit(
-        system=system,
         start=root.x[:n],
         period=place.length,
-        time=run.time_of_state,
-        state=run.state,
-        multipliers=np.full(n, nan, dtype=complex),
-        multiplier_error=np.full(n, nan),
+        multipliers=nothing.astype(complex),
         monodromy=np.full((n, n), nan),
-        spectral_radius=nan,
-        error_estimate=nan,
         verdict=Verdict.FAILED,
-        liouville_defect=nan,
-        residual=root.size,
         iterations=root.iterations,
         outcome=outcome,
+        system=system,
+        multiplier_error=nothing,
+        spectral_radius=nan,
+        error_estimate=nan,
+        liouville_defect=nan,
+        residual=root.size,
         trajectory=run,
+        values=tuple(root.x[n:].tolist()),
+        speed_multiplier=nan,
+        stuck=(),
     )

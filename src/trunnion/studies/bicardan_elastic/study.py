@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.plots.kinetostatics import draw_paper
+from trunnion.pictures.kinetostatics import paper
 from trunnion.response.kinetostatics.measures import extremes, largest
 from trunnion.response.kinetostatics.result import Kinetostatics
 from trunnion.response.kinetostatics.turn import kinetostatics
@@ -45,10 +45,10 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
     shown = "1 rad/s, 150 N·m, ν₁₂ = 180°, β₁₂ = 266.4°. "
     figures = (
         PaperFigure("3", "Angles, speeds, accelerations and torques, intermediate shaft elastic",
-                    shown + "Stiffness in N·mm/rad.", partial(draw_paper, elastic)),
+                    shown + "Stiffness in N·mm/rad.", partial(paper, elastic)),
         PaperFigure("4", "Angles, speeds, accelerations and torques, intermediate shaft rigid",
                     shown + "Alike to the width of a line: what differs stands in the table.",
-                    partial(draw_paper, rigid)),
+                    partial(paper, rigid)),
     )  # fmt: skip
     return Reproduction(
         name=NAME, title="Two Hooke's joints and an elastic shaft between them (S2)",

@@ -6,14 +6,16 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from trunnion.arrays import Array
 from trunnion.motion.chaos.lyapunov_map import LyapunovSweep
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.motion.simulation.simulation import Simulation, simulate_system
-from trunnion.plots.style import ACCENT, COLOURS, FAINT, INK, SMALL, TITLE, VERMILION, head, label_axes
+from trunnion.motion.simulation.simulate import simulate_system
+from trunnion.motion.simulation.simulation import SystemSimulation
+from trunnion.pictures.draw_matplotlib import SMALL, TEXT, TITLE, head, new_figure
+from trunnion.pictures.looks import ACCENT, GRID, INK, curve
+from trunnion.pictures.picture import Axis, Level, Line, Panel, Picture, points_at, single
 from trunnion.studies.double_tripod.estimator import printed_estimator
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
 
@@ -24,22 +26,22 @@ DIES_OUT = 12.0
 SETTLED = 0.0102
 """Time [s] of the settled portrait: three periods of the motor's torque."""
 TRANSIENT = 4000
+CROWD = 20_000
+"""Points of a map from which on they are drawn as small as can be seen."""
 COUNTS = (100, 200)
 """Intervals N of the printed estimator."""
 
 
-def frequency_figure(element: str) -> Figure:
+def frequency_figure(element: str) -> Picture:
     """Ω over the joint angle: Figure 9 or 10."""
-    figure, (axes,) = _figure(1)
     beta = np.linspace(0, WORST_ANGLE, 91)
     part = DoubleTripod().element(element)
-    axes.plot(np.rad2deg(beta), [part.natural_frequency(b) for b in beta], color=ACCENT, lw=1.6)
-    _labels(axes, "joint angle β [°]", f"natural frequency of {part.name} [rad/s]")
-    axes.set_xlim(0, 9)
-    return figure
+    line = Line(np.rad2deg(beta), [part.natural_frequency(b) for b in beta], curve(0))
+    up = Axis(f"natural frequency of {part.name}", "rad/s")
+    return single(Axis("joint angle β", "°", 0.0, 9.0), up, [line], 6.3, 3.9)
 
 
-def motion_of(element: str, damping_ratio: float) -> Simulation:
+def motion_of(element: str, damping_ratio: float) -> SystemSimulation:
     """A motion of (25) or (26) from rest without twist, until it has settled."""
     system = DoubleTripod(damping_ratio=damping_ratio).system(element, phase="own")
     p = system.parameters
@@ -47,7 +49,7 @@ def motion_of(element: str, damping_ratio: float) -> Simulation:
     return simulate_system(system, max(HISTORY, settled) + SETTLED, tolerance=1e-9)
 
 
-def beats(motion: Simulation) -> int:
+def beats(motion: SystemSimulation) -> int:
     """How often the swing per natural period rises again by more than RISE of the first, while the start dies out."""
     p = motion.system.parameters
     period = 2 * np.pi / p["natural_frequency"]
@@ -79,10 +81,10 @@ RISE = 0.02
 """Share of the first swing by which an envelope must rise again to count as beating."""
 
 
-def motion_figure(motion: Simulation, title: str) -> Figure:
+def motion_figure(motion: SystemSimulation, title: str) -> Figure:
     """The paper's panels (a) to (d), φ and φ̇ over time, both in space with time, and the portrait; beside them what is
     left once the start has died out, at its own scale."""
-    figure = _blank(10.0, 7.2)
+    figure = new_figure(10.0, 7.2)
     mosaic: Any = [["a", "a", "a", "b", "b", "b"], ["c", "c", "d", "d", "e", "e"]]
     axes: Any = figure.subplot_mosaic(mosaic, per_subplot_kw={"c": {"projection": "3d"}})
     times = np.linspace(0, HISTORY, 20_000)
@@ -126,23 +128,19 @@ def _in_space(axes: Any, phi: str, rate: str) -> None:
     axes.set_box_aspect(None, zoom=0.82)
 
 
-def exponents_figure(sweep: LyapunovSweep, title: str) -> Figure:
+def exponents_figure(sweep: LyapunovSweep, title: str) -> Picture:
     """Exponents and their sum over η/2π: the panels (a) to (d) of Figures 17 to 24."""
-    figure, (left, right) = _figure(2)
     x = sweep.values / (2 * np.pi)
-    for j, style in enumerate(("-", "-", "--")):
-        left.plot(x, sweep.exponents[:, j], style, color=COLOURS[j], lw=1.4, label=f"L{j + 1}")
-    left.axhline(0.0, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=0)
-    right.plot(x, sweep.exponents.sum(axis=1), color=INK, lw=1.4)
-    total = float(np.mean(sweep.exponents.sum(axis=1)))
-    right.set_ylim(total - 0.1 * abs(total), total + 0.1 * abs(total))
-    left.legend(fontsize=SMALL, frameon=False, loc="center right")
-    _labels(left, "excitation frequency η/2π [Hz]", "exponent [1/s]")
-    _labels(right, "excitation frequency η/2π [Hz]", "sum of the exponents [1/s]")
-    for axes in (left, right):
-        axes.set_xlim(x[0], x[-1])
-    head(figure, title, TITLE - 1)
-    return figure
+    across = Axis("excitation frequency η/2π", "Hz", float(x[0]), float(x[-1]))
+    whole = sweep.exponents.sum(axis=1)
+    total = float(np.mean(whole))
+    ends = (total - 0.1 * abs(total), total + 0.1 * abs(total))
+    each = [Line(x, sweep.exponents[:, j], curve(j), f"L{j + 1}") for j in range(3)]
+    panels = (
+        Panel(across, Axis("exponent", "1/s"), [*each, Level(0.0, "zero")], key="inside"),
+        Panel(across, Axis("sum of the exponents", "1/s", *ends), [Line(x, whole, "line")]),
+    )
+    return Picture(panels, 9.6, 3.9, 2, title)
 
 
 def map_of(element: str, damping_ratio: float, points: int) -> PoincareMap:
@@ -152,19 +150,20 @@ def map_of(element: str, damping_ratio: float, points: int) -> PoincareMap:
     return poincare_map(system, points, every=turn, transient=TRANSIENT, tolerance=1e-9)
 
 
-def map_figure(found: PoincareMap, counts: tuple[int, int], title: str) -> Figure:
+def map_figure(found: PoincareMap, counts: tuple[int, int], title: str) -> Picture:
     """The map at two numbers of points: Figures 25 to 30."""
-    figure, panels = _figure(2)
-    for axes, points in zip(panels, counts, strict=True):
+    panels = []
+    for points in counts:
         at = found.points[:points, [0, 2]] * np.array([1e6, 1.0])
-        size = 8.0 if found.repeat else 2.4 if points < 20_000 else 1.2
-        axes.plot(at[:, 0], at[:, 1], marker=".", ls="", color=ACCENT, mew=0, ms=size, rasterized=True)
+        across, up = Axis("rotation", "µrad"), Axis("rate", "rad/s")
         if found.repeat:  # one point: shown at the size of the motion
-            _about(axes, at[-1], found.size[[0, 2]] * np.array([1e6, 1.0]))
-        _named(axes, f"N = {points}" + (", all on one point" if found.repeat else ""))
-        _labels(axes, "rotation [µrad]", "rate [rad/s]")
-    head(figure, title, TITLE - 1)
-    return figure
+            half = found.size[[0, 2]] * np.array([1e6, 1.0])
+            ends = np.stack([at[-1] - half, at[-1] + half]).T
+            across, up = Axis("rotation", "µrad", *ends[0]), Axis("rate", "rad/s", *ends[1])
+        role = "single point" if found.repeat else "map points" if points < CROWD else "crowded points"
+        remark = f"N = {points}" + (", all on one point" if found.repeat else "")
+        panels.append(Panel(across, up, [points_at(at, role)], remark=remark))
+    return Picture(panels, 9.6, 3.9, 2, title)
 
 
 def estimator_curves(element: str, frequencies: Array, counts: tuple[int, ...] = COUNTS) -> Array:
@@ -179,33 +178,19 @@ def estimator_curves(element: str, frequencies: Array, counts: tuple[int, ...] =
     return out
 
 
-def estimator_figure(frequencies: Array, curves: Array) -> Figure:
+def estimator_figure(frequencies: Array, curves: Array) -> Picture:
     """The printed estimator of the rotation over η/2π for two numbers of intervals N."""
-    figure, (axes,) = _figure(1)
-    for count, curve, colour in zip(COUNTS, curves, (ACCENT, VERMILION), strict=True):
-        axes.plot(frequencies, curve[:, 0], color=colour, lw=1.3, label=f"N = {count}")
-    axes.legend(fontsize=SMALL, frameon=False, loc="best")
-    axes.set_xlim(frequencies[0], frequencies[-1])
-    _labels(axes, "excitation frequency η/2π [Hz]", "printed “exponent” L₁₁ [log₁₀/s]")
-    head(figure, "Not a Lyapunov exponent: it changes with N", TITLE - 1)
-    return figure
-
-
-def _blank(width: float, height: float) -> Figure:
-    """A figure laid out at the resolution that it is saved with."""
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
-
-
-def _figure(count: int) -> tuple[Figure, list[Any]]:
-    figure = _blank({1: 6.3, 2: 9.6}[count], 3.9)
-    grid: Any = figure.subplots(1, count, squeeze=False)
-    return figure, list(grid[0])
+    items = [Line(frequencies, one[:, 0], curve(k), f"N = {COUNTS[k]}") for k, one in enumerate(curves)]
+    across = Axis("excitation frequency η/2π", "Hz", float(frequencies[0]), float(frequencies[-1]))
+    up = Axis("printed “exponent” L₁₁", "log₁₀/s")
+    return single(across, up, items, 6.3, 3.9, "Not a Lyapunov exponent: it changes with N", key="inside")
 
 
 def _labels(axes: Axes, x: str, y: str) -> None:
-    label_axes(axes, x, y)
+    axes.set_xlabel(x, fontsize=TEXT, color=INK)
+    axes.set_ylabel(y, fontsize=TEXT, color=INK)
+    axes.grid(color=GRID, lw=0.6)
+    axes.tick_params(labelsize=TEXT, colors=INK)
     axes.ticklabel_format(useOffset=False)
 
 

@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.motion.simulation.simulation import Simulation
+from trunnion.motion.simulation.simulation import SystemSimulation
 from trunnion.studies.double_tripod import figures as drawn
 from trunnion.studies.double_tripod.computed import (
     BELOW,
@@ -114,7 +114,7 @@ def _frequencies(number: str, element: str) -> PaperFigure:
     return PaperFigure(number, caption, "Printed geometry.", partial(drawn.frequency_figure, element))
 
 
-def _motion(number: str, title: str, motion: Simulation) -> PaperFigure:
+def _motion(number: str, title: str, motion: SystemSimulation) -> PaperFigure:
     assumed = (
         f"{ASSUMED} From rest without twist, {drawn.HISTORY:g} s of it, of which the paper states nothing; the "
         f"last panel is the same motion at {motion.end - drawn.SETTLED:.2g} s, once the start has died out."

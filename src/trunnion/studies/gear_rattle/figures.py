@@ -3,70 +3,64 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from dataclasses import replace
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from trunnion.arrays import Array
 from trunnion.motion.orbits.basins import Basins
 from trunnion.motion.orbits.frequency_response import FrequencyResponse, ResponseComparison
-from trunnion.motion.orbits.piecewise_sweep import Sweep
+from trunnion.motion.orbits.sweep import OscillatorSweep
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse
-from trunnion.plots.frequency_response import DASHED, draw_basins, draw_responses
-from trunnion.plots.style import ACCENT, FAINT, INK, SMALL, TEXT, TITLE, VERMILION, label_axes, new_axes
+from trunnion.pictures.frequency_response import basins, response, responses
+from trunnion.pictures.picture import Axis, Item, Line, Picture, Texts, single
 
 RIGHT = 2.0
 """Highest frequency of the picture of ranges."""
 DRAWN = (2.0, 3.0, 4.0, 5.0, 8.0)
 """Ranges of the fit in that picture; the table has all."""
 
-FREQUENCY = "frequency ω, dimensionless"
+FREQUENCY = Axis("frequency ω, dimensionless")
 
 
-def methods_figure(found: ResponseComparison, title: str, doubled: Sequence[FrequencyResponse] = ()) -> Figure:
+def methods_figure(found: ResponseComparison, title: str, doubled: Sequence[FrequencyResponse] = ()) -> Picture:
     """All methods on one picture, and the exact motions of twice the period."""
-    axes = found.plot(new_axes(8.4, 5.6), length="rad", unit="", top=0.95)
-    for response in doubled:
-        words = "exact, twice the period" if response is doubled[0] else None
-        for part, style in ((response.stable, "-"), (~response.stable, DASHED)):
-            size = np.where(part, response.half_peak_to_peak, np.nan)
-            axes.plot(response.frequency, size, color=FAINT, lw=2.2, ls=style, label=words, zorder=1.5)
-            words = None
-    axes.set_xlabel(FREQUENCY, fontsize=TEXT, color=INK)
-    axes.legend(fontsize=SMALL, frameon=False, loc="upper right")
-    axes.set_title(title, fontsize=TITLE, color=INK)
-    return axes.figure.figure
+    items: list[Item] = []
+    for k, one in enumerate(doubled):
+        words = "" if k else "exact, twice the period"
+        for part, role in ((one.stable, "doubled"), (~one.stable, "doubled, unstable")):
+            name = "" if part is not one.stable else words
+            items.append(Line(one.frequency, np.where(part, one.half_peak_to_peak, np.nan), role, name))
+    drawn = response(found, length="rad", unit="", top=0.95)
+    named = drawn.with_panel(x=FREQUENCY, items=(*drawn.panel.items, *items), key="inside", title=title)
+    return replace(named, width=8.4, height=5.6)
 
 
-def ranges_figure(exact: FrequencyResponse, by_range: Mapping[float, ApproximateResponse]) -> Figure:
+def ranges_figure(exact: FrequencyResponse, by_range: Mapping[float, ApproximateResponse]) -> Picture:
     """First order for several ranges of the cubic fit, beside the exact response."""
-    axes = draw_responses({"exact": exact}, new_axes(8.4, 5.2), length="rad", unit="", marks=False)
-    drawn = {gaps: response for gaps, response in by_range.items() if gaps in DRAWN}
-    looks = zip(("#cc79a7", "#d55e00", "#e69f00", "#009e73", "#56b4e9"), ("-", "-.", ":", "-", "-."), strict=True)
-    for (gaps, response), (colour, style) in zip(drawn.items(), looks, strict=False):
-        stable = response.stable
-        upper = np.where(stable, response.amplitude, np.nan)
-        axes.plot(response.frequency, upper, label=f"fit to ±{gaps:g} b", color=colour, ls=style, lw=1.8)
-        axes.plot(response.frequency, np.where(~stable, response.amplitude, np.nan), color=colour, lw=1, ls=(0, (4, 2)))
-    axes.set_xlim(0.2, RIGHT)
-    axes.set_ylim(0, 1.1)
-    for response in drawn.values():
-        _beyond(axes, response)
-    axes.set_xlabel(FREQUENCY, fontsize=TEXT, color=INK)
-    axes.legend(fontsize=SMALL, frameon=False, loc="upper left")
-    axes.set_title("Multiple scales: the range of the cubic fit decides", fontsize=TITLE, color=INK)
-    return axes.figure.figure
+    drawn = responses({"exact": exact}, length="rad", unit="", marks=False)
+    items: list[Item] = []
+    for k, gaps in enumerate(g for g in by_range if g in DRAWN):
+        one = by_range[gaps]
+        for part, role, name in (
+            (one.stable, f"fit {k}", f"fit to ±{gaps:g} b"), (~one.stable, f"fit, unstable {k}", "")
+        ):  # fmt: skip
+            items.append(Line(one.frequency, np.where(part, one.amplitude, np.nan), role, name))
+        items += _beyond(one)
+    named = drawn.with_panel(
+        x=replace(FREQUENCY, low=0.2, high=RIGHT), y=replace(drawn.panel.y, high=1.1), key="inside",
+        items=(*drawn.panel.items, *items), title="Multiple scales: the range of the cubic fit decides",
+    )  # fmt: skip
+    return replace(named, width=8.4, height=5.2)
 
 
-def _beyond(axes: Axes, response: ApproximateResponse) -> None:
+def _beyond(response: ApproximateResponse) -> list[Item]:
     """Where the peak of a curve lies that leaves the picture."""
     at, size = response.peak
-    if at > RIGHT:
-        edge = float(np.interp(RIGHT, *_rising(response)))
-        words = f"to {size:.2f} at ω = {at:.1f}"
-        axes.text(RIGHT - 0.02, edge + 0.03, words, ha="right", fontsize=SMALL, color=INK)
+    if at <= RIGHT:
+        return []
+    edge = float(np.interp(RIGHT, *_rising(response)))
+    return [Texts([RIGHT], [edge], [f"to {size:.2f} at ω = {at:.1f}"], beside="above left")]
 
 
 def _rising(response: ApproximateResponse) -> tuple[Array, Array]:
@@ -76,23 +70,18 @@ def _rising(response: ApproximateResponse) -> tuple[Array, Array]:
     return response.frequency[order], response.amplitude[order]
 
 
-def index_figure(up: Sweep, down: Sweep) -> Figure:
+def index_figure(up: OscillatorSweep, down: OscillatorSweep) -> Picture:
     """Rattle index over frequency, swept both ways."""
-    axes = new_axes(8.0, 4.4)
-    for one, shape, colour in ((up, "^-", VERMILION), (down, "v-", ACCENT)):
-        words = "sweep up" if one.up else "sweep down"
-        look: dict[str, Any] = {"ms": 3.5, "lw": 1.2, "mfc": "none", "markevery": 0.02}
-        axes.plot(one.frequency, one.impact_energy, shape, color=colour, label=words, **look)
-    label_axes(axes, FREQUENCY, "energy of the impacts per period, Σ I v²/2")
-    axes.set_ylim(bottom=0)
-    axes.legend(fontsize=SMALL, frameon=False)
-    axes.set_title("Rattle index, B₀ = 0.05", fontsize=TITLE, color=INK)
-    return axes.figure.figure
+    items = [
+        Line(one.frequency, one.impact_energy, f"index of {way}", way)
+        for one, way in ((up, "sweep up"), (down, "sweep down"))
+    ]
+    energy = Axis("energy of the impacts per period, Σ I v²/2", low=0.0)
+    return single(FREQUENCY, energy, items, 8.0, 4.4, "Rattle index, B₀ = 0.05", key="inside")
 
 
-def basins_figure(found: Basins) -> Figure:
+def basins_figure(found: Basins) -> Picture:
     """Which motion is reached from where at ω = 0.8."""
-    axes = draw_basins(found, new_axes(7.4, 5.2), length="rad")
-    axes.set_ylabel("x′ at phase zero", fontsize=TEXT, color=INK)  # its time has no unit
-    axes.set_title("Basins of attraction at ω = 0.8, B₀ = 0.05", fontsize=TITLE, color=INK)
-    return axes.figure.figure
+    drawn = basins(found, length="rad")
+    up = Axis("x′ at phase zero")  # its time has no unit
+    return replace(drawn.with_panel(y=up, title="Basins of attraction at ω = 0.8, B₀ = 0.05"), width=7.4, height=5.2)

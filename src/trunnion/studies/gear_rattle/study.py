@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from trunnion.motion.orbits.basins import Basins, basins
+from trunnion.motion.orbits.exact_orbit import piecewise_orbit
 from trunnion.motion.orbits.frequency_response import (
     METHODS,
     FrequencyResponse,
@@ -20,8 +21,7 @@ from trunnion.motion.orbits.frequency_response import (
     compare_responses,
     frequency_response,
 )
-from trunnion.motion.orbits.piecewise_orbit import piecewise_orbit
-from trunnion.motion.orbits.piecewise_sweep import Sweep, sweep
+from trunnion.motion.orbits.sweep import OscillatorSweep, sweep
 from trunnion.motion.perturbation.multiple_scales import multiple_scales
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse
 from trunnion.studies.gear_rattle.figures import basins_figure, index_figure, methods_figure, ranges_figure
@@ -142,8 +142,8 @@ def _methods(found: ResponseComparison, what: str) -> Comparison:
     )  # fmt: skip
 
 
-def _sweeps(up: Sweep, down: Sweep) -> Comparison:
-    def row(words: str, one: Sweep) -> Row:
+def _sweeps(up: OscillatorSweep, down: OscillatorSweep) -> Comparison:
+    def row(words: str, one: OscillatorSweep) -> Row:
         jumps = ", ".join(f"{a:.3f} → {b:.3f}" for a, b in one.jumps)
         kinds = ", ".join(f"{one.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
         return Row(words, "—", f"jumps {jumps}", f"contact {kinds}; {int((~one.settled).sum())} not of one period")
@@ -228,7 +228,7 @@ def _conclusions(
     off: dict[float, tuple[float, float]],
     doubled: FrequencyResponse,
     reached: Basins,
-    sweeps: tuple[Sweep, Sweep],
+    sweeps: tuple[OscillatorSweep, OscillatorSweep],
 ) -> tuple[Conclusion, ...]:
     exact, simple = found["exact"], found["describing function"]
     at, size = exact.peak

@@ -12,7 +12,8 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from trunnion._version import __version__
-from trunnion.plots.style import DPI
+from trunnion.pictures.draw_matplotlib import DPI, draw
+from trunnion.pictures.picture import Picture
 from trunnion.reporting.pictures import address
 from trunnion.results.chart import StabilityChart
 from trunnion.writing import folder_written_whole
@@ -61,7 +62,7 @@ class PaperFigure:
     number: str
     caption: str
     assumed: str
-    draw: Callable[[], Figure] = field(repr=False, compare=False)
+    described: Callable[[], Picture | Figure] = field(repr=False, compare=False)
     charts: tuple[StabilityChart, ...] = ()
 
     @property
@@ -71,7 +72,8 @@ class PaperFigure:
 
     def plot(self) -> Figure:
         """The figure as the paper draws it."""
-        return self.draw()
+        found = self.described()
+        return draw(found).figure.figure if isinstance(found, Picture) else found
 
 
 CONFIRMED, CORRECTED, UNDECIDED, ADDED = "confirmed", "corrected", "not decided", "added"

@@ -1,0 +1,92 @@
+"""Long lines: chains of 10 to 300 inertias, straight and with two bent joints, processor seconds of warm calls.
+
+    PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
+
+``order_response`` at 50 speeds and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at
+one speed. Medians on one thread.
+"""
+
+from __future__ import annotations
+
+import argparse
+import statistics
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+import trunnion as tn
+from trunnion.steady.orders import spectrum
+
+SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
+ORDERS = (1.5, 3.0, 4.5)
+TARGETS = {50: 0.15, 100: 0.4, 300: 1.5}
+"""Seconds of ``order_response`` with two bent joints."""
+
+
+def chain(inertias: int, joints: int = 2) -> tn.Driveline:
+    """A driven chain shaken by three orders at its middle; joints at 15° behind the first and the second third."""
+    rng, elements = np.random.default_rng(inertias), [tn.ConstantSpeed()]
+    bends = {inertias // 3 * (j + 1) for j in range(joints)}
+    for i in range(inertias):
+        k = float(rng.uniform(1e5, 1e6))
+        elements.append(tn.Shaft(stiffness=k, damping=2e-5 * k))
+        shaken = [{"order": order, "amplitude": 50.0} for order in ORDERS] if i == inertias // 2 else []
+        elements.append(tn.Disk(inertia=float(rng.uniform(0.05, 0.3)), excitation=shaken))
+        if i + 1 in bends:
+            elements.append(tn.HookeJoint(angle=tn.deg(15.0)))
+    return tn.Driveline(elements)
+
+
+def median(work: Callable[[], object], repeats: int) -> float:
+    """Processor seconds of ``work``, once for warmth and then the median."""
+    work()
+    times = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        work()
+        times.append(time.process_time() - begin)
+    return statistics.median(times)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--most", type=int, default=300)
+    asked = parser.parse_args()
+    print("| inertias | order_response, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    for n in (10, 20, 50, 100, 300):
+        if n <= asked.most:
+            straight, bent = (
+                median(lambda line=line: tn.order_response(line, SPEEDS), asked.repeats)
+                for line in (chain(n, 0), chain(n))
+            )
+            print(f"| {n} | {straight:.4f} | {bent:.3f} | {TARGETS.get(n, '')} |", flush=True)
+    print("\n| inertias, speeds | as chosen [s] | along the tree | whole matrices |\n|---|---|---|---|")
+    for n, speeds in ((3, 1), (3, 400), (4, 1), (4, 400), (6, 1), (6, 400), (20, 1), (20, 50)):
+        line, at = chain(n), tn.rpm(np.linspace(600.0, 3000.0, speeds))
+        chosen, along, whole = (
+            median(lambda line=line, at=at: tn.order_response(line, at), asked.repeats) for _ in ways()
+        )
+        print(f"| {n}, {speeds} | {chosen:.4f} | {along:.4f} | {whole:.4f} |", flush=True)
+    print("\n| inertias | stability, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    for n in (20, 50, 100, 300):
+        if n <= asked.most:
+            straight, bent = (
+                median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for line in (chain(n, 0), chain(n))
+            )
+            print(f"| {n} | {straight:.3f} | {bent:.3f} | {'0.02, 0.5' if n == 100 else ''} |", flush=True)
+
+
+def ways() -> Iterator[None]:
+    """``order_response`` as the cost model chooses, then always along the tree, then always by whole matrices."""
+    model = spectrum.tree_pays
+    for pays in (model, lambda *asked: True, lambda *asked: False):
+        spectrum.tree_pays = pays  # type: ignore[assignment]
+        yield
+    spectrum.tree_pays = model
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,372 @@
+"""A driveline as a sketch: every element in order, joints bent by their angle, numbers beside them.
+
+Not to scale. Bends are drawn alternately down and up so that the line stays on the page; planes and fork
+offsets are written. Branches get a row of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Ellipse, Polygon
+
+from trunnion.arrays import Array
+from trunnion.driveline.belts import Belt
+from trunnion.driveline.dampers import Damper
+from trunnion.driveline.differential import Differential
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.planetary import Planetary
+from trunnion.driveline.quantities import DEGREE
+from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.pictures.draw_matplotlib import SMALL, new_figure, through
+from trunnion.pictures.looks import ACCENT, FAINT, INK
+
+WIDTH = 7.4
+SLANT = 38 * DEGREE
+"""Slope of the names."""
+STEEPEST = 30 * DEGREE
+"""Larger bends are drawn as this."""
+HEADROOM = 1.75
+"""What stands above a branch: wheels, numbers, a load in two lines."""
+LENGTH = {
+    "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
+    "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
+    "TunedDamper": 0.7, "Differential": 0.9,
+}  # fmt: skip
+JOINT_LENGTH = 0.9
+SHAFTS = (Spring, PiecewiseShaft)
+GEARS = (Ratio, GearPair, Planetary, Belt, Differential)
+TUBE, SOLID = "#cfe3f2", "#e9e9e9"
+
+
+@dataclass(frozen=True)
+class _Place:
+    """An element on the page: its two ends and its direction [rad]; ``row`` of the branch."""
+
+    element: Element
+    name: str
+    start: Array
+    end: Array
+    direction: float
+    behind: float
+    row: int
+
+    @property
+    def middle(self) -> Array:
+        """Half-way between its ends."""
+        return (self.start + self.end) / 2
+
+    @property
+    def lowest(self) -> float:
+        """Height of the lower end."""
+        return float(min(self.start[1], self.end[1]))
+
+    def part(self, begin: float, end: float) -> _Place:
+        """What lies between two distances behind its middle."""
+        along = _along(self.direction)
+        return replace(self, start=self.middle + begin * along, end=self.middle + end * along)
+
+
+def draw(line: Driveline) -> Figure:
+    """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1."""
+    places = _places(line)
+    x = np.array([p for q in places for p in (q.start[0], q.end[0])])
+    scale = WIDTH / max(x.max() - x.min() + 1.6, 9.0)
+    size = float(np.clip(SMALL * scale / 0.62, 7.5, SMALL))
+    letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
+    names = max(len(q.name) for q in places) + 3
+    places = _places(line, letter)
+    floor = _floors(places)
+    ceiling = max(max(q.start[1], q.end[1]) for q in places)
+    right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
+    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
+    low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
+    scale = WIDTH / max(high[0] - low[0], 9.0)
+    figure = new_figure(WIDTH, scale * (high[1] - low[1]), layout=None)
+    axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(low[0], low[0] + WIDTH / scale)
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+    disks = [p.element.moment_of_inertia for p in places if isinstance(p.element, Disk)]
+    for number, place in enumerate(places, start=1):
+        _DRAW.get(place.element.kind, _joint)(axes, place, disks)
+        _name(axes, place, number, size, floor[place.row])
+        _numbers(axes, place, size, _between_joints(line, number - 1))
+    for place, parent in zip(places, line.parents, strict=True):
+        if parent is not None and places[parent].row != place.row:
+            _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
+        if isinstance(place.element, Spring) and place.element.to is not None:
+            closed = places[line.index(place.element.to)]
+            _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
+    return figure
+
+
+def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
+    """Walk the line; a branch starts below its parent and the names, of that width of a letter, that reach over it."""
+    places: list[_Place] = []
+    down: dict[int, float] = {}
+    rows = 0
+    for i, (element, name, parent) in enumerate(zip(line.elements, line.names, line.parents, strict=True)):
+        if parent is None:
+            start, direction, row = np.zeros(2), 0.0, 0
+        elif parent == i - 1:
+            before = places[-1]
+            start, direction, row = before.end, before.behind, before.row
+        else:
+            rows += 1
+            deepest = min(p.lowest for p in places)
+            left, floors = places[parent].end[0] + 0.5, _floors(places)
+            lengths = [letter * (len(p.name) + 3) for p in places]
+            names = [
+                floors[p.row] - length * np.sin(SLANT)
+                for p, length in zip(places, lengths, strict=True)
+                if p.start[0] + length * np.cos(SLANT) > left - 1.0
+            ]
+            start, direction, row = np.array([left, min([deepest - 3.2, *(n - HEADROOM for n in names)])]), 0.0, rows
+        angle = abs(float(getattr(element, "angle", 0.0)))
+        behind = direction
+        if angle:
+            down[row] = -down.get(row, 1.0)
+            side = -np.sign(direction) if direction else down[row]  # a sloping line back towards the horizontal
+            behind = direction + side * min(angle, STEEPEST)
+        half = LENGTH.get(element.kind, JOINT_LENGTH) / 2
+        end = start + half * _along(direction) + half * _along(behind)
+        places.append(_Place(element, name, start, end, direction, behind, row))
+    return places
+
+
+def _along(direction: float) -> Array:
+    return np.array([np.cos(direction), np.sin(direction)])
+
+
+def _across(direction: float) -> Array:
+    return np.array([-np.sin(direction), np.cos(direction)])
+
+
+def _bar(axes: Axes, *points: Array, **look: Any) -> None:
+    """A line through points, by default the axle of an element."""
+    through(axes, *points, **{"color": INK, "lw": 2.0, "zorder": 2, **look})
+
+
+def _box(axes: Axes, place: _Place, half: float, **look: Any) -> None:
+    side = half * _across(place.direction)
+    corners = [place.start - side, place.end - side, place.end + side, place.start + side]
+    axes.add_patch(Polygon(corners, closed=True, **{"ec": INK, "lw": 1.1, "zorder": 3, **look}))
+
+
+def _drive(axes: Axes, place: _Place, disks: list[float]) -> None:
+    _box(axes, place, 0.5, fc="white", hatch="////")
+
+
+def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
+    shaft = place.element
+    assert isinstance(shaft, Shaft)
+    tube = shaft.outer_diameter is not None
+    _box(axes, place, 0.17 if tube else 0.08, fc=TUBE if tube else SOLID)
+
+
+def _coupling(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two flanges with an elastic element between them."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.14, 0.14), 0.3, fc="#d8c7a0", hatch="xxx")
+    _box(axes, place.part(-0.24, -0.14), 0.36, fc=SOLID)
+    _box(axes, place.part(0.14, 0.24), 0.36, fc=SOLID)
+
+
+def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A shaft with a spring in a window, as a clutch disc has them."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.4, 0.4), 0.26, fc="white")
+    turns = np.linspace(-0.36, 0.36, 10)[:, None] * _along(place.direction)
+    turns = place.middle + turns + np.tile([0.14, -0.14], 5)[:, None] * _across(place.direction)
+    _bar(axes, *turns, lw=1.1, zorder=4)
+
+
+def _dual_mass(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Springs between two flywheels."""
+    _stages(axes, place, disks)
+    for begin in (-0.55, 0.41):
+        _box(axes, place.part(begin, begin + 0.14), 0.7, fc="#9db7c9")
+
+
+def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Height by the logarithm of the inertia: drivelines span decades."""
+    disk = place.element
+    assert isinstance(disk, Disk)
+    low, high = min(disks), max(disks)
+    share = np.log(disk.moment_of_inertia / low) / np.log(high / low) if high > low * 1.001 else 0.5
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
+
+
+def _damper(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A ring above and below in its housing, in oil or on a spring."""
+    damper = place.element
+    assert isinstance(damper, Damper)
+    _bar(axes, place.start, place.end)
+    for side in (1, -1):
+        middle = replace(place, start=place.start + side * 0.62 * _across(place.direction),
+                         end=place.end + side * 0.62 * _across(place.direction))  # fmt: skip
+        _bar(axes, place.middle, middle.middle, lw=1.4)
+        _box(axes, middle.part(-0.24, 0.24), 0.26, fc="#d5e8dd" if damper.dragged else "#d8c7a0")
+        _box(axes, middle.part(-0.15, 0.15), 0.16, fc="#8fa9b8")
+
+
+def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two wheels in mesh, sizes by the ratio."""
+    element = place.element
+    assert isinstance(element, Ratio | GearPair)
+    share = float(np.clip(abs(element.speed_ratio), 0.25, 4.0))
+    first = 0.8 / (1 + share)
+    _bar(axes, place.start, place.middle)
+    _bar(axes, place.middle, place.end)
+    for radius, offset, face in ((first, 0.0, "#f1d9a7"), (first * share, first * (1 + share), "#f7ead0")):
+        centre = place.middle + offset * _across(place.direction)
+        look: dict[str, Any] = {"fc": face, "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
+
+
+def _belt(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two pulleys, sizes by the ratio, and a belt round them."""
+    belt = place.element
+    assert isinstance(belt, Belt)
+    share = float(np.clip(belt.speed_ratio, 0.25, 4.0))
+    radii = 0.45 / max(1.0, share), 0.45 * share / max(1.0, share)
+    centres = place.middle, place.middle + 1.1 * _across(place.direction)
+    _bar(axes, place.start, place.end)
+    for radius, centre in zip(radii, centres, strict=True):
+        look: dict[str, Any] = {"fc": "#e9e9e9", "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
+    for side in (-0.15, 0.15):
+        ends = [centre + side * _along(place.direction) for centre in centres]
+        _bar(axes, *ends, lw=1.4, zorder=4)
+
+
+def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A ring above and below, planets on the sun; what is held is hatched."""
+    element = place.element
+    assert isinstance(element, Planetary)
+    sun = 0.75 * element.teeth_sun / element.teeth_ring
+    planet = (0.75 - sun) / 2
+    _bar(axes, place.start, place.end)
+    look: dict[str, Any] = {"ec": INK, "lw": 1.1, "zorder": 3, "angle": np.rad2deg(place.direction)}
+    wheels = [(0.0, sun, "sun")]
+    for side in (1, -1):
+        wheels += [(side * (sun + planet), planet, "carrier"), (side * 0.82, 0.07, "ring")]
+    for offset, radius, shaft in wheels:
+        centre = place.middle + offset * _across(place.direction)
+        face = "#f1d9a7" if shaft == "sun" else "#f7ead0"
+        hatch = "////" if shaft == element.held else None
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, fc=face, hatch=hatch, **look))
+
+
+def _differential(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A case with a crown wheel, and two side gears in it."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.22, 0.22), 0.5, fc="#f7ead0")
+    _box(axes, place.part(-0.34, -0.22), 0.75, fc="#f1d9a7")
+    for side in (1, -1):
+        gear = place.middle + side * 0.25 * _across(place.direction)
+        look: dict[str, Any] = {"fc": "#f1d9a7", "ec": INK, "lw": 1.1, "zorder": 4}
+        axes.add_patch(Ellipse(tuple(gear), 0.22, 0.34, angle=np.rad2deg(place.direction), **look))
+
+
+def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
+    centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
+    for end, direction, sign in ((place.start, place.direction, 1), (place.end, place.behind, -1)):
+        side = 0.26 * _across(direction)
+        neck = end + sign * 0.14 * _along(direction)
+        for arm in (side, -side):
+            _bar(axes, end, neck, neck + arm, centre + arm * 0.9, lw=1.6, solid_joinstyle="round", zorder=3)
+    hooke = place.element.kind == "HookeJoint"
+    axes.plot(*centre, "P" if hooke else "o", ms=7, mfc="white", mec=INK, mew=1.4, zorder=4)
+    if place.behind != place.direction:
+        straight = centre + 1.5 * _along(place.direction)
+        _bar(axes, centre, straight, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=1)
+
+
+_DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
+    "ConstantSpeed": _drive,
+    "Shaft": _shaft,
+    "Coupling": _coupling,
+    "Disk": _disk,
+    "Ratio": _ratio,
+    "GearPair": _ratio,
+    "ViscousDamper": _damper,
+    "TunedDamper": _damper,
+    "Belt": _belt,
+    "DualMassFlywheel": _dual_mass,
+    "Planetary": _planetary,
+    "Differential": _differential,
+    "PiecewiseShaft": _stages,
+}
+
+
+def _floors(places: list[_Place]) -> dict[int, float]:
+    """Height of the names of each row: below everything in it."""
+    rows = {place.row for place in places}
+    return {r: min(p.lowest for p in places if p.row == r) - 1.05 for r in rows}
+
+
+def _name(axes: Axes, place: _Place, number: int, size: float, floor: float) -> None:
+    """Number and name, slanted below the row."""
+    middle = place.middle
+    axes.text(
+        middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
+        fontsize=size, color=INK, ha="left", va="center",
+    )  # fmt: skip
+    below = 0.95 if isinstance(place.element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
+    if middle[1] - below > floor + 0.1:
+        axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)
+
+
+def _between_joints(line: Driveline, place: int) -> bool:
+    """Whether a shaft has a joint on both sides of it along its chain, so that its fork offset matters."""
+
+    def bends(i: int | None) -> bool:
+        return i is not None and hasattr(line.elements[i], "angle")
+
+    def reaches_joint(step: Callable[[int], int | None]) -> bool:
+        i = step(place)
+        while i is not None and not bends(i) and not isinstance(line.elements[i], SHAFTS):
+            i = step(i)
+        return bends(i)
+
+    first_behind = {parent: i for i, parent in reversed([*enumerate(line.parents)]) if parent is not None}
+    return reaches_joint(line.parents.__getitem__) and reaches_joint(first_behind.get)
+
+
+def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
+    """What the geometry of the line needs: angles, planes, fork offsets, ratios; above the element."""
+    element = place.element
+    text = ""
+    angle, plane = (float(getattr(element, key, 0.0)) for key in ("angle", "plane"))
+    if hasattr(element, "angle"):
+        text = f"β {angle / DEGREE:.4g}°" + (f"\nplane {plane / DEGREE:.4g}°" if plane else "")
+    elif isinstance(element, SHAFTS) and (element.fork_offset or between):
+        text = f"forks {element.fork_offset / DEGREE:.4g}°"
+    elif isinstance(element, GEARS):
+        text = f"i {element.speed_ratio:.4g}"
+    elif isinstance(element, Disk) and element.load_torque:
+        text = f"load\n{element.load_torque:.4g} N·m"
+    elif isinstance(element, ConstantSpeed):
+        text = "Ω"
+    if isinstance(element, GEARS):  # beside the upper wheel
+        at = place.end + np.array([0.05, 0.75])
+        axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
+    elif text:
+        height = 1.0 if isinstance(element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
+        colour = ACCENT if hasattr(element, "angle") else INK
+        axes.text(
+            place.middle[0], place.middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom"
+        )

@@ -1,0 +1,147 @@
+"""Stability of long lines from all their modes, against the matrices of the period and closed forms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.long_trees import random_tree
+from oracles.sampling import quick_only
+
+import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.topology import require_period
+from trunnion.floquet.propagation import tree_modes
+from trunnion.floquet.propagation.tree_modes import floquet_modes
+from trunnion.floquet.ranges import exponents
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import meetings
+from trunnion.floquet.stability import stability as judged
+from trunnion.floquet.stability.along import stability_along
+
+SPEED = 150.0
+
+
+def modes(line: tn.Driveline, speed: float) -> Any:
+    assembly = assemble(line)
+    co = assembly.coefficients(assembly.table(1, speed))
+    return floquet_modes(assembly.topology, co, require_period(line, assembly.topology))
+
+
+def by_the_period(line: tn.Driveline, speed: float) -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(judged, "floquet_modes", lambda *asked: None)
+        return tn.stability(line, speed)
+
+
+@pytest.mark.parametrize("seed", quick_only((4, 13), range(200)))
+def test_random_trees_against_the_matrices_of_the_period(seed: int) -> None:
+    """The radius within both errors; every multiplier of the one among those of the other."""
+    most = 21 if seed in (4, 13) else 120
+    line = random_tree(seed, 20, most, driven=True)
+    found = tn.stability(line, SPEED)
+    other = by_the_period(line, SPEED)
+    assert abs(found.spectral_radius - other.spectral_radius) <= found.error_estimate + other.error_estimate
+    assert len(found.multipliers) == 2 * len(found.names)
+    near = np.abs(other.multipliers[:, None] - found.multipliers)
+    bound = other.multiplier_error[:, None] + found.multiplier_error
+    assert ((near <= bound).sum(axis=1) > 0).all() and ((near <= bound).sum(axis=0) > 0).all()
+    assert found.verdict == other.verdict and found.liouville_defect < 1e-8
+
+
+def uniform(inertias: int, damping: float = 0.0, angle: float | None = None) -> tn.Driveline:
+    """Equal shafts and disks; two joints where an ``angle`` is given."""
+    elements: list[Any] = [tn.ConstantSpeed()]
+    for i in range(inertias):
+        elements += [tn.Shaft(stiffness=2e5, damping=damping), tn.Disk(inertia=0.1)]
+        if angle and i in (2, inertias // 2):
+            elements.append(tn.HookeJoint(angle=angle))
+    return tn.Driveline(elements)
+
+
+def test_a_uniform_chain_has_the_multipliers_of_its_closed_form() -> None:
+    """ω_k = 2 √(k/J) sin((2k − 1)π / (4n + 2)), damping in proportion to stiffness; nothing integrated."""
+    n, c = 100, 0.05
+    found = tn.stability(uniform(n, c), SPEED)
+    root = 2 * np.sqrt(2e5 / 0.1) * np.sin((2 * np.arange(1, n + 1) - 1) * np.pi / (4 * n + 2))
+    decay = c / 2e5 * root**2 / 2
+    exponent = -decay + 1j * np.sqrt(root**2 - decay**2)
+    expected = np.exp(np.concatenate([exponent, exponent.conj()]) * found.period / SPEED)
+    apart = np.abs(found.multipliers[:, None] - expected).min(axis=1)
+    assert (apart <= found.multiplier_error).all() and found.multiplier_error.max() < 1e-10
+
+
+@pytest.mark.parametrize("order, real", [(2, False), (3, True)])
+def test_growth_where_modes_meet(order: int, real: bool) -> None:
+    """At Ω = 2ω₁, ω₁ + ω₂ = 2Ω nearly, and at 3ω₁ = ω₂ nearly, where two multipliers meet on the real axis."""
+    first = 2 * np.sqrt(2e5 / 0.1) * np.sin(np.pi / 66)
+    line, speed = uniform(16, 1e-3, np.deg2rad(25.0)), order * first
+    found, other = modes(line, speed), by_the_period(line, speed)
+    radius = np.abs(found.multiplier).max()
+    assert radius > 1.05 and (np.abs(found.multiplier[0].imag) < 1e-9) == real
+    assert abs(radius - other.spectral_radius) <= found.error[0] + other.error_estimate
+
+
+def test_two_modes_that_are_one_count_as_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Their states are not independent, which no count of exponents would tell."""
+    line = uniform(20, 0.05, 0.3)
+
+    class Twice(tree_modes._Line):
+        def starts(self) -> Any:
+            value, shape = super().starts()
+            value[3], shape[3] = value[4], shape[4]
+            return value, shape
+
+        def lost(self, value: Any) -> Any:
+            return np.zeros(len(value), dtype=bool)
+
+    assert modes(line, SPEED) is not None
+    monkeypatch.setattr(tree_modes, "_Line", Twice)
+    assert modes(line, SPEED) is None
+
+
+def test_what_side_orders_leave_out_is_in_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With a third of them, wrong by more than rounding and known to be."""
+    line = uniform(20, 0.05, 0.6)
+    right = np.abs(modes(line, 80.0).multiplier[0])
+    monkeypatch.setattr(tree_modes, "DECADES", 1.0)
+    monkeypatch.setattr(tree_modes, "WIDER", 0.0)
+    monkeypatch.setattr(tree_modes._Line, "_settled", _narrow(tree_modes._Line._settled))
+    found = modes(line, 80.0)
+    assert 1e-12 < abs(np.abs(found.multiplier[0]) - right) < found.error[0]
+
+
+def _narrow(settled: Any) -> Any:
+    """``_settled`` with the outermost harmonics left out of the solution."""
+
+    def solved(self: Any, value: Any, x: Any, h: Any) -> Any:
+        inner = np.abs(h) < np.abs(h).max()
+        found, y = settled(self, value, x[..., inner], h[inner])
+        out = np.zeros_like(x)
+        out[..., inner] = y
+        return found, out
+
+    return solved
+
+
+def test_along_a_range_as_at_single_speeds() -> None:
+    """Radius and verdict of a line that the kernel would have known to 1e-4."""
+    line = uniform(44, 0.2, 0.3)
+    along = stability_along(assemble(line), [900.0, 1500.0])
+    for radius, error, speed in zip(along.radius, along.error, along.speed, strict=True):
+        one = tn.stability(line, speed)
+        assert abs(radius - one.spectral_radius) <= error + one.error_estimate and error < 1e-9
+
+
+def test_meetings_of_exponents_along_the_tree_and_by_whole_matrices(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Speeds at which modes may grow together: three speeds beside each tell them to the square of 1e-3."""
+    line = uniform(12, 0.1, 0.3)
+    for i, name in enumerate(line.names):
+        if name.startswith("Shaft"):  # unlike each other, so that no more than two modes meet
+            line = line.replace(name, stiffness=2e5 * (1.5 + np.sin(i)))
+    span = Span(assemble(line), 200.0, 320.0)
+    along = meetings(span, 200.0, 320.0)[0]
+    monkeypatch.setattr(exponents, "LONG", 10**9)
+    whole = meetings(span, 200.0, 320.0)[0]
+    assert len(along) > 3 and along == pytest.approx(whole, rel=1e-7)
