@@ -8,6 +8,7 @@ from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
 from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.study import tolerance_study as tolerance_study
+from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
@@ -15,6 +16,7 @@ from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
+from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint
@@ -35,6 +37,8 @@ from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
+from trunnion.driveline import TunedDamper as TunedDamper
+from trunnion.driveline import ViscousDamper as ViscousDamper
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump
 from trunnion.driveline import dumps as dumps
@@ -63,6 +67,7 @@ from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
 from trunnion.modes.bending import bending_speeds as bending_speeds
+from trunnion.modes.damper_optimum import damper_optimum as damper_optimum
 from trunnion.modes.natural_frequencies import natural_frequencies as natural_frequencies
 from trunnion.modes.resonance_speeds import resonance_speeds as resonance_speeds
 from trunnion.motion.chaos.bifurcation_diagram import bifurcation_diagram as bifurcation_diagram

@@ -15,7 +15,7 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import FEATURES, UNEVEN, feature
-from trunnion.driveline.remarks import HELD, SERIES, remarks
+from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
@@ -52,6 +52,8 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in remarks(line) if key in said)
     if TABLE[analysis]["dry friction"].treatment in (Treatment.REFUSED, Treatment.NOT_JUDGED):
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
+    if TABLE[analysis][DRAGGED].reason == SET_ASIDE:
+        own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(ring)) for ring in feature(DRAGGED).places(line))
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
@@ -63,15 +65,21 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
+SET_ASIDE = "the multiplier at 1 is set aside"
+DRAGGED_ALONG = "{} is dragged along by oil alone: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
+"""What is said of the ring of a damper without a spring by what judges disturbances."""
+
+
 def _row(
     *,
     refused: Mapping[str, Words] | None = None,
     said: Mapping[str, Words] | None = None,
     not_judged: Mapping[str, Words] | None = None,
     inert: Mapping[str, Words] | None = None,
+    set_aside: tuple[str, ...] = (),
 ) -> Row:
-    """Cells of all features: those named, the others counted."""
-    row = {f.key: Cell(Treatment.COUNTED) for f in FEATURES}
+    """Cells of all features: those named, the others counted; of those ``set_aside`` the multiplier at 1 is."""
+    row = {f.key: Cell(Treatment.COUNTED, SET_ASIDE if f.key in set_aside else "") for f in FEATURES}
     treated = {
         Treatment.REFUSED: refused,
         Treatment.SAID: said,
@@ -138,7 +146,9 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             *(key for key in UNEVEN if key != "Hooke's joint"),
-            "ratio", "planetary set", "gear mesh", "mesh damping", "impact damping", "backlash", "transmission error",
+            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "planetary set",
+            "gear mesh", "mesh damping",
+            "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
             "quadratic load", SERIES,
         ),
@@ -174,9 +184,11 @@ _ONE_DRIVE = {
     **_TREES,
     "prescribed far end": "the nonlinear equations have one prescribed speed",
 }
+_ANYWHERE = {DRAGGED: "its ring may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
     **_NOT_FOLLOWED,
+    **_ANYWHERE,
     "free start": "the speed follows from the torques",
     "drive share": "belongs to lines that start free",
 }
@@ -186,6 +198,7 @@ _PASSING = {
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
         (*UNEVEN, "joint plane", "mesh-stiffness variation", "impact damping", "quadratic load"),
@@ -196,7 +209,8 @@ _UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "angle of an ideal joint", "mesh damping", "impact damping", "backlash", "transmission error",
+        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "angle of an ideal joint",
+        "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time",
@@ -205,14 +219,14 @@ _RIGID = dict.fromkeys(
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
 ) | {"branch": "not on the way to the output asked for"}  # fmt: skip
-_TUBES = ("tube inertia", "bending stiffness", "ratio", "planetary set", TIED, "gear mesh")
+_TUBES = ("tube inertia", "bending stiffness", "ratio", "belt", "planetary set", TIED, "gear mesh")
 _TUBE = "a tube whirls between its own joints, by its own dimensions"
 _RIGID_MESH = ("a turn takes the mesh as a rigid pair in contact", "taken as a rigid pair in contact")
 _STEADY = "torques are those of steady running; ask periodic_response() or simulate() for what it does"
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 ROWS: dict[str, Row] = {
-    "modes": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT),
+    "modes": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
     "resonances": _row(
         refused=_RUBBING,
         said={
@@ -228,9 +242,10 @@ ROWS: dict[str, Row] = {
             **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
     ),
-    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE),
-    "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}),
+    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE, set_aside=(DRAGGED,)),
+    "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}, set_aside=(DRAGGED,)),
     "loaded modes": _row(
+        set_aside=(DRAGGED,),
         refused=_RUBBING,
         said=_BY_PLACE,
         inert={
@@ -240,8 +255,9 @@ ROWS: dict[str, Row] = {
             "load torque": _MODES_INERT["load torque"],
         },
     ),
-    "judgement": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN),
+    "judgement": _row(said=_BY_PLACE, not_judged=_UNANSWERED, inert=_EVEN, set_aside=(DRAGGED,)),
     "comparison": _row(
+        set_aside=(DRAGGED,),
         said=_BY_PLACE,
         not_judged={key: (reason, "not compared: frequency, growth rate, torque") for key, reason in _RUBBING.items()},
         inert=_EVEN,
@@ -280,9 +296,10 @@ ROWS: dict[str, Row] = {
     ),
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
     "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_PASSIVE),
+    "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
     "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
 }
@@ -291,6 +308,7 @@ TABLE: dict[str, Row] = {one.name: ROWS[one.features] for one in ANALYSES if one
 """The row of each analysis."""
 
 NOT_ANALYSES = {
+    "damper_optimum": "closed forms for one mode of natural_frequencies, which says what is left out",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",

@@ -209,7 +209,7 @@ ANALYSES = (
     Analysis(
         "periodic_response",
         "The true periodic motion, its torques, orders and stability, beside what linear theory says.",
-        features="motion",
+        features="periodic motion",
         pictures={
             "PeriodicResponse.plot": "trunnion.pictures.motion:period",
             "PeriodicResponse.plot_orders": "trunnion.pictures.motion:orders",
@@ -221,7 +221,7 @@ ANALYSES = (
     Analysis(
         "linearity_check",
         "How far linear theory holds at a speed: order-response beside periodic-response, and what misleads it.",
-        features="motion",
+        features="periodic motion",
         pictures={"LinearityCheck.plot": "trunnion.pictures.motion:linearity"},
         command="trunnion.cli.motion:linearity_check",
     ),

@@ -32,6 +32,7 @@ EXPECTED = {
     "stability": ALWAYS,
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
+    "damper-heat": ALWAYS,
     "m68": ALWAYS,
     "spicer-angles": VEHICLES,
     "equal-angles": VEHICLES,
@@ -169,6 +170,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     wide = [tn.Limit(of="shaft", max_torque=1e6)]
     shaft = tn.Shaft(name="shaft", stiffness=4e4, damping=20.0)
     soft = tn.Coupling(name="shaft", stiffness=4e4, damping=20.0, vibratory_torque=20.0)
+    hot = tn.ViscousDamper(name="hot", ring_inertia=0.2, damping=20.0, heat_rating=0.1)
     tube = tn.Shaft(
         name="shaft", outer_diameter="60 mm", length="1 m", material="steel", tensile_strength="600 MPa", damping=20.0
     )
@@ -180,6 +182,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     return {
         "own-limits": tn.Driveline([engine, shaft, load], limits=tight),
         "din-740": tn.Driveline([engine, soft, load], limits=wide),
+        "damper-heat": tn.Driveline([engine, hot, shaft, load], limits=[*wide, tn.Limit(of="hot", max_torque=1e6)]),
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(
             [engine, shaft, tn.Disk(inertia=0.1), teeth, idle], limits=[*wide, tn.Limit(of="gears", max_torque=1e6)]

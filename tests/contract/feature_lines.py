@@ -178,6 +178,11 @@ def rippled() -> Change:
     return jointed(tn.RzeppaJoint(angle=0.3, ripple=ripple, name="extra"))
 
 
+def damped_by(damper: object) -> Change:
+    """A damper on the hub."""
+    return behind("hub", damper)
+
+
 END = (tn.Shaft(stiffness=1e4, damping=5, name="end"), tn.ConstantSpeed(name="far"))
 STRAIGHT_JOINT = jointed(tn.IdealJoint(name="extra"))
 OWN = {one.key for one in FEATURES}
@@ -207,6 +212,9 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
 CHANGES: dict[str, tuple[Change, Change]] = {
     "inertia": (same, put("hub", inertia=0.15)),
     "stiffness": (same, put("front", stiffness=2e4)),
+    "viscous damper": (same, damped_by(tn.ViscousDamper(ring_inertia=0.03, damping=4.0, stiffness=900.0))),
+    "damper without a spring": (same, damped_by(tn.ViscousDamper(inertia=0.02, ring_inertia=0.03, damping=4.0))),
+    "tuned damper": (same, damped_by(tn.TunedDamper(ring_inertia=0.03, stiffness=2e3, damping=1.0))),
     "tube inertia": (tube(), lambda line: tube()(line).replace("front", density=7850.0)),
     "bending stiffness": (tube(), tube(young_modulus=1e11)),
     "damping": (same, put("front", damping=9.0)),
@@ -229,6 +237,15 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     ),
     **{name: (STRAIGHT_JOINT, jointed(joint.but(name="extra"))) for name, joint in JOINTS.items() if name in OWN},
     "ratio": (same, behind("hub", tn.Ratio(ratio=2, name="gears"))),
+    "dual-mass flywheel": (
+        same,
+        front(tn.DualMassFlywheel(
+            primary_inertia=0.1, secondary_inertia=0.04, stiffnesses=[1e4], damping=5, name="front"
+        )),
+    ),
+    "belt": (
+        same, behind("hub", tn.Belt(radius_in=0.06, radius_out=0.12, span_stiffness=1e6, damping=2.0, inertia_out=0.02))
+    ),
     "planetary set": (same, behind("hub", planetary())),
     "shafts tied to two others": (unbent, tied),
     "closed loop": (unbent, looped),

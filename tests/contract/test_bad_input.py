@@ -6,13 +6,15 @@ import re
 import pytest
 
 import trunnion as tn
-from trunnion import assess
+from trunnion import assess, damper_optimum, natural_frequencies
 from trunnion.driveline import (
+    Belt,
     ConstantSpeed,
     Coupling,
     Differential,
     Disk,
     Driveline,
+    DualMassFlywheel,
     HookeJoint,
     IdealJoint,
     Limit,
@@ -24,6 +26,8 @@ from trunnion.driveline import (
     Shaft,
     SwitchedOff,
     Tolerance,
+    TunedDamper,
+    ViscousDamper,
     dump,
     load,
     loads,
@@ -32,6 +36,30 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def damped():
+    """A damper at the middle of three equal disks that start free."""
+    ends, shaft = Disk(inertia=1.0), Shaft(stiffness=100.0)
+    return Driveline(
+        [ends, shaft, Disk(inertia=1.0), ViscousDamper(ring_inertia=0.1, damping=1.0, name="damper"), shaft, ends]
+    )
+
+
+def on_a_bare_shaft():
+    """A damper whose housing has no inertia, and nothing else where it sits."""
+    return Driveline([Disk(inertia=1.0), Shaft(stiffness=100.0), ViscousDamper(ring_inertia=0.1, damping=1.0)])
+
+
+RUBS = {"torque": 1, "stiffness": 1}
+
+
+def dual_mass(**changes):
+    return DualMassFlywheel(**{"primary_inertia": 0.1, "secondary_inertia": 0.05, "stiffnesses": [1e3]} | changes)
+
+
+def belt(**changes):
+    return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
 
 
 def planetary(**changes: object) -> Planetary:
@@ -580,6 +608,59 @@ PYTHON = [
     ),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
+    (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: belt(radius_in=0), "Belt.radius_in = 0: must be positive", '"76 mm"'),
+    (lambda: belt(radius_out=-0.1), "Belt.radius_out = -0.1: must be positive", '"76 mm"'),
+    (lambda: belt(span_stiffness=0), "Belt.span_stiffness = 0: must be positive", "write for example"),
+    (lambda: belt(damping=-1), "Belt.damping = -1: must not be negative", "write for example"),
+    (lambda: belt(inertia_out=0), "Belt.inertia_out = 0: must be positive", "write for example"),
+    (lambda: belt(span_stiffness="4 N*m"), "Belt.span_stiffness = '4 N*m'", "N/m"),
+    (lambda: dual_mass(primary_inertia=None), "DualMassFlywheel.primary_inertia: must be a number", "kg*m^2"),
+    (lambda: dual_mass(secondary_inertia=0), "DualMassFlywheel.secondary_inertia = 0: must be positive", "write for"),
+    (lambda: dual_mass(stiffnesses=[0]), "DualMassFlywheel.stiffnesses = [0]: are all zero", "give a stage stiffness"),
+    (lambda: dual_mass(breakpoints=[0.1]), "DualMassFlywheel.stiffnesses", "must be 2 quantities"),
+    (lambda: dual_mass(breakpoints=[0.2, 0.1], stiffnesses=[1, 2, 3]), "DualMassFlywheel.breakpoints", "must rise"),
+    (lambda: dual_mass(friction=[{**RUBS, "torque": 0}]), "DualMassFlywheel.friction 1 torque = 0: must be", "15 N*m"),
+    (lambda: dual_mass(friction=[RUBS] * 9), "DualMassFlywheel.friction = [{", "at most 8 sliders; leave friction out"),
+    (
+        lambda: dual_mass(linear_amplitude=1, linear_frequency=9),
+        "DualMassFlywheel.linear_amplitude = 1: stands",
+        "stage",
+    ),
+    (lambda: ViscousDamper(damping=1), "ViscousDamper.ring_inertia: is missing", 'ring_inertia = "0.12 kg*m^2"'),
+    (lambda: ViscousDamper(ring_inertia=0.1), "ViscousDamper.damping: is missing", 'damping = "45 N*m*s/rad"'),
+    (
+        lambda: ViscousDamper(ring_inertia=0.1, damping=0),
+        "ViscousDamper.damping = 0: must be positive",
+        '"3 N*m*s/rad"',
+    ),
+    (lambda: ViscousDamper(ring_inertia=0, damping=1), "ViscousDamper.ring_inertia = 0: must be positive", "write for"),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, stiffness=0),
+        "ViscousDamper.stiffness = 0: must be positive",
+        "write for",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, inertia=-1),
+        "ViscousDamper.inertia = -1: must be positive",
+        "write for",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, heat_rating=0),
+        "ViscousDamper.heat_rating = 0: must be positive",
+        "write for",
+    ),
+    (lambda: TunedDamper(ring_inertia=1, damping=1), "TunedDamper.stiffness: is missing", '"1.5 kN*m/rad"'),
+    (
+        lambda: TunedDamper(ring_inertia=1, stiffness=1, damping=-1),
+        "TunedDamper.damping = -1: must not be negative",
+        "write for",
+    ),
+    (lambda: natural_frequencies(on_a_bare_shaft()), "ViscousDamper 1: has no inertia in front", "Disk in front of"),
+    (lambda: damper_optimum(line(), "damper"), "damper = 'damper': is no damper of this driveline", ""),
+    (lambda: damper_optimum(damped(), "dampr"), "damper = 'dampr': is no damper", "damper"),
+    (lambda: damper_optimum(damped(), "damper", 3), "mode = 3: is no elastic mode", "from 1 to 2"),
+    (lambda: damper_optimum(damped(), "damper", 1), "damper: stands in a node of mode 1", "free end"),
     (lambda: planetary(held="planets"), "Planetary.held = 'planets': is no shaft", '"sun", "carrier", "ring"'),
     (lambda: planetary(held=["sun", "ring"]), "Planetary.held = ['sun', 'ring']: holds two shafts", 'held = "sun"'),
     (lambda: planetary(held="sun"), "Planetary.held = 'sun': is the input", "hold carrier or ring"),

@@ -10,12 +10,14 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline import (
+    Belt,
     Clutch,
     ConstantSpeed,
     Coupling,
     Differential,
     Disk,
     Driveline,
+    DualMassFlywheel,
     GearPair,
     HookeJoint,
     IdealJoint,
@@ -26,6 +28,8 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    TunedDamper,
+    ViscousDamper,
     deg,
     rpm,
 )
@@ -53,6 +57,21 @@ PARTS = [
     Disk(outer_diameter=0.3, thickness=0.02, material="steel"),
     Planetary(teeth_sun=30, teeth_ring=72, input="sun", held="ring", planet_mass="0.8 kg", centre_distance="80 mm"),
     Differential(teeth_in=10, teeth_out=41, inertia="0.05 kg*m^2"),
+]
+COMPONENTS = [
+    ViscousDamper(inertia="0.05 kg*m^2", ring_inertia="0.12 kg*m^2", damping=45, heat_rating="400 W"),
+    ViscousDamper(ring_inertia=0.12, damping=45, stiffness="2 kN*m/rad"),
+    Belt(radius_in="60 mm", radius_out="150 mm", span_stiffness=4e5, damping=0.5, inertia_in=2e-3, inertia_out=0.05),
+    DualMassFlywheel(
+        primary_inertia=0.14,
+        secondary_inertia=0.06,
+        breakpoints=["-30 deg", "30 deg"],
+        stiffnesses=[2e3, 800, 2e3],
+        friction=[{"torque": "8 N*m", "stiffness": "4 kN*m/rad"}],
+        damping=0.5,
+    ),
+    DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
+    TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
 ]
 WITH_STAGES = [
     RzeppaJoint(
@@ -90,7 +109,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + WITH_STAGES, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element

@@ -4,12 +4,15 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 """
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
+from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
@@ -31,6 +34,7 @@ __all__ = [
     "Disk",
     "DoubleCardanJoint",
     "Driveline",
+    "DualMassFlywheel",
     "Element",
     "Excitation",
     "GearPair",
@@ -49,11 +53,14 @@ __all__ = [
     "SwitchedOff",
     "Tolerance",
     "TransmissionError",
+    "Belt",
     "Clutch",
     "Slider",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",
+    "TunedDamper",
+    "ViscousDamper",
     "deg",
     "dump",
     "dumps",

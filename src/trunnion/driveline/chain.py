@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import SerializeAsAny
 
 from trunnion.driveline.elements import ConstantSpeed, Element
-from trunnion.driveline.parts import Jointed, Sprung
+from trunnion.driveline.parts import Dragged, Jointed, Sprung
 from trunnion.driveline.quantities import Dimensionless, Frequency
 from trunnion.driveline.record import Name, Record
 from trunnion.driveline.refusals import nearest
@@ -142,7 +142,7 @@ def _parent(line: Chain, place: int) -> tuple[int | None, int]:
     """The element that one follows, and the coordinate there; −1 is the last."""
     after, name = line.elements[place].after, line.names[place]
     if after is None:
-        return place - 1 if place else None, -1
+        return (place - 1, line.elements[place - 1].onward) if place else (None, -1)
     owner, _, port = after.rpartition(".")
     if after not in line.names and owner in line.names[:place]:
         ports = line.elements[line.names.index(owner)].ports
@@ -156,10 +156,10 @@ def _parent(line: Chain, place: int) -> tuple[int | None, int]:
             raise InputError("does not come earlier", **where, remedy=f"move {name} behind {after}")
         raise InputError("is not an earlier element", **where, remedy=nearest(after, line.names[:place]))
     parent = line.names.index(after)
-    if any(isinstance(part, Jointed | Sprung) for part in line.elements[parent].parts()):
+    if any(isinstance(part, Jointed | Sprung | Dragged) for part in line.elements[parent].passes_on):
         remedy = "branches leave from a Disk, a ConstantSpeed or gears; put a Disk there"
         raise InputError(f"is a {line.elements[parent].kind}", **where, remedy=remedy)
-    return parent, -1
+    return parent, line.elements[parent].onward
 
 
 def _wrong_ends(line: Chain) -> Iterator[InputError]:

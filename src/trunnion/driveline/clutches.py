@@ -55,11 +55,11 @@ class Slider(Record):
         return self
 
 
-_READ = listed(Slider, "slider")
+READ_SLIDERS = listed(Slider, "slider")
 
 
 def _sliders(value: object) -> tuple[Slider, ...]:
-    made = _READ(value)
+    made = READ_SLIDERS(value)
     if not 1 <= len(made) <= MOST_SLIDERS:
         remedy = 'write friction = [{ torque = "15 N*m", stiffness = "5 kN*m/rad" }]'
         raise InputError(f"must be from 1 to {MOST_SLIDERS} sliders", value=len(made), remedy=remedy)
@@ -125,7 +125,14 @@ class Clutch(PiecewiseShaft):
     def linear(
         self, amplitude: float | str | None = None, frequency: float | str | None = None, torque: float | str = 0.0
     ) -> Shaft:
-        """A Shaft with the stiffness and damping that the clutch has on average at one motion, for linear analyses.
+        """A Shaft with the stiffness and damping that the clutch has on average at one motion, for linear analyses."""
+        stiffness, damping, offset = self.mean(amplitude, frequency, torque)
+        return Shaft(stiffness=stiffness, damping=damping, fork_offset=offset, name=self.name, after=self.after)
+
+    def mean(
+        self, amplitude: float | str | None = None, frequency: float | str | None = None, torque: float | str = 0.0
+    ) -> tuple[float, float, float]:
+        """Stiffness [N m/rad], damping [N m s/rad] and fork offset [rad] of what it is on average at one motion.
 
         Harmonic linearisation about the twist at which the spring carries ``torque`` [N m] on average: the torque in
         phase with a swing of ± ``amplitude`` [rad] over it, and the damping that takes as much energy at ``frequency``
@@ -141,14 +148,14 @@ class Clutch(PiecewiseShaft):
         frequency = self.linear_frequency if frequency is None else frequency
         if amplitude is None or frequency is None:
             remedy = 'write clutch.linear(amplitude="1 deg", frequency="30 Hz")'
-            raise InputError("is not stated", element="Clutch", key="linear_amplitude", remedy=remedy)
+            raise InputError("is not stated", element=self.kind, key="linear_amplitude", remedy=remedy)
         size, rate = _positive(amplitude, ANGLE, "amplitude"), _positive(frequency, FREQUENCY, "frequency")
         mean = parse(torque, TORQUE)
         spring = StageSpring(np.array(self.breakpoints), np.array(self.stiffnesses))
         middle = friction.middle_under(spring, mean, size)
         if np.isnan(middle):
             raise InputError(
-                f"has no stage that carries {mean:g} N·m: it slips", element=self.name or "Clutch", key="stiffnesses",
+                f"has no stage that carries {mean:g} N·m: it slips", element=self.name or self.kind, key="stiffnesses",
                 remedy="raise the torque at which it slips, or ask for a smaller one",
             )  # fmt: skip
         stiffness = float(friction.over_a_cycle(spring, middle, size)[1])
@@ -157,13 +164,8 @@ class Clutch(PiecewiseShaft):
         if self.damping_law == "in contact":
             stages = np.arange(len(self.stiffnesses)) != int(np.argmin(self.stiffnesses))
             viscous *= float(friction.damped_share(spring, stages, middle, np.array(size)))
-        return Shaft(
-            stiffness=stiffness,
-            damping=viscous + self.lost_per_cycle(size) / (np.pi * size**2 * rate),
-            fork_offset=self.fork_offset + float(middle) - mean / stiffness,
-            name=self.name,
-            after=self.after,
-        )
+        damping = viscous + self.lost_per_cycle(size) / (np.pi * size**2 * rate)
+        return stiffness, damping, self.fork_offset + float(middle) - mean / stiffness
 
 
 def _positive(value: float | str, kind: Kind, key: str) -> float:

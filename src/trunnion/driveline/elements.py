@@ -81,9 +81,19 @@ class Element(Record):
         """The class name: what ``type`` says in a file."""
         return type(self).__name__
 
+    ratings: ClassVar[tuple[str, ...]] = ()
+    """Numbers of its maker that move nothing and that checks compare with."""
+    onward: ClassVar[int] = -1
+    """The coordinate that whatever follows hangs on: the last, or 0 of what is a branch by itself."""
+
     def parts(self) -> tuple[Part, ...]:
         """What it is made of, see ``trunnion.driveline.parts``."""
         raise InputError("is not an element of a driveline", element=self.name or self.kind)
+
+    @property
+    def passes_on(self) -> tuple[Part, ...]:
+        """Those of its parts that lie between what is in front of it and what follows."""
+        return self.parts() if self.onward else ()
 
     def inertias(self, number: Numbers) -> tuple[Any, ...]:
         """Moment of inertia [kg m²] of every ``Heavy`` among its parts, for the values of its numbers, one or many."""

@@ -10,15 +10,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
-from trunnion.driveline.remarks import HELD, SERIES, held_excitations, unlike_in_series
+from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, held_excitations, unlike_in_series
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 
@@ -59,7 +62,17 @@ def _excited(test: Callable[[Excitation], object]) -> Finder:
 
 
 def _rubbing(at_one_motion: bool) -> Finder:
-    return _where(Clutch, "friction", lambda clutch: (clutch.linear_amplitude is not None) is at_one_motion)
+    return _where(
+        Clutch, "friction", lambda one: bool(one.friction) and (one.linear_amplitude is not None) is at_one_motion
+    )
+
+
+def _kind(kind: type[Element]) -> Finder:
+    return lambda line: [name for name, element in line.parts if isinstance(element, kind)]
+
+
+def _dragged(line: Driveline) -> list[str]:
+    return [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
 
 
 def _branches(line: Driveline) -> list[str]:
@@ -90,6 +103,15 @@ UNEVEN = (
 """Features of joints that do not pass rotation unchanged."""
 
 
+_STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
+_DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
+
+
+def _of(name: str, *keys: str) -> tuple[str, ...]:
+    """Some fields of a kind of element."""
+    return tuple(f"{name}.{key}" for key in keys)
+
+
 def _of_springs(*keys: str) -> tuple[str, ...]:
     """Some fields of every kind of spring that has them."""
     return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
@@ -110,6 +132,9 @@ FEATURES = (
             "Shaft.shear_modulus", "Shaft.material",
         ),
     ),
+    Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
+    Feature(DRAGGED, (), _dragged),
+    Feature("tuned damper", _of("TunedDamper", *_DAMPER), _kind(TunedDamper)),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
     Feature("damping", _of_springs("damping")),
@@ -137,6 +162,16 @@ FEATURES = (
     Feature("double Cardan joint off centre", ("DoubleCardanJoint.distance_ratio",)),
     *_OTHER_JOINTS,
     Feature("ratio", ("Ratio.ratio", "Ratio.teeth_in", "Ratio.teeth_out")),
+    Feature(
+        "dual-mass flywheel",
+        _of("DualMassFlywheel", "primary_inertia", "secondary_inertia"),
+        _kind(DualMassFlywheel),
+    ),
+    Feature(
+        "belt",
+        _of("Belt", "radius_in", "radius_out", "span_stiffness", "damping", "inertia_in", "inertia_out"),
+        _kind(Belt),
+    ),
     Feature(
         "planetary set",
         (
@@ -180,13 +215,21 @@ FEATURES = (
     ),
     Feature(
         "stages",
-        ("PiecewiseShaft.breakpoints", "PiecewiseShaft.stiffnesses", "Clutch.breakpoints", "Clutch.stiffnesses"),
+        tuple(f"{kind}.{key}" for kind in _STAGED for key in ("breakpoints", "stiffnesses")),
     ),
     Feature(
-        "damping in contact only", ("PiecewiseShaft.damping_law", "GearPair.damping_law", "Clutch.damping_law")
+        "damping in contact only", ("GearPair.damping_law", *(f"{kind}.damping_law" for kind in _STAGED))
     ),
-    Feature("dry friction", ("Clutch.friction", "Slider.torque", "Slider.stiffness"), _rubbing(False)),
-    Feature("dry friction at one motion", ("Clutch.linear_amplitude", "Clutch.linear_frequency"), _rubbing(True)),
+    Feature(
+        "dry friction",
+        ("Clutch.friction", "DualMassFlywheel.friction", "Slider.torque", "Slider.stiffness"),
+        _rubbing(False),
+    ),
+    Feature(
+        "dry friction at one motion",
+        tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
+        _rubbing(True),
+    ),
     Feature("load torque", ("Disk.load_torque",)),
     Feature("drive share", ("Disk.drive_share",)),
     Feature("viscous load", ("Disk.viscous_load",)),
@@ -225,6 +268,7 @@ NOT_FEATURES = {
         (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
         "a rating, which checks compare with",
     ),
+    **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",
     "Driveline.name": "a label",
     "Driveline.description": "a label",

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.planetary import Planetary
@@ -20,13 +23,17 @@ KINDS: dict[str, type[Element]] = {
         Coupling,
         PiecewiseShaft,
         Clutch,
+        DualMassFlywheel,
         Disk,
+        ViscousDamper,
+        TunedDamper,
         HookeJoint,
         IdealJoint,
         TripodJoint,
         RzeppaJoint,
         DoubleCardanJoint,
         Ratio,
+        Belt,
         GearPair,
         Planetary,
         Differential,

@@ -20,7 +20,9 @@ from typing import Annotated, Any, ClassVar, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import (
@@ -52,7 +54,7 @@ SHIP_SHAFTS = {
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
-_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch)
+_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),
     "vibratory_torque": (*_SPRING, GearPair),

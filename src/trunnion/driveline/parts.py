@@ -1,9 +1,9 @@
 """What an element is made of, as the one walk along a line reads it (``trunnion.equations.topology``).
 
 An element hangs on the shaft in front of it, which is its coordinate 0. Its parts come in order; those that make a new
-shaft number it on: 1, 2, … Whatever follows in the line hangs on the last one, or on one that the element's ``ports``
-name. Parts say
-what is joined to what; numbers that can vary, stiffness, inertia, a joint's law, stay with the element.
+shaft number it on: 1, 2, … Whatever follows in the line hangs on the last one, on the element's ``onward``, or on one
+that its ``ports`` name. Parts say what is joined to what; numbers that can vary, stiffness, inertia, a joint's law,
+stay with the element.
 """
 
 from __future__ import annotations
@@ -61,6 +61,14 @@ class Sprung:
 
 
 @dataclass(frozen=True)
+class Dragged:
+    """A new shaft that oil alone joins to coordinate ``to``: a damper without a spring, so that nothing holds its
+    rotation where it is."""
+
+    to: int = 0
+
+
+@dataclass(frozen=True)
 class Loose:
     """A new shaft with a rotation of its own, which on average turns ``speed`` times as fast as coordinate ``to``."""
 
@@ -76,4 +84,4 @@ class Tied:
     of: tuple[tuple[int, Fraction], ...]
 
 
-Part = Prescribed | Heavy | Geared | Jointed | Sprung | Loose | Tied
+Part = Prescribed | Heavy | Geared | Jointed | Sprung | Dragged | Loose | Tied

@@ -11,10 +11,11 @@ from math import inf, isfinite
 
 from trunnion.driveline.chain import Chain
 from trunnion.driveline.elements import ConstantSpeed, Disk
-from trunnion.driveline.parts import Sprung
+from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.shafts import Shaft, Spring
 
 HELD, SERIES = "excitation of a held disk", "unlike damping in series"
+DRAGGED = "damper without a spring"
 ALIKE = 1e-9
 """Relative difference of two c/k that counts as none."""
 
@@ -82,7 +83,7 @@ def _groups(line: Chain) -> list[int]:
     """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
     group: list[int] = []
     for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
-        elastic = any(isinstance(part, Sprung) for part in element.parts())
+        elastic = any(isinstance(part, Sprung | Dragged) for part in element.passes_on)
         group.append(i if parent is None or elastic else group[parent])
     return group
 

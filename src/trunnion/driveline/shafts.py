@@ -31,7 +31,34 @@ from trunnion.driveline.record import Name
 from trunnion.errors import InputError
 
 
-class Spring(Element):
+class Elastic(Element):
+    """What joins two shafts by one stiffness and a damper beside it, whatever states them."""
+
+    @property
+    def loss(self) -> float | None:
+        """Loss factor η; None where damping is a coefficient."""
+        return None
+
+    def stiffness_of(self, number: Numbers) -> Any:
+        """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
+        raise NotImplementedError
+
+    def damping_of(self, number: Numbers) -> Any:
+        """Damping [N m s/rad], likewise."""
+        return number("damping")
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """k [N m/rad], as stated or as it follows."""
+        return float(self.stiffness_of(lambda key: getattr(self, key)))
+
+    @property
+    def damping_coefficient(self) -> float:
+        """c [N m s/rad], as stated or as it follows."""
+        return float(self.damping_of(lambda key: getattr(self, key)))
+
+
+class Spring(Elastic):
     """What a shaft and a coupling share: one stiffness, and damping as a coefficient or as a loss factor."""
 
     stiffness: Maybe[Stiffness] = optional(default=None, description="torsional stiffness")
@@ -67,11 +94,6 @@ class Spring(Element):
     def stiffness_of(self, number: Numbers) -> Any:
         """Torsional stiffness [N m/rad] for the values of its numbers, ``number(key)``, one or many."""
         return number("stiffness")
-
-    @property
-    def torsional_stiffness(self) -> float:
-        """k [N m/rad], as stated or as it follows."""
-        return float(self.stiffness_of(lambda key: getattr(self, key)))
 
     @property
     def damping_coefficient(self) -> float:
@@ -190,7 +212,8 @@ class Coupling(Spring):
     """
 
     example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'
-    idle: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
+    ratings: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
+    idle: ClassVar[tuple[str, ...]] = ratings
 
     relative_damping: Maybe[Dimensionless] = optional(default=None, description="loss per cycle over elastic energy")
     nominal_torque: Maybe[Torque] = optional(default=None, description="rating, carried continuously (T_KN)")

@@ -94,8 +94,16 @@ def rigid_rotation(topo: Topology) -> Array:
     return np.asarray(topo.mean_speeds[topo.firsts])
 
 
-def frequencies(matrices: AlignedMatrices, *, rigid: int) -> Array:
-    """Undamped natural frequencies [rad/s], ascending, shape (case, n); ``rigid`` of them are exactly 0."""
+def at_rest(topo: Topology, stiffness: Array) -> Array:
+    """The stiffness (…, n, n) of a line that stands still: what oil alone drags along neither moves nor is moved by it,
+    and counts as joined to it."""
+    joined = topo.elongations[list(topo.dragged)]
+    return np.asarray(stiffness + np.abs(stiffness).max(axis=(-2, -1), keepdims=True) * (joined.T @ joined))
+
+
+def frequencies(matrices: AlignedMatrices, *, still: int) -> Array:
+    """Undamped natural frequencies [rad/s], ascending, shape (case, n), of which the first ``still`` are exactly 0: as
+    many as the line has ``loose`` rotations."""
     if np.count_nonzero(matrices.inertia) > np.count_nonzero(matrices.mass):
         pairs = zip(matrices.inertia, matrices.stiffness, strict=True)
         scaled = np.stack([UnitMasses(inertia).of_matrix(stiffness) for inertia, stiffness in pairs])
@@ -103,5 +111,5 @@ def frequencies(matrices: AlignedMatrices, *, rigid: int) -> Array:
         root = np.sqrt(matrices.mass)
         scaled = matrices.stiffness / (root[:, :, None] * root[:, None, :])
     squares = np.linalg.eigvalsh(scaled)
-    squares[:, :rigid] = 0.0
+    squares[:, :still] = 0.0
     return np.sqrt(np.maximum(squares, 0.0))

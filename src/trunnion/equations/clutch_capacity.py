@@ -47,7 +47,8 @@ def bounded_clutches(assembly: Assembly, speed: float) -> tuple[Bounded, ...]:
     found = []
     for e, compliance in enumerate(topo.compliances):
         place = compliance.shafts[0]
-        if not isinstance(packed.line.elements[place], Clutch):
+        clutch = packed.line.elements[place]
+        if not (isinstance(clutch, Clutch) and clutch.friction):
             continue
         law = stage_law(packed.line, place, packed.column, table).first
         rising, forces = law.slopes[[0, -1]] > 0, law.at_knots[[0, -1]] if law.knots.size else np.zeros(2)

@@ -21,7 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.shafts import Elastic, Spring
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
@@ -162,8 +162,8 @@ def _lowest_elastic_frequency(assembly: Assembly) -> float:
     """
     topo = assembly.topology
     matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    found = frequencies(matrices, rigid=topo.rigid_count)[0]
-    lowest = float(found[topo.rigid_count])
+    found = frequencies(matrices, still=topo.still)[0]
+    lowest = float(found[topo.still])
     # Eigenvalues, the squares, are right to their rounding beside the largest.
     if not lowest**2 > len(found) * np.finfo(float).eps * float(found[-1]) ** 2:
         raise InputError(
@@ -191,13 +191,16 @@ def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
     column = assembly.packed.column
     if has_stages(shaft):
         return stage_law(assembly.line, element, column, table).slopes.max(axis=1)
-    assert isinstance(shaft, Spring)
-    return np.asarray(shaft.stiffness_of(lambda key: table[:, column(element, key)]))
+    assert isinstance(shaft, Elastic)
+    stiffness = np.asarray(shaft.stiffness_of(lambda key: table[:, column(element, key)]))
+    return stiffness if stiffness.shape else np.full(len(table), float(stiffness))
 
 
 def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> tuple[Array, Array]:
     """Damping [N m s/rad] of one shaft or mesh, and ηk [N m/rad] of a loss factor that holds at all frequencies."""
-    column, none = assembly.packed.column, np.zeros(len(table))
+    column, none, one = assembly.packed.column, np.zeros(len(table)), assembly.line.elements[element]
+    if isinstance(one, Elastic) and not isinstance(one, Spring):
+        return np.asarray(one.damping_of(lambda key: table[:, column(element, key)])), none
     if assembly.line.damping_ratio is not None:
         return assembly.common_damping(table, stiffness), none
     if (stated := column(element, "loss_factor")) >= 0:
@@ -280,7 +283,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             own = [twist[:, e]]
         else:
             np.divide(torque[:, e], stiffness[:, e], out=twist[:, e], where=stiffness[:, e] > 0)
-            own = [torque[:, e] / k for k in each]
+            own = [twist[:, e]] if compliance.drags else [torque[:, e] / k for k in each]
         for i, turned in zip(shafts, own, strict=True):
             forks = column(i, "fork_offset")
             if i in topo.behind:

@@ -85,6 +85,7 @@ def _three(line: Driveline) -> GearPair | PiecewiseShaft:
         len(elements) != 3
         or not isinstance(elements[0], Disk | ConstantSpeed)
         or not has_stages(elements[1])
+        or elements[1].inertia_values
         or not isinstance(elements[2], Disk)
         or line.parents != (None, 0, 1)
     ):

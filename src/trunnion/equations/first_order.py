@@ -89,7 +89,7 @@ class LineRates:
         return kept[1]
 
     def rest(self) -> Array | None:
-        """Orthonormal columns (case, 2n, left) beside the motions that a straight free line keeps for ever; else None.
+        """Orthonormal columns (case, 2n, left) beside the motions that a line keeps for ever; None where it has none.
 
         What is left of a monodromy matrix Z is restᵀ Z rest.
         """

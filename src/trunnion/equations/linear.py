@@ -205,20 +205,21 @@ def periodic_linear_system(
         m = line_matrices(topo, coefficients, np.asarray(tau, dtype=float))
         return Matrices(m.mass[0], m.damping[0] / speed, m.stiffness[0] / speed**2, m.forcing[0] / speed**2)
 
-    aligned = frequencies(aligned_matrices(topo, coefficients), rigid=topo.rigid_count)[0]
+    aligned = frequencies(aligned_matrices(topo, coefficients), still=topo.still)[0]
     names, over_speed = topo.names, tuple(map(float, aligned / speed))
     fastest = float(max(topo.rates, default=0))
     return PeriodicLinearSystem(period, at, topo.size, speed, names, over_speed, fastest)
 
 
 def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
-    """States (x, dx/dτ) as columns (2n, k) that a straight line keeps for ever: multipliers exactly 1.
+    """States (x, dx/dτ) as columns (2n, k) that a line keeps for ever: multipliers exactly 1.
 
     A turn of a free line as a whole always, and of the legs of a differential against each other; a change of such a
-    speed where no load depends on the speed. Without bent joints only; k is 0 for a driven line without differentials.
+    speed where no load depends on the speed: without bent joints only. And a turn of what only oil drags along, joints
+    bent or not. k is 0 for a driven line without any of these.
     """
-    n, turns = topo.size, topo.rigid
-    kept = np.zeros((2 * n, 2 * turns.shape[1]))
-    kept[:n, 0::2], kept[n:, 1::2] = turns, turns
-    constant = not (coefficients.viscous.any() or coefficients.quadratic.any())
-    return kept if constant else kept[:, 0::2]
+    n, constant = topo.size, not (coefficients.viscous.any() or coefficients.quadratic.any())
+    turns, speeds = topo.loose, topo.rigid if constant else topo.rigid[:, :0]
+    kept = np.zeros((2 * n, topo.still + speeds.shape[1]))
+    kept[:n, : topo.still], kept[n:, topo.still :] = turns, speeds
+    return kept

@@ -66,10 +66,10 @@ def stand_ins(line: Driveline) -> tuple[str, ...]:
     found = []
     for place, (name, element) in enumerate(zip(line.names, line.elements, strict=True)):
         if isinstance(element, Clutch) and element.linear_amplitude and element.linear_frequency:
-            shaft = element.linear(torque=torque[place])
+            stiffness, damping, _ = element.mean(torque=torque[place])
             swing, hertz = np.rad2deg(element.linear_amplitude), element.linear_frequency / (2 * np.pi)
             found.append(
-                f"{name} rubs and stands for a shaft of {shaft.stiffness:.4g} N·m/rad and {shaft.damping:.3g} "
+                f"{name} rubs and stands for a shaft of {stiffness:.4g} N·m/rad and {damping:.3g} "
                 f"N·m·s/rad, its mean over a swing of ± {swing:.3g} deg at {hertz:.3g} Hz; tn.linearity_check tells "
                 "how far that holds"
             )

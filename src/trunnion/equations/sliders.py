@@ -92,5 +92,5 @@ def refuse_friction(
     InputError : names the clutch, and offers what stands for it at one amplitude.
     """
     for element, name in zip(line.elements, line.names, strict=True):
-        if isinstance(element, Clutch) and not but(element):
+        if isinstance(element, Clutch) and element.friction and not but(element):
             raise InputError(f"has dry friction, {why}", element=name, key="friction", remedy=remedy)

@@ -31,7 +31,7 @@ from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, li
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
-from trunnion.equations.steady_base import imbalance, require_tree, torques_in_words
+from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, periods_in_common, turning
@@ -318,6 +318,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     line, topo = assembly.line, assembly.topology
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
     uneven = {line.names[topo.stations[j].element] for j, law in laws if law.uneven}
+    refuse_dragged(assembly)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in uneven:

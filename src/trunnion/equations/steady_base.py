@@ -44,6 +44,24 @@ def refuse_own_motion(assembly: Assembly, remedy: str, *, bends: bool = False) -
         )
 
 
+def refuse_dragged(assembly: Assembly) -> None:
+    """Refuse a line whose motion does not repeat in one way alone, as a ring that oil alone drags may stand anywhere.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    topo = assembly.topology
+    for e in topo.dragged:
+        raise InputError(
+            "has no spring, so that its ring may stand anywhere and no periodic motion is the only one",
+            element=assembly.line.names[topo.compliances[e].shafts[0]],
+            key="stiffness",
+            remedy='write stiffness = "1 kN*m/rad", say, that of the oil at the frequency that matters; '
+            "tn.simulate and linear analyses take it without",
+        )
+
+
 def bent(assembly: Assembly, table: Array | None = None) -> bool:
     """Whether any joint is bent, so that the line turns unevenly: as described, or at any row of ``table``."""
     return any(law.uneven for law in joint_laws(assembly, assembly.table(1) if table is None else table))

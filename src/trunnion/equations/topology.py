@@ -26,7 +26,7 @@ from trunnion.arrays import Array, Places
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
-from trunnion.driveline.parts import Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
+from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
 from trunnion.driveline.shafts import Spring
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
@@ -72,12 +72,16 @@ class Station:
 
 @dataclass(frozen=True)
 class Compliance:
-    """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop."""
+    """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop.
+
+    ``drags`` : a damper without a spring.
+    """
 
     near: int
     far_group: int
     shafts: tuple[int, ...]
     far: int | None = None
+    drags: bool = False
 
 
 @dataclass(frozen=True)
@@ -133,6 +137,32 @@ class Topology:
     def free(self) -> bool:
         """True when no rotation is prescribed, so that the line can turn as a rigid body."""
         return not any(self.prescribed)
+
+    @cached_property
+    def dragged(self) -> tuple[int, ...]:
+        """Compliances that are dampers without a spring."""
+        return tuple(e for e, compliance in enumerate(self.compliances) if compliance.drags)
+
+    @cached_property
+    def loose(self) -> Array:
+        """Rotations (n, k), as columns, that no spring of the aligned line resists: the ``rigid`` ones, and those of
+        what hangs on each of the ``dragged`` links."""
+        dragged = np.zeros((self.size, len(self.dragged)))
+        for k, e in enumerate(self.dragged):
+            unknowns = np.unique([u for u in self.unknown_of[self.stations_behind[e]] if u >= 0])
+            own = self.mean_speeds[self.reference[self.compliances[e].far_group]]
+            dragged[unknowns, k] = self.mean_speeds[self.firsts][unknowns] / own
+        return _fixed(np.hstack([self.rigid, dragged]))
+
+    @property
+    def still(self) -> int:
+        """How many undamped modes of the aligned line do not vibrate: one for each ``loose`` rotation."""
+        return int(self.loose.shape[1])
+
+    def set_aside(self, by_speed: bool) -> int:
+        """How many multipliers of a line with straight joints are exactly 1 whatever it does: for every loose rotation
+        one, and for the speed of every rigid one another where no load goes ``by_speed``."""
+        return self.still + (0 if by_speed else self.rigid_count)
 
     @cached_property
     def sums(self) -> tuple[int, ...]:
@@ -418,12 +448,14 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                         here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = Plane() if orders else (*plane, (i, 1.0))
                 case Sprung(to, closes) if closes is not None:
-                    here, plane = coordinates[line.index(closes)][-1]
+                    end = line.index(closes)
+                    here, plane = coordinates[end][line.elements[end].onward]
                     found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
                     _require_closed(line, found, i, own[to], here)
-                case Sprung(to):
+                case Sprung(to) | Dragged(to):
                     here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
-                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,)))
+                    drags, group = isinstance(part, Dragged), found.stations[here].group
+                    found.compliances.append(Compliance(own[to], group, (i,), drags=drags))
                 case Loose(to, speed):
                     here, plane = found.add(own[to], Link.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()
                 case Tied(of):
@@ -432,7 +464,7 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     here, plane = found.add(parts[0][0], Link.SUM, i, speed, of=parts), Plane()
             own.append(here)
             turned.append(plane)
-        found.behind.append(own[-1])
+        found.behind.append(own[element.onward])
         coordinates.append([*zip(own, turned, strict=True)])
     return found
 
@@ -518,7 +550,8 @@ def _meshes(line: Driveline, draft: LineStations, compliances: list[Compliance])
 def _refuse_bare_law(line: Driveline, shafts: tuple[int, ...]) -> None:
     """Springs in series become one only where they are linear."""
     for i in shafts:
-        if isinstance(line.elements[i], PiecewiseShaft | GearPair):
+        dragged = any(isinstance(part, Dragged) for part in line.elements[i].parts())
+        if dragged or isinstance(line.elements[i], PiecewiseShaft | GearPair):
             where = "in front of it" if i != shafts[0] else "behind it"
             raise InputError(
                 f"has no inertia {where}", element=line.names[i],

@@ -25,9 +25,10 @@ UNTOUCHED = 1e-12
 class LineModes:
     """Both eigenvalues (mode, 2) [1/s] of every undamped mode and the complex shapes (n, mode) of those that oscillate.
 
-    Modes stand in the order of ``undamped`` (mode,) [rad/s], the rigid rotation of a free line first. A mode that
-    oscillates has λ and its conjugate, an overdamped one two real eigenvalues, the slower first. Shapes, in
-    coordinates scaled with √M, are NaN where a mode does not oscillate.
+    Modes stand in the order of ``undamped`` (mode,) [rad/s], what no spring resists first: the rotation of a free line
+    as a whole, other rigid motions, then what oil alone drags along. A mode that oscillates has λ and its conjugate, an
+    overdamped one two real eigenvalues, the slower first. Shapes, in coordinates scaled with √M, are NaN where a mode
+    does not oscillate.
     """
 
     undamped: Array
@@ -35,26 +36,33 @@ class LineModes:
     shape: Complex
 
 
-def line_modes(damping: Array, stiffness: Array, loss: Array, rigid: Array | None = None) -> LineModes:
-    """Modes of a line of unit masses; ``rigid`` (n, k): rotations that twist nothing, that of the whole line first."""
-    if rigid is None:
+def line_modes(damping: Array, stiffness: Array, loss: Array, loose: Array, rigid: int) -> LineModes:
+    """Modes of a line of unit masses.
+
+    ``loose`` (n, k): rotations that no spring resists; the first ``rigid`` of them twist nothing, that of the whole
+    line first.
+    """
+    still = loose.shape[1]
+    if not still:
         squares, basis = np.linalg.eigh(stiffness)
     else:  # taken out of the matrices, whose double eigenvalue 0 rounding would part
-        first, rest = np.split(np.linalg.qr(rigid, mode="complete")[0], [rigid.shape[1]], axis=1)
+        first, rest = np.split(np.linalg.qr(loose, mode="complete")[0], [still], axis=1)
         squares, own = np.linalg.eigh(rest.T @ stiffness @ rest)
-        squares, basis = np.append(np.zeros(rigid.shape[1]), squares), np.column_stack([first, rest @ own])
+        squares, basis = np.append(np.zeros(still), squares), np.column_stack([first, rest @ own])
     undamped = np.sqrt(np.maximum(squares, 0.0))
     pairs = 1j * undamped[:, None] * np.array([1.0, -1.0])
     shapes = basis.astype(complex)
     if damping.any() or loss.any():
         start = 0
-        while rigid is not None and start < rigid.shape[1] and not _brakes(damping, basis[:, start]):
+        while start < rigid and not _brakes(damping, basis[:, start]):
             start += 1
         kept = basis[:, start:]
         pairs[start:], own = _pairs(
-            kept.T @ damping @ kept, np.diag(squares[start:]), kept.T @ loss @ kept, RIGID * float(undamped.max())
-        )
+            kept.T @ damping @ kept, np.diag(squares[start:]), kept.T @ loss @ kept, RIGID * float(undamped.max()),
+            np.delete(np.arange(len(squares) - start), np.arange(rigid, still) - start),
+        )  # fmt: skip
         shapes[:, start:] = kept @ own
+    pairs[:still, 0] = 0.0  # where it stands matters to nothing
     shapes[:, pairs[:, 0].imag == 0] = np.nan
     return LineModes(undamped, pairs, shapes)
 
@@ -64,12 +72,13 @@ def _brakes(damping: Array, rotation: Array) -> bool:
     return bool(np.abs(damping @ rotation).max() > UNTOUCHED * np.abs(damping).max())
 
 
-def _pairs(damping: Array, stiffness: Array, loss: Array, least: float) -> tuple[Complex, Complex]:
-    """Eigenvalues (mode, 2) and shapes (n, mode) in coordinates of the undamped modes."""
+def _pairs(damping: Array, stiffness: Array, loss: Array, least: float, able: Places) -> tuple[Complex, Complex]:
+    """Eigenvalues (mode, 2) and shapes (n, mode) in coordinates of the undamped modes, ``able`` to oscillate."""
     n = len(damping)
     pairs, shapes = np.full((n, 2), complex(np.nan)), np.full((n, n), complex(np.nan))
     values, vectors = damped_modes(damping, stiffness + 1j * loss if loss.any() else stiffness, least)
-    here, there = matched(np.eye(n, dtype=complex), vectors)
+    here, there = matched(np.eye(n, dtype=complex)[:, able], vectors)
+    here = able[here]
     pairs[here, 0], pairs[here, 1] = values[there], values[there].conj()
     shapes[:, here] = vectors[:, there]
     still = np.setdiff1d(np.arange(n), here)

@@ -44,6 +44,11 @@ class NaturalFrequencies(Result):
         return self.assembly.topology.free
 
     @property
+    def still(self) -> int:
+        """How many modes no spring resists: those of rigid motions, and rings that oil alone drags along."""
+        return self.assembly.topology.still
+
+    @property
     @computed(coordinate("mode"), after="names")
     def mode(self) -> Integers:
         """Numbers of the modes (mode,), 1 first."""
@@ -78,13 +83,13 @@ class NaturalFrequencies(Result):
     def overdamped(self) -> Flags:
         """Which modes do not oscillate (mode,), the rigid body aside."""
         still = self.eigenvalue[:, 0].imag == 0
-        still[: self.rigid_motions] = False
+        still[: self.still] = False
         return np.asarray(still)
 
     @cached_property
     def modes(self) -> LineModes:
         """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
-        return line_modes(*_matrices(self.assembly), _rigid(self.assembly) if self.rigid_motions else None)
+        return line_modes(*_matrices(self.assembly), _loose(self.assembly), self.rigid_motions)
 
     @cached_property
     @computed(variable("rotation mode", "1", "undamped mode shape"))
@@ -92,6 +97,8 @@ class NaturalFrequencies(Result):
         """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
         unit = UnitMasses(self.assembly.aligned.inertia[0])
         shape = unit.rotations(np.linalg.eigh(unit.of_matrix(self.assembly.aligned.stiffness[0]))[1])
+        if self.still > 1:
+            shape[:, : self.still] = self.assembly.topology.loose
         return np.asarray(shape / shape[np.abs(shape).argmax(0), np.arange(len(shape))])
 
     @cached_property
@@ -106,8 +113,8 @@ class NaturalFrequencies(Result):
 
     @property
     def elastic(self) -> Array:
-        """Undamped frequencies without the rigid-body mode [rad/s]."""
-        return self.undamped_frequency[self.rigid_motions :]
+        """Undamped frequencies without the modes that do not vibrate [rad/s]."""
+        return self.undamped_frequency[self.still :]
 
     def table(self, unit: str = "Hz") -> list[dict[str, object]]:
         """One row per mode, frequencies in ``unit``; what dies out without oscillating and what moves most named."""
@@ -150,6 +157,9 @@ class NaturalFrequencies(Result):
         if mode < self.rigid_motions:
             how = "the line turns as a whole" if self.rigid_body and mode == 0 else "shafts turn against each other"
             return f"0, rigid body ({how})"
+        if mode < self.still:
+            ring, slip = self._moves_most(mode), self.words.number(self.decay_rate[mode][1])
+            return f"0, {ring} (oil alone drags it along; slip decays at {slip} 1/s)"
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
             return f"overdamped, {self._decay(mode)}; undamped {undamped}"
@@ -173,7 +183,7 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     """
     assembly = assemble(line)
     topo = assembly.topology
-    found = frequencies(assembly.aligned, rigid=topo.rigid_count)[0]
+    found = frequencies(assembly.aligned, still=topo.still)[0]
     return NaturalFrequencies(topo.names, found, topo.rigid_count, assembly, speed_unit(assembly.line))
 
 
@@ -185,6 +195,6 @@ def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:
     return unit.of_matrix(matrices.damping[0]), unit.of_matrix(matrices.stiffness[0]), unit.of_matrix(matrices.loss[0])
 
 
-def _rigid(assembly: Assembly) -> Array:
-    """What twists nothing (n, k), in coordinates scaled with the roots of the inertias."""
-    return UnitMasses(assembly.aligned.inertia[0]).of_rotations(assembly.topology.rigid)
+def _loose(assembly: Assembly) -> Array:
+    """Rotations that no spring resists (n, k), in coordinates scaled with the roots of the inertias."""
+    return UnitMasses(assembly.aligned.inertia[0]).of_rotations(assembly.topology.loose)

@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, Polygon
 
 from trunnion.arrays import Array
+from trunnion.driveline.belts import Belt
+from trunnion.driveline.dampers import Damper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
@@ -36,11 +38,12 @@ HEADROOM = 1.75
 """What stands above a branch: wheels, numbers, a load in two lines."""
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
-    "PiecewiseShaft": 1.25, "Planetary": 0.9, "Differential": 0.9,
+    "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
+    "TunedDamper": 0.7, "Differential": 0.9,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (Spring, PiecewiseShaft)
-GEARS = (Ratio, GearPair, Planetary, Differential)
+GEARS = (Ratio, GearPair, Planetary, Belt, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
@@ -188,6 +191,13 @@ def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
     _bar(axes, *turns, lw=1.1, zorder=4)
 
 
+def _dual_mass(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Springs between two flywheels."""
+    _stages(axes, place, disks)
+    for begin in (-0.55, 0.41):
+        _box(axes, place.part(begin, begin + 0.14), 0.7, fc="#9db7c9")
+
+
 def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     """Height by the logarithm of the inertia: drivelines span decades."""
     disk = place.element
@@ -196,6 +206,19 @@ def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     share = np.log(disk.moment_of_inertia / low) / np.log(high / low) if high > low * 1.001 else 0.5
     _bar(axes, place.start, place.end)
     _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
+
+
+def _damper(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """A ring above and below in its housing, in oil or on a spring."""
+    damper = place.element
+    assert isinstance(damper, Damper)
+    _bar(axes, place.start, place.end)
+    for side in (1, -1):
+        middle = replace(place, start=place.start + side * 0.62 * _across(place.direction),
+                         end=place.end + side * 0.62 * _across(place.direction))  # fmt: skip
+        _bar(axes, place.middle, middle.middle, lw=1.4)
+        _box(axes, middle.part(-0.24, 0.24), 0.26, fc="#d5e8dd" if damper.dragged else "#d8c7a0")
+        _box(axes, middle.part(-0.15, 0.15), 0.16, fc="#8fa9b8")
 
 
 def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
@@ -210,6 +233,22 @@ def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
         centre = place.middle + offset * _across(place.direction)
         look: dict[str, Any] = {"fc": face, "ec": INK, "lw": 1.1, "zorder": 3}
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
+
+
+def _belt(axes: Axes, place: _Place, disks: list[float]) -> None:
+    """Two pulleys, sizes by the ratio, and a belt round them."""
+    belt = place.element
+    assert isinstance(belt, Belt)
+    share = float(np.clip(belt.speed_ratio, 0.25, 4.0))
+    radii = 0.45 / max(1.0, share), 0.45 * share / max(1.0, share)
+    centres = place.middle, place.middle + 1.1 * _across(place.direction)
+    _bar(axes, place.start, place.end)
+    for radius, centre in zip(radii, centres, strict=True):
+        look: dict[str, Any] = {"fc": "#e9e9e9", "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
+    for side in (-0.15, 0.15):
+        ends = [centre + side * _along(place.direction) for centre in centres]
+        _bar(axes, *ends, lw=1.4, zorder=4)
 
 
 def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
@@ -263,6 +302,10 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
     "Disk": _disk,
     "Ratio": _ratio,
     "GearPair": _ratio,
+    "ViscousDamper": _damper,
+    "TunedDamper": _damper,
+    "Belt": _belt,
+    "DualMassFlywheel": _dual_mass,
     "Planetary": _planetary,
     "Differential": _differential,
     "PiecewiseShaft": _stages,

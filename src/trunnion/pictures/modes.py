@@ -56,6 +56,8 @@ def _shape(modes: NaturalFrequencies, mode: int, words: str, drive: str | None =
 def _frequency(modes: NaturalFrequencies, mode: int, unit: str) -> str:
     if mode < modes.rigid_motions:
         return "rigid body"
+    if mode < modes.still:
+        return "dragged by oil"
     if modes.overdamped[mode]:
         return "overdamped"
     frequency = float(modes.frequency[mode])

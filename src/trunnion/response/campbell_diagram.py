@@ -233,7 +233,7 @@ def campbell_diagram(
     values, shapes = loaded_modes(assembly, speed)
     frequency = values.imag
     ratio = -values.real / np.abs(values)
-    mode = np.arange(frequency.shape[1]) + 1 + assembly.topology.rigid_count
+    mode = np.arange(frequency.shape[1]) + 1 + assembly.topology.still
     lines = excitation_lines(assembly, speed)
     kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
     met, jumps = [], []

@@ -1,4 +1,4 @@
-"""Ratings of elastic couplings, in the form of DIN 740-2.
+"""Ratings of elastic couplings, in the form of DIN 740-2, and of the heat of dampers.
 
     T_KN ≥ T_N S_t          mean torque, S_t the temperature factor
     T_Kmax ≥ T_peak S_t S_z     largest torque over the cycle, S_z the starting factor
@@ -27,10 +27,13 @@ from trunnion.design.assessment.measures import (
     spring_of,
 )
 from trunnion.design.assessment.subject import Case, Subject, cause
+from trunnion.driveline.dampers import Damper
 from trunnion.driveline.quantities import POWER, TORQUE, shown
-from trunnion.driveline.shafts import Coupling
 
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
+OF_DAMPERS = Rule(
+    "P_W ≤ P_KV, the heat of the ring's slip over all orders", "the maker's sheet", "yours", "damper-heat"
+)
 FORMULAS = {
     "nominal_torque": "T_N S_t ≤ T_KN",
     "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
@@ -50,13 +53,13 @@ LIMITED = {"vibratory_torque": "T_KW/S_t"}
 
 
 def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
-    """Every rating that a coupling states."""
+    """Every rating that a coupling or a damper states."""
     for name, element in subject.line.parts:
-        if not isinstance(element, Coupling):
-            continue
-        for key, formula in FORMULAS.items():
+        for key in element.ratings:
             rating = getattr(element, key)
-            title, rule = rating_name(name, key), Rule(formula, SOURCE, "known", "din-740")
+            title, rule = rating_name(name, key), Rule(FORMULAS[key], SOURCE, "known", "din-740")
+            if isinstance(element, Damper):
+                rule = OF_DAMPERS
             if rating is None:
                 yield Check(title, Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):

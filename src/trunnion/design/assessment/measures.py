@@ -16,12 +16,11 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.limits import SHIP_SHAFTS, OneLimit
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import Quantity
 
-RATINGS = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
 OF_LIMITS = (
     *("max_torque", "vibratory_torque", "transient_vibratory_torque", "max_stress", "max_twist"),
     *("max_speed_fluctuation", "max_acceleration"),
@@ -81,11 +80,10 @@ def measures(assembly: Assembly) -> Iterator[Measure]:
         elif limit.key == "ship_shaft":
             yield from of_ship_shaft(assembly, limit.element, limit.value)
     for name, element in assembly.line.parts:
-        if isinstance(element, Coupling):
-            for key in RATINGS:
-                if getattr(element, key) is not None:
-                    yield of_rating(assembly, name, key, getattr(element, key))
-        elif isinstance(element, GearPair):
+        for key in element.ratings:
+            if getattr(element, key) is not None:
+                yield of_rating(assembly, name, key, getattr(element, key))
+        if isinstance(element, GearPair):
             yield of_hammer(assembly, name)
 
 

@@ -401,8 +401,8 @@ class Case:
 
     @property
     def first(self) -> int:
-        """Number of the first elastic mode: 2 where the line can turn as a whole."""
-        return 1 + self.assembly.topology.rigid_count
+        """Number of the first elastic mode: 2 where the line can turn as a whole, say."""
+        return 1 + self.assembly.topology.still
 
     @property
     def suffix(self) -> str:

@@ -111,7 +111,7 @@ def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[st
     except InputError as error:
         said.append(Finding(Gravity.CAUTION, str(error).splitlines()[0]))
         return
-    modes = range(found.rigid_motions, len(found.undamped_frequency))
+    modes = range(found.still, len(found.undamped_frequency))
     for m in modes:
         yield f"natural frequency of mode {m + 1}", ("frequency", float(found.frequency[m]), "rad/s", np.nan)
     for m in modes:

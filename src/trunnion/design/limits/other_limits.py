@@ -17,7 +17,6 @@ import numpy as np
 from trunnion.arrays import Array, Places
 from trunnion.design.assessment.measures import (
     OF_LIMITS,
-    RATINGS,
     allowed_by,
     name_of,
     of_limit,
@@ -29,7 +28,6 @@ from trunnion.design.assessment.measures import (
 from trunnion.design.limits.result import OtherLimit
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.parameters import Columns
-from trunnion.driveline.shafts import Coupling
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.tongues.bracketing import bracketed
@@ -86,7 +84,7 @@ def demands_of(assembly: Assembly) -> list[Demand]:
             allowed, unit = limit.value * (1 - limit.margin), LIMIT_KINDS[limit.key].unit
             found.append(Demand(name_of(limit), allowed, unit, partial(_of_limit, assembly, limit)))
     for name, element in zip(line.names, line.elements, strict=True):
-        for key in RATINGS if isinstance(element, Coupling) else ():
+        for key in element.ratings:
             rating = getattr(element, key)
             if rating is None:
                 continue

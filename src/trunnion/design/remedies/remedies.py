@@ -222,7 +222,7 @@ def _critical(subject: Subject, design: Design, before: Check, found: Found) -> 
     if before.load_case:
         line = line.with_load(before.load_case)
     assembly = assemble(line)
-    number = cause.mode - (1 + assembly.topology.rigid_count)
+    number = cause.mode - 1 - assembly.topology.still
     natural = float(loaded_modes(assembly, np.array([before.speed]))[0][0, number].imag)
     there = (natural - cause.frequency) / cause.order
     here = cause.critical

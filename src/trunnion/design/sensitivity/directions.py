@@ -147,8 +147,7 @@ class Neighbourhood:
             own = np.repeat(self.row(), len(shares), axis=0)
             one.moved(own, shares)
             matrices = aligned_matrices(topo, self.assembly.coefficients(own, damped=False))
-            lowest = frequencies(matrices, rigid=topo.rigid_count)[:, topo.rigid_count]
-            table[:, column(-1, "damping_ratio_frequency")] = lowest
+            table[:, column(-1, "damping_ratio_frequency")] = frequencies(matrices, still=topo.still)[:, topo.still]
         return table
 
 

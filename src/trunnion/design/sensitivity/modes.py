@@ -32,7 +32,7 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
     assembly = near.assembly
     topo = assembly.topology
     found = natural_frequencies(assembly)
-    first = found.rigid_motions
+    first = found.still
     values = found.eigenvalue[first:, 0]
 
     def matrices(table: Array) -> AlignedMatrices:

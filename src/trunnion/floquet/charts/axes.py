@@ -173,7 +173,7 @@ def lowest_speed(assembly: Assembly) -> float:
     """Speed [rad/s] below which a turn spans more than ``MOST_CYCLES`` cycles of the highest mode."""
     topo = assembly.topology
     matrices = aligned_matrices(topo, assembly.coefficients(assembly.table(1), damped=False))
-    return float(frequencies(matrices, rigid=topo.rigid_count)[0, -1]) / MOST_CYCLES
+    return float(frequencies(matrices, still=topo.still)[0, -1]) / MOST_CYCLES
 
 
 def _clip(assembly: Assembly, columns: Columns, low: float, high: float) -> tuple[float, float, str | None]:

@@ -145,10 +145,10 @@ class LineFamily(ChartFamily):
 
     @property
     def set_aside(self) -> int:
-        """Of a free line a turn of the whole line; its speed too where no load depends on it anywhere on the axes."""
-        if not self.assembly.topology.free:
-            return 0
-        return 1 if self._by_speed else 2
+        """A turn of what no spring holds, a free line as a whole or the ring of a damper; of a free line its speed too
+        where no load depends on it anywhere on the axes."""
+        topo = self.assembly.topology
+        return topo.set_aside(topo.free and bool(self._by_speed))
 
     @property
     def period(self) -> float:

@@ -68,7 +68,7 @@ class FloquetModes:
 def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> FloquetModes | None:
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where some mode is not
     found."""
-    if topo.free:  # its turn as a whole, a double exponent, is no mode by itself
+    if topo.still:  # the turn of what no spring holds is no mode by itself
         return None
     line = _Line(topo, co, turns)
     start, shape = line.starts()

@@ -109,7 +109,7 @@ def stability_along(
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     if assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph:
         return _by_exponentials(assembly, table, statically_twisted)
-    if assembly.topology.size < LONG or assembly.topology.free:
+    if assembly.topology.size < LONG or assembly.topology.still:
         return _by_kernel(assembly, co)
     return _by_modes(assembly, table, statically_twisted)
 
@@ -205,7 +205,7 @@ def _by_kernel(assembly: Assembly, co: LineCoefficients) -> StabilityAlong:
     lanes = chain_lanes(topo, co, by_speed)
     program = chain_program(topo, co, by_speed)
     matrix, error, trace = chain_monodromy(program, lanes, Window(0.0, period, False), TOLERANCE)
-    if topo.free:
+    if topo.still:
         values, bounds = quantities(matrix, error, trace)
         found = judge(values.T.copy(), bounds.T.copy(), topo.size, rigid_motions(topo, co).shape[1])
     else:

@@ -68,8 +68,9 @@ SET_ASIDE = {
 class Stability(Result):
     """Floquet stability at one speed.
 
-    Spectral radius and error estimate leave out the ``set_aside`` multipliers, exactly 1, of a line that starts free: a
-    turn of the whole line, and its speed where no torque depends on it.
+    Spectral radius and error estimate leave out the ``set_aside`` multipliers, exactly 1: of a line that starts free a
+    turn of the whole line, and its speed where no torque depends on it; of a damper without a spring a turn of its
+    ring.
     """
 
     multipliers: Complex = variable("multiplier_number", "1", "by falling modulus", name="multiplier")
@@ -90,6 +91,7 @@ class Stability(Result):
     left_out: tuple[Finding, ...] = internal("what the line has and this does not count", default=())
     unit: str = internal("of speeds in print", default="rad/s")
     extra_torque: float | None = internal(EXTRA, "N m at the input", default=None)
+    dragged: int = internal("how many of those set aside belong to dampers without a spring", default=0)
     speed_sentence: str = internal("of a bent free line none of whose torques depends on the speed", default="")
 
     @property
@@ -172,8 +174,9 @@ class Stability(Result):
         if self.resonance is not None:
             at = f" (at {self.words.speed(self.resonance.speed)})" if np.isfinite(self.resonance.speed) else ""
             yield f"  the critical multiplier belongs to the {self.resonance.in_words}{at}"
-        if self.set_aside:
-            yield f"  {SET_ASIDE[self.set_aside]}"
+        if self.set_aside > self.dragged:
+            many = self.set_aside - self.dragged
+            yield f"  {SET_ASIDE.get(many, f'the {many} multipliers at 1 of rigid rotations are set aside')}"
         if self.extra_torque is not None:
             yield (
                 f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
@@ -224,7 +227,10 @@ def stability(
         found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
-    return replace(found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line))
+    return replace(
+        found, left_out=left_out("stability", assembly.line), unit=speed_unit(assembly.line),
+        dragged=len(assembly.topology.dragged),
+    )  # fmt: skip
 
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:

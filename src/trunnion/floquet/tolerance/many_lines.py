@@ -68,11 +68,10 @@ class ManyLines:
         return chain_monodromy(program, lanes, window, tolerance, self.threads)
 
     def set_aside(self, table: Array) -> int:
-        """Multipliers exactly 1 of a free line, as ``Stability.set_aside``."""
-        if not self.assembly.topology.free:
-            return 0
+        """Multipliers exactly 1, as ``Stability.set_aside``."""
+        topo = self.assembly.topology
         coefficients = self.assembly.coefficients(table[:1], statically_twisted=self.statically_twisted)
-        return 1 if loaded_by_speed(self.assembly.topology, coefficients) else 2
+        return topo.set_aside(bool(loaded_by_speed(topo, coefficients)))
 
     def judged(self, table: Array, tolerance: float) -> Pixels:
         """Radius, error, critical multiplier and verdict of rows of ``table``, each (rows,)."""
@@ -100,7 +99,7 @@ class ManyLines:
             by_speed = loaded_by_speed(topo, co)
             lanes = chain_lanes(topo, co, by_speed)
             points = ChainExponentials(chain_program(topo, co, by_speed), lanes, self.period, steps)
-            rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.free else None
+            rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.still else None
             beside = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
             found = by_halving(
                 lambda which, count: points.monodromies(which, count)[0],

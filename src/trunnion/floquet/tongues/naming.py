@@ -67,7 +67,7 @@ def straight_frequencies(family: LineFamily, x: Array, y: Array) -> tuple[Array,
     """Natural frequencies [rad/s] (points, n) of the straight line at points (x, y), and the speeds there."""
     assembly, table = family.assembly, family.table(x, y)
     matrices = aligned_matrices(assembly.topology, assembly.coefficients(table))
-    return frequencies(matrices, rigid=assembly.topology.rigid_count), table[:, 0]
+    return frequencies(matrices, still=assembly.topology.still), table[:, 0]
 
 
 def _bends(assembly: Assembly, label: str) -> bool:

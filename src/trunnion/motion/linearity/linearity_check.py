@@ -393,7 +393,7 @@ def linearity_check(
     if not 0 < one_number(allowed, "allowed", "0.05 is 5 %") < 1:
         raise InputError("must be between 0 and 1", key="allowed", value=float(allowed), remedy="0.05 is 5 %")
     loaded = line if load_case is None else line.with_load(load_case)
-    clutches = [name for name, e in zip(loaded.names, loaded.elements, strict=True) if isinstance(e, Clutch)]
+    clutches = [name for name, one in loaded.parts if isinstance(one, Clutch) and one.friction]
     if not clutches:  # what linear equations refuse is refused before the motion is looked for
         order_response(loaded, [operating_speed(loaded, speed)])
     true = periodic_response(loaded, speed, start=start, tolerance=tolerance, compare=False)
@@ -452,10 +452,9 @@ def _linear_shaft(true: PeriodicResponse, line: Driveline, name: str) -> LinearS
     cycles = np.abs(fourier(twist, run.time_of_state, max(int(ORDERS * true.turns), 1))[1:, 0])
     frequency = 2 * np.pi * (1 + int(np.argmax(cycles))) / true.period
     torque = float(true.torque_mean[place])
-    shaft = clutch.linear(max(swing, STUCK), frequency, torque)
+    stiffness, damping, _ = clutch.mean(max(swing, STUCK), frequency, torque)
     slips = tuple(s.torque for s in clutch.friction if swing > s.torque / s.stiffness)
-    assert shaft.stiffness is not None
-    return LinearShaft(name, swing, frequency, torque, float(shaft.stiffness), float(shaft.damping), len(slips))
+    return LinearShaft(name, swing, frequency, torque, float(stiffness), float(damping), len(slips))
 
 
 def _without_friction(line: Driveline, stand_ins: tuple[LinearShaft, ...]) -> Driveline:

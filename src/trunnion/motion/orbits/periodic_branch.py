@@ -25,6 +25,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.staged_line import StagedLine, staged_line
+from trunnion.equations.steady_base import refuse_dragged
 from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import STEP, PeriodicBranch, Progress, followed
 from trunnion.motion.orbits.exact_map import LineMap, OscillatorMap
@@ -108,6 +109,7 @@ def system_over(
     refuse_friction(description, NOT_FOLLOWED, STAND_IN)
     over_speed = parameter == "speed"
     prepared = line_system(line, first if over_speed and first > 0 else operating_speed(description, speed))
+    refuse_dragged(prepared.assembly)
     if not prepared.assembly.topology.free:
         require_forced(prepared)
     elif free:

@@ -22,7 +22,7 @@ from trunnion.equations.clutch_capacity import carries_static_torque, refuse_ove
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
-from trunnion.equations.steady_base import bent, imbalance, require_balance, torques_in_words
+from trunnion.equations.steady_base import bent, imbalance, refuse_dragged, require_balance, torques_in_words
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.stability import Stability, stability
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
@@ -310,6 +310,7 @@ def periodic_response(
         return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
     description = line.line if isinstance(line, Assembly) else line
     prepared = line_system(line, operating_speed(description, speed))
+    refuse_dragged(prepared.assembly)
     if prepared.assembly.topology.free:
         return _free(prepared, start, tolerance, settle)
     require_forced(prepared)

@@ -405,7 +405,7 @@ def _span(run: LineSimulation, schedule: Schedule) -> float:
     turns = FEWEST_TURNS * TURN / max(run.whole.last_turn()[1], STOPPED * schedule.first)
     try:
         modes = natural_frequencies(run.line.assembly)
-        decay = [float(rate) for rate in modes.decay_rate[modes.rigid_motions :].ravel() if rate > 0]
+        decay = [float(rate) for rate in modes.decay_rate[modes.still :].ravel() if rate > 0]
     except InputError:  # no linear line, by play or friction
         decay = []
     settled = DECAYS / min(decay) if decay else np.inf

@@ -366,7 +366,7 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
         found = kept_speed_orbit(prepared, settle=False)
         return (found.start, found.values[-1]) if found.outcome.ok else (begun, 0.0)
     begun = prepared.rest()
-    if prepared.system.forcing_period is not None:
+    if prepared.system.forcing_period is not None and not prepared.assembly.topology.dragged:
         orbit = periodic_orbit(prepared.system, start=begun, settle=False)
         begun = orbit.start if orbit.outcome.ok else begun
     return begun, 0.0
@@ -428,7 +428,7 @@ def _steady(assembly: Assembly, first: float, last: float, points: int) -> Stead
     prepared = line_system(assembly, first)
     if prepared.system.forcing_period is None or (assembly.topology.free and not closes(prepared)):
         return None
-    if prepared.sliders:  # no branch follows them
+    if prepared.sliders or assembly.topology.dragged:  # no branch follows them
         return None
     branch = periodic_branch(
         assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10

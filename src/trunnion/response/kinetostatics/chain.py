@@ -23,7 +23,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.refusals import nearest
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.shafts import Elastic
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.equations.topology import Link, Station, stations_of
@@ -230,13 +230,16 @@ class _Draft:
             return self._step(Link.RATIO, parent, name, speed, axis, ratio=float(ratio))
         if isinstance(element, GearPair):
             return parent  # rigid and in contact
-        assert isinstance(element, Spring | PiecewiseShaft)
-        more: dict[str, Any] = {"fork_offset": element.fork_offset}
-        if isinstance(element, Spring):
-            more["stiffness"] = element.torsional_stiffness
+        assert isinstance(element, Elastic | PiecewiseShaft)
+        more: dict[str, Any] = {"fork_offset": getattr(element, "fork_offset", 0.0)}
+        if isinstance(element, Elastic):
+            # What oil alone drags along turns with its housing in a turn.
+            more["stiffness"] = element.torsional_stiffness or np.inf
         else:
             more["stages"] = stage_law(self.line, i, self.packed.column, self.packed.table(1))
         here = self._step(Link.SHAFT, parent, name, speed, **more)
+        if element.onward == 0:  # beside the axis
+            return here
         self._extend(here, name, self.lengths.get(name, getattr(element, "length", None) or 0.0))
         return here
 

@@ -103,7 +103,7 @@ class HillBlocks:
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
         s = np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None]))
-        held = harmonics == 0 if self.topo.free and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
+        held = harmonics == 0 if self.topo.still and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
         matrix = self.matrices(s, harmonics, np.flatnonzero(held))
         if not self.linearised:
             return _with_rim(matrix, rim, carried(weights, right), weights)
@@ -116,7 +116,7 @@ class HillBlocks:
 
     def matrices(self, s: Complex, harmonics: Integers, held: Iterable[int] = ()) -> SparseMatrices:
         """The matrices (node, h·n, h·n) at s (node, h) [1/s] of the ``harmonics`` (h,); what a free line turns as a
-        whole in those ``held``, which nothing resists at rest, is taken to be zero."""
+        whole in those ``held``, or oil alone drags along, which nothing resists at rest, is taken to be zero."""
         parts = (self.stiffness, self.damping, self.mass)
         found = fourier.hill_matrices(s, harmonics, parts, np.flatnonzero(self.kept))
         if self.loss.any():
@@ -126,8 +126,11 @@ class HillBlocks:
         return SparseMatrices.added(len(harmonics) * self.topo.size, found)
 
     def _held(self, h: int) -> Part:
-        turn, n = rigid_rotation(self.topo), self.topo.size
-        whole = np.outer(turn, turn) / (turn @ turn)
+        n, joined = self.topo.size, self.topo.elongations[list(self.topo.dragged)]
+        whole = joined.T @ joined
+        if self.topo.free:
+            turn = rigid_rotation(self.topo)
+            whole = whole + np.outer(turn, turn) / (turn @ turn)
         weight = np.abs(self.stiffness[:, 0]).max(axis=(1, 2))[:, None, None]
         row, column = np.indices((n, n))
         return h * n + row, h * n + column, weight * whole

@@ -220,7 +220,7 @@ class _Case:
     def _tree_pays(self) -> bool:
         groups, sides, _ = self._plan(self.reach)
         harmonics = [len(sides.of(group)[0]) for group in groups]
-        return not self.topo.graph and tree_pays(self.topo, harmonics, len(self.numbers))
+        return not (self.topo.graph or self.topo.dragged) and tree_pays(self.topo, harmonics, len(self.numbers))
 
     def _batch(self) -> int:
         """Speeds together, by the largest arrays of one."""

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
-from trunnion.equations.aligned import rigid_rotation
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.equations.aligned import at_rest, rigid_rotation
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
@@ -57,6 +57,7 @@ def straight_response(
             own[near] += ratio**2 * lossy
         if far >= 0 and near >= 0:
             coupling[far] -= ratio * lossy
+    _join(topo, matrices, own, coupling, frequency == 0)
     plan, g = Plan.of(matrices.parent, np.zeros(n, dtype=bool)), np.moveaxis(right, 2, 0)
     if linearised:
         # Orders are solved together at the first speed, and stand for themselves at the others.
@@ -69,7 +70,7 @@ def straight_response(
         y = np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
     for k in np.flatnonzero((frequency == 0).any(axis=1)) if topo.free else ():
         still = frequency[k] == 0
-        y[k, still] = _driven_away(rigid_rotation(topo), plan, matrices, right[k], linearised)[still]
+        y[k, still] = _driven_away(topo, plan, matrices, right[k], linearised)[still]
     return y
 
 
@@ -77,10 +78,11 @@ def coupled_response(
     topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
 ) -> Complex:
     """The same as ``straight_response`` where masses couple unknowns: dense, order by order and speed by speed."""
-    parts = tuple(part[:, 0] for part in (matrices.mass, matrices.damping, matrices.stiffness))
+    mass, damping, stiffness = (part[:, 0] for part in (matrices.mass, matrices.damping, matrices.stiffness))
     lossy = np.einsum("ei,se,ej->sij", topo.elongations, loss, topo.elongations)
     w = frequency[..., None, None]
-    matrix = parts[2] - w**2 * parts[0] + 1j * (w * parts[1] + np.sign(w) * lossy)
+    stiffness = np.where(w == 0, at_rest(topo, stiffness), stiffness) if topo.dragged else stiffness
+    matrix = stiffness - w**2 * mass + 1j * (w * damping + np.sign(w) * lossy)
     if not linearised:
         return _one_by_one(matrix, right)
     # To first order about the first case, whose matrix stands for all.
@@ -127,14 +129,26 @@ def bounded(matrix: TreeMatrix, right: Complex, x: Complex) -> Complex:
     return x
 
 
-def _driven_away(turn: Array, plan: Plan, matrices: TreeMatrices, torque: Complex, linearised: bool) -> Complex:
-    """Twists (case, n) under constant ``torque`` (case, n) of a line that turns as ``turn`` (n,): what resists there
-    balances it. With ``linearised`` to first order about the first case."""
-    some = slice(0, 1) if linearised else slice(None)
+def _join(topo: Topology, matrices: TreeMatrices, own: Complex, coupling: Complex, still: Flags) -> None:
+    """Add to stiffness on the diagonal (n, …, case) and beside it what joins rings that oil alone drags along to what
+    they are on, where the line stands ``still`` (…, case): see ``aligned.at_rest``."""
+    weight = np.abs(matrices.stiffness.own[..., 0]).max(axis=0) * still
+    for far, near, ratio in ((*topo.ends[e], matrices.ratio[:, 0, e]) for e in topo.dragged):
+        own[far] += weight
+        if near >= 0:
+            own[near] += ratio**2 * weight
+            coupling[far] -= ratio * weight
+
+
+def _driven_away(topo: Topology, plan: Plan, matrices: TreeMatrices, torque: Complex, linearised: bool) -> Complex:
+    """Twists (case, n) under constant ``torque`` (case, n) of a line that turns as a whole: what resists there balances
+    it. With ``linearised`` to first order about the first case."""
+    turn, some = rigid_rotation(topo), slice(0, 1) if linearised else slice(None)
     stiffness, damping, mass = (
         TreeMatrix(plan, matrices.parent, part.own.astype(complex), part.down.astype(complex), [])
         for part in (matrices.stiffness, matrices.damping, matrices.mass)
     )
+    _join(topo, matrices, stiffness.own[..., 0], stiffness.coupling[..., 0], np.ones(len(torque), dtype=bool))
     whole = np.broadcast_to(turn[:, None, None], stiffness.own.shape).astype(complex)
     drag, inertia = damping.times(whole), mass.times(whole)
     drags = np.abs(drag).max(axis=0) > DRAGGED * np.abs(damping.own).max(axis=0)

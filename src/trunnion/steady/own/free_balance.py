@@ -20,6 +20,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
+from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.integration.integration import Equations
@@ -125,6 +126,7 @@ class FreeBalance:
 
     def __init__(self, assembly: Assembly, period: float) -> None:
         """``period`` [rad of input angle]."""
+        refuse_dragged(assembly)
         topo = assembly.topology
         self.assembly, self.period, self.turn = assembly, period, rigid_rotation(topo)
         self.phase = np.eye(topo.size)[topo.coordinate[topo.group_of(0)]]

@@ -18,7 +18,7 @@ from trunnion.equations.harmonics import unexcited
 from trunnion.equations.line_system import line_system
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.linear_clutches import with_mean_clutches
-from trunnion.equations.steady_base import require_balance
+from trunnion.equations.steady_base import refuse_dragged, require_balance
 from trunnion.errors import ComputationError
 from trunnion.modes.mode_content import ModeMotion, floquet_pair
 from trunnion.numerics.integration.integration import integrate
@@ -48,7 +48,7 @@ class OwnMotion:
         co = self.assembly.coefficients(self.assembly.table(1, self.speed))
         turn = self.speed * orbit.period
         mean = line_matrices(topo, co, turn * np.arange(SAMPLES) / SAMPLES)
-        highest = float(frequencies(aligned_matrices(topo, co), rigid=1).max()) * orbit.period / (2 * np.pi)
+        highest = float(frequencies(aligned_matrices(topo, co), still=topo.still).max()) * orbit.period / (2 * np.pi)
         scale = np.repeat([1.0, 1 / self.speed], topo.size)
         times = orbit.period * np.linspace(0, 1, max(SAMPLES, PER_CYCLE * int(np.ceil(highest))) + 1)
         state, over = orbit.start, []
@@ -88,6 +88,7 @@ def own_motion(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -
     ComputationError : no motion found.
     """
     prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed)
+    refuse_dragged(prepared.assembly)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
     orbit = kept_speed_orbit(prepared, tolerance=tolerance)
     if not orbit.outcome.ok:
