@@ -28,11 +28,11 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
+from trunnion.equations.chain_batch import chain_batch, chain_program
 from trunnion.equations.coefficients import assemble
-from trunnion.equations.lanes import chain_lanes, chain_program
 from trunnion.equations.topology import require_period
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
-from trunnion.numerics.lanes import LANES
 from trunnion.results.chart import StabilityChart
 
 Array = NDArray[np.float64]
@@ -174,10 +174,10 @@ def heyoka_seconds(line: tn.Driveline, chart: StabilityChart, sample: int) -> tu
     return (time.perf_counter() - begin) / sample, apart
 
 
-def kernel_rate(line: tn.Driveline, speed: tuple[float, float], angle: tuple[float, float], lanes: int) -> float:
+def kernel_rate(line: tn.Driveline, speed: tuple[float, float], angle: tuple[float, float], batch: int) -> float:
     """Monodromies a second of the chain kernel, one thread, at 1e-9, over a box of speed and all joint angles."""
     assembly = assemble(line)
-    side = round(math.sqrt(lanes))
+    side = round(math.sqrt(batch))
     table = assembly.table(side**2)
     table[:, 0] = np.tile(np.linspace(*speed, side), side)
     for c, label in enumerate(assembly.packed.labels):
@@ -185,7 +185,7 @@ def kernel_rate(line: tn.Driveline, speed: tuple[float, float], angle: tuple[flo
             table[:, c] = np.repeat(np.linspace(*angle, side), side)
     topology = assembly.topology
     coefficients = assembly.coefficients(table)
-    program, numbers = chain_program(topology, coefficients), chain_lanes(topology, coefficients)
+    program, numbers = chain_program(topology, coefficients), chain_batch(topology, coefficients)
     period = 2 * np.pi * float(require_period(line, topology))
     begin = symmetry_phase(program, numbers, period)
     window = Window(0.0 if begin is None else begin, period, begin is not None)
@@ -213,7 +213,7 @@ def main() -> None:
     print(f"{processor()}, {os.cpu_count()} cores")
     print(
         f"Python {platform.python_version()}, numpy {np.__version__}, numba {numba.__version__}, "
-        f"scipy {scipy.__version__}; {threads} threads, {LANES} lanes\n"
+        f"scipy {scipy.__version__}; {threads} threads, {BATCH} lanes\n"
     )
     two, three, eight = tn.catalogue("two-shaft-cardan"), tn.catalogue("three-shaft-cardan"), equal_chain(8)
 
@@ -275,12 +275,12 @@ def main() -> None:
         )
     print(f"peak memory above what stood before, n = 2, {n}²: {increment:.0f} MB")
 
-    for name, line, speed, angle, lanes in (
+    for name, line, speed, angle, batch in (
         ("n = 2, S1's box", two, (0.02, 2.0), (0.0, 1.5), 90_000),
         ("n = 3, S1's speeds, β to 1.2", three, (0.02, 2.0), (0.0, 1.2), 40_000),
         ("n = 20, Ω 0.5…2, β to 0.3", equal_chain(20), (0.5, 2.0), (0.0, 0.3), 1600),
     ):
-        rate = kernel_rate(line, speed, angle, lanes)
+        rate = kernel_rate(line, speed, angle, batch)
         print(f"kernel, one thread, 1e-9, {name}: {rate:.0f} monodromies/s", flush=True)
 
 

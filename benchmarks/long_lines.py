@@ -1,4 +1,4 @@
-"""Long lines: chains of 10 to 300 inertias, straight and with two bent joints, processor seconds of warm calls.
+"""Long lines: chains of 10 to 300 inertias, straight and with two angled joints, processor seconds of warm calls.
 
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
@@ -21,7 +21,7 @@ from trunnion.steady.orders import spectrum
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
 ORDERS = (1.5, 3.0, 4.5)
 TARGETS = {50: 0.15, 100: 0.4, 300: 1.5}
-"""Seconds of ``order_response`` with two bent joints."""
+"""Seconds of ``order_response`` with two angled joints."""
 
 
 def chain(inertias: int, joints: int = 2) -> tn.Driveline:
@@ -55,7 +55,7 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--most", type=int, default=300)
     asked = parser.parse_args()
-    print("| inertias | order_response, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    print("| inertias | order_response, straight [s] | two angled joints [s] | target |\n|---|---|---|---|")
     for n in (10, 20, 50, 100, 300):
         if n <= asked.most:
             straight, bent = (
@@ -70,7 +70,7 @@ def main() -> None:
             median(lambda line=line, at=at: tn.order_response(line, at), asked.repeats) for _ in ways()
         )
         print(f"| {n}, {speeds} | {chosen:.4f} | {along:.4f} | {whole:.4f} |", flush=True)
-    print("\n| inertias | stability, straight [s] | two bent joints [s] | target |\n|---|---|---|---|")
+    print("\n| inertias | stability, straight [s] | two angled joints [s] | target |\n|---|---|---|---|")
     for n in (20, 50, 100, 300):
         if n <= asked.most:
             straight, bent = (

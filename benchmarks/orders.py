@@ -1,4 +1,4 @@
-"""Order responses: 21 inertias with 20 orders, and the truck with three bent joints and 8 orders, at 400 speeds each.
+"""Order responses: 21 inertias with 20 orders, and the truck with three angled joints and 8 orders, at 400 speeds each.
 
     PYTHONPATH=src python benchmarks/orders.py [--repeats 5]
 
@@ -91,7 +91,7 @@ def main() -> None:
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
     for name, line, low, high, target in (
         ("21 inertias, 20 orders", chain(), 300, 3000, 0.2),
-        ("truck, 3 bent joints, 8 orders", truck(), 300, 2400, 2.0),
+        ("truck, 3 angled joints, 8 orders", truck(), 300, 2400, 2.0),
     ):
         speeds = tn.rpm(np.linspace(low, high, SPEEDS))
         response = median(lambda line=line, speeds=speeds: tn.order_response(line, speeds), repeats)

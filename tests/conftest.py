@@ -17,7 +17,7 @@ from typer.testing import CliRunner, Result
 
 import trunnion as tn
 from trunnion.cli import app
-from trunnion.floquet.charts import prices
+from trunnion.floquet.charts import cost_model
 from trunnion.studies.shared.result import Reproduction
 
 pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
@@ -115,7 +115,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def compiling_pays():
     """Charts take the kernels, compiled already or not: which way is tested does not depend on what ran before."""
     patch = pytest.MonkeyPatch()
-    patch.setattr(prices, "COMPILING", -1.0)
+    patch.setattr(cost_model, "COMPILING", -1.0)
     yield
     patch.undo()
 

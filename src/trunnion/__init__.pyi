@@ -7,7 +7,7 @@ from trunnion.design.limits.stable_limit import stable_limit as stable_limit
 from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
 from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
-from trunnion.design.tolerance.study import tolerance_study as tolerance_study
+from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
 from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed

@@ -141,7 +141,7 @@ def problems_of(checks: Iterable[Callable[[], object]]) -> list[InputError]:
     return found
 
 
-class _Shown(str):
+class _ShownValue(str):
     """What is left of a value that cannot leave its process: what messages show of it."""
 
     def __repr__(self) -> str:
@@ -150,7 +150,7 @@ class _Shown(str):
 
 def _portable(value: object) -> object:
     plain = (str, int, float, complex, list, tuple, dict, type(None))
-    return value if isinstance(value, plain) else _Shown(_brief(value))
+    return value if isinstance(value, plain) else _ShownValue(_brief(value))
 
 
 def _together(parts: list[tuple[str, str, str, object, str]]) -> InputError:
@@ -158,7 +158,7 @@ def _together(parts: list[tuple[str, str, str, object, str]]) -> InputError:
     return InputError.together(InputError(p, element=e, key=k, value=v, remedy=r) for p, e, k, v, r in parts)
 
 
-class _Brief(reprlib.Repr):
+class _ShortRepr(reprlib.Repr):
     """``repr`` of bounded length, depth and time: a value may be a list of a million or a number of as many digits."""
 
     def repr_int(self, value: int, level: int) -> str:
@@ -174,6 +174,6 @@ def _brief(value: object, limit: int = 60) -> str:
     return short(f"{value:g}" if isinstance(value, float) else _BRIEF.repr(value), limit)
 
 
-_BRIEF = _Brief()
+_BRIEF = _ShortRepr()
 _BRIEF.maxlevel = 3
 _BRIEF.maxother = 60

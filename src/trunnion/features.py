@@ -103,7 +103,7 @@ _FORCES = "a forcing, which moves no frequency and no multiplier of a linear lin
 _FORCING = dict.fromkeys(
     (
         "excitation by order", "excitation that varies with speed or load", "cylinders", "excitation in time",
-        "excitation by order and frequency", "excitation of a held disk", "transmission error",
+        "excitation by order and frequency", "excitation of a prescribed disk", "transmission error",
     ),
     _FORCES,
 )  # fmt: skip
@@ -122,7 +122,7 @@ _SERIES: dict[str, Words] = {
 }
 _BY_PLACE = {**_HELD, **_SERIES}
 ONE_MOTION = "dry friction at one motion"
-_RUBBING = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
+_DRY_FRICTION = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
 _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
 _NOT_FOLLOWED = dict.fromkeys(
     ("dry friction", ONE_MOTION), "sliders change between sticking and slipping, which is not followed"
@@ -131,14 +131,17 @@ TIED = "shafts tied to two others"
 _TREES = dict.fromkeys(
     (TIED, "closed loop"), "follows lines that branch, and none whose shaft is tied to two others or closes a loop"
 )
-_FAR_END = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line nowhere to go"}
-_UNANSWERED = {**_RUBBING, "prescribed far end": "two prescribed speeds leave a bent line no linear response to judge"}
+_FAR_END = {**_DRY_FRICTION, "prescribed far end": "two prescribed speeds leave a line with joint angles nowhere to go"}
+_UNANSWERED = {
+    **_DRY_FRICTION,
+    "prescribed far end": "two prescribed speeds leave a line with joint angles no linear response to judge",
+}
 _BASE = {
-    **_RUBBING,
+    **_DRY_FRICTION,
     **_TREES,
     "free start": "bent, it is judged about its own periodic motion",
-    "drive share": "belongs to lines that start free",
-    "prescribed far end": "two prescribed speeds leave a bent line nowhere to go",
+    "drive share": "belongs to free–free lines",
+    "prescribed far end": "two prescribed speeds leave a line with joint angles nowhere to go",
 }
 _EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
 _UNPROVABLE = {
@@ -190,7 +193,7 @@ _DRIVEN = {
     **_NOT_FOLLOWED,
     **_ANYWHERE,
     "free start": "the speed follows from the torques",
-    "drive share": "belongs to lines that start free",
+    "drive share": "belongs to free–free lines",
 }
 _PASSING = {
     **_ONE_DRIVE,
@@ -205,7 +208,7 @@ _NOT_EXACT = {
         "the stages are then not linear with constant coefficients",
     ),
 }
-_UNBENT = {**_PASSIVE, "fork offset": "without a bent joint forks have no phase"}
+_UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no phase"}
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
@@ -214,7 +217,7 @@ _RIGID = dict.fromkeys(
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time",
-        "excitation by order and frequency", "excitation of a held disk",
+        "excitation by order and frequency", "excitation of a prescribed disk",
         "unlike damping in series", "free start", "drive share",
     ),
     "rotations of rigid shafts follow from joints, forks and ratios alone",
@@ -226,9 +229,9 @@ _STEADY = "torques are those of steady running; ask periodic_response() or simul
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 ROWS: dict[str, Row] = {
-    "modes": _row(refused=_RUBBING, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
+    "modes": _row(refused=_DRY_FRICTION, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
     "resonances": _row(
-        refused=_RUBBING,
+        refused=_DRY_FRICTION,
         said={
             "viscous load": "resonance speeds are those of the line without it",
             "quadratic load": "resonance speeds are those of the line without it",
@@ -237,7 +240,7 @@ ROWS: dict[str, Row] = {
             **_MODES_INERT,
             **dict.fromkeys(
                 ("Hooke's joint", "double Cardan joint off centre"),
-                "the speeds are those at which a bent joint of any angle can resonate",
+                "the speeds are those at which an angled joint of any angle can resonate",
             ),
             **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
@@ -246,7 +249,7 @@ ROWS: dict[str, Row] = {
     "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}, set_aside=(DRAGGED,)),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
-        refused=_RUBBING,
+        refused=_DRY_FRICTION,
         said=_BY_PLACE,
         inert={
             **_TORSION,
@@ -259,10 +262,12 @@ ROWS: dict[str, Row] = {
     "comparison": _row(
         set_aside=(DRAGGED,),
         said=_BY_PLACE,
-        not_judged={key: (reason, "not compared: frequency, growth rate, torque") for key, reason in _RUBBING.items()},
+        not_judged={
+            key: (reason, "not compared: frequency, growth rate, torque") for key, reason in _DRY_FRICTION.items()
+        },
         inert=_EVEN,
     ),
-    "derivatives": _row(refused=_RUBBING, said=_BY_PLACE, inert=_PASSIVE),
+    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert=_PASSIVE),
     "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
@@ -284,7 +289,7 @@ ROWS: dict[str, Row] = {
             "cylinders": _STEADY,
             "excitation in time": _STEADY,
             "excitation by order and frequency": _STEADY,
-            "excitation of a held disk": _STEADY,
+            "excitation of a prescribed disk": _STEADY,
             "unlike damping in series": _UNDAMPED_TURN,
             "drive share": "the first element drives alone",
             **dict.fromkeys(

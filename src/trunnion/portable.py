@@ -19,7 +19,7 @@ class Portable:
 
     def __reduce__(self) -> tuple[Any, ...]:
         if not _WITHIN.get():
-            return pickle.loads, (carried(self),)
+            return pickle.loads, (pickled(self),)
         left = {name for kind in type(self).__mro__ for name, one in vars(kind).items() if hasattr(one, "attrname")}
         return _empty, (type(self),), {name: value for name, value in vars(self).items() if name not in left}
 
@@ -29,7 +29,7 @@ class Portable:
         return made
 
 
-def carried(value: Any) -> bytes:
+def pickled(value: Any) -> bytes:
     """``value`` as bytes, functions by their code where they cannot be imported."""
     from numba import cloudpickle  # which pickles functions for numba itself; here, as it loads slowly
 

@@ -121,7 +121,7 @@ ANALYSES = (
     ),
     Analysis(
         "speed_sweep",
-        "Torque and twist amplitude of every shaft over speed, all orders together; takes bent lines that start free.",
+        "Torque and twist amplitude of every shaft over speed, all orders together; free–free lines included.",
         features="linear motion",
         pictures={"SpeedSweep.plot": "trunnion.pictures.orders:speed_sweep"},
         command="trunnion.cli.orders:speed_sweep",

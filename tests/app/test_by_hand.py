@@ -175,7 +175,7 @@ def undo_takes_it_back(look: Look, settings: str) -> None:
 @pytest.mark.slow
 def test_forks_are_turned_by_a_slider_and_angles_of_two_views_are_combined(look: Look) -> None:
     look.at("?view=joints")
-    uneven = look.page.locator("td[data-value=irregularity]").inner_text()
+    nonuniform = look.page.locator("td[data-value=irregularity]").inner_text()
     look.type("Angle in side view [deg]", "6")
     look.type("Angle in top view [deg]", "8")
     bend, plane = tn.combined_angle(tn.deg(6), tn.deg(8))
@@ -185,7 +185,7 @@ def test_forks_are_turned_by_a_slider_and_angles_of_two_views_are_combined(look:
     look.settled_anew()
     other = tn.loads(starter("two-shaft")).replace("HookeJoint 1", angle=bend)
     shown = look.page.locator("td[data-value=irregularity]")
-    assert shown.inner_text() != uneven
+    assert shown.inner_text() != nonuniform
     assert float(shown.inner_text()) == pytest.approx(tn.kinetostatics(other).irregularity, rel=1e-5)
     before = look.page.evaluate(SHOWN)["drawn"]
     handle = look.page.locator(".bk-input-group", has_text="Fork offset [deg]").locator("[role=slider]").last

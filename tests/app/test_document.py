@@ -13,7 +13,7 @@ import trunnion as tn
 from trunnion.app.address import pack, unpack
 from trunnion.app.parts.calls import LINE, Call, script
 from trunnion.app.parts.document import Document
-from trunnion.app.parts.form import Group
+from trunnion.app.parts.form import FieldGroup
 from trunnion.app.parts.variants import Sliders, difference
 from trunnion.app.views.driveline import DrivelineView
 from trunnion.driveline.files import dumps
@@ -247,7 +247,7 @@ def test_pressed_twice_a_table_is_removed_once(kind: str) -> None:
     assert [g.key for g in document.groups()] == [g.key for g in full_keys(document)]
 
 
-def full_keys(document: Document) -> list[Group]:
+def full_keys(document: Document) -> list[FieldGroup]:
     """Groups in order, each with a key that no other one of its list has."""
     groups = list(document.groups())
     for section in {g.path[:-1] for g in groups}:

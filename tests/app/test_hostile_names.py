@@ -22,10 +22,10 @@ from trunnion.app.address import pack
 from trunnion.app.page import Page
 from trunnion.app.parts.calls import script
 from trunnion.app.parts.document import Document
-from trunnion.app.parts.pieces import Shown, lines, markup, small
 from trunnion.app.parts.variants import difference
+from trunnion.app.parts.widgets import HtmlPane, lines, markup, small
 from trunnion.app.views.base import View, links
-from trunnion.app.worker import Worker
+from trunnion.app.worker import WorkerLoop
 from trunnion.errors import TrunnionError
 
 TOML = tn.dumps(hostile.line())
@@ -62,12 +62,12 @@ def sent(panel: Any) -> str:
     """What the browser gets of everything in a panel that is HTML, unescaped as it does."""
     from html import unescape
 
-    return "\n".join(unescape(one._transform_object(one.object)["object"]) for one in panel.select(Shown))
+    return "\n".join(unescape(one._transform_object(one.object)["object"]) for one in panel.select(HtmlPane))
 
 
 def shown(view: View) -> str:
     """What a view shows of its line once everything is computed."""
-    worker = Worker(BytesIO(), BytesIO(), 1)
+    worker = WorkerLoop(BytesIO(), BytesIO(), 1)
     side, document = view.of("now"), view.session.document
     for step in view.steps(document.line):
         try:
@@ -105,7 +105,7 @@ def test_every_message_and_piece_shows_text_as_text(text: str) -> None:
     )  # fmt: skip
     for piece in pieces:
         assert text in " ".join(harmless(piece).text.split("\n")) or piece is pieces[-1]
-    plain = Shown(text)
+    plain = HtmlPane(text)
     assert harmless(sent(plain)).text == text
 
 
@@ -138,7 +138,7 @@ def no_script_in(svg: bytes) -> None:
     ],
 )
 def test_saved_pictures_hold_no_script(view: str, settings: dict[str, str]) -> None:
-    there, worker = view_of(TOML, view, settings), Worker(BytesIO(), BytesIO(), 1)
+    there, worker = view_of(TOML, view, settings), WorkerLoop(BytesIO(), BytesIO(), 1)
     steps = [step for step in there.steps(there.session.document.line) if "svg" in step.endings]
     assert steps
     for step in steps:

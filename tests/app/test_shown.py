@@ -9,7 +9,7 @@ import trunnion as tn
 from trunnion.app.shown import assessment, chart, turn
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.starter import starter
-from trunnion.pictures.picture import Line, Mesh
+from trunnion.pictures.picture import ColouredGrid, Line
 from trunnion.pictures.stability_chart import DECAYS, _steps
 
 pytest.importorskip("panel")
@@ -22,7 +22,7 @@ def test_the_colours_of_a_chart_tell_its_points_apart(name: str) -> None:
     line = tn.loads(starter(name))
     speeds, angles = ("speed", tn.rpm(500), tn.rpm(2500), 6), (f"{hooke_joints(line)[0][0]}.angle", 0.0, 0.3, 4)
     items = chart(tn.stability_chart(line, speeds, angles), "rpm")["picture"].panel.items
-    mesh = next(item for item in items if isinstance(item, Mesh))
+    mesh = next(item for item in items if isinstance(item, ColouredGrid))
     shown = mesh.values[np.isfinite(mesh.values)]
     levels = mesh.colours.levels or np.linspace(mesh.colours.low, mesh.colours.high, 6)
     assert shown.min() >= levels[0] * (1 - 1e-9) and shown.max() <= levels[-1] * (1 + 1e-9)

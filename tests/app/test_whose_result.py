@@ -21,15 +21,15 @@ import trunnion as tn
 from trunnion.app import session as module
 from trunnion.app.address import pack
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.jobs import Answer, Job
-from trunnion.app.parts.pieces import FAINT, Shown
+from trunnion.app.parts.jobs import Job, WorkerMessage
+from trunnion.app.parts.widgets import FAINT, HtmlPane
 from trunnion.app.session import NOW, Session
-from trunnion.app.worker import Worker
+from trunnion.app.worker import WorkerLoop
 from trunnion.driveline.starter import starter
 from trunnion.errors import ComputationError
 from trunnion.pictures.picture import EdgeNames
 
-WORKER = Worker(BytesIO(), BytesIO(), 1)
+WORKER = WorkerLoop(BytesIO(), BytesIO(), 1)
 
 
 class Held:
@@ -40,13 +40,13 @@ class Held:
         self.held.set()
         self.failure = ""
 
-    async def run(self, job: Job, owner: object, tell: Callable[[float], None] = lambda share: None) -> Answer:
+    async def run(self, job: Job, owner: object, tell: Callable[[float], None] = lambda share: None) -> WorkerMessage:
         """As ``Pool.run``."""
         tell(0.0)
         await self.held.wait()
         if self.failure:
             raise ComputationError(self.failure)
-        return Answer(0, "done", WORKER.compute(job, lambda share: None))
+        return WorkerMessage(0, "done", WORKER.compute(job, lambda share: None))
 
     def warm(self, jobs: tuple[Job, ...], owner: object = None) -> None:
         """Nothing beside what is tested."""
@@ -274,7 +274,7 @@ def test_a_best_value_is_used_for_the_parameter_it_was_found_for(monkeypatch: py
 
 def said(made: Session) -> str:
     """What stands below "What would help?"."""
-    return "\n".join(str(one.object) for row in verdict(made).help.list.objects for one in row.select(Shown))
+    return "\n".join(str(one.object) for row in verdict(made).help.list.objects for one in row.select(HtmlPane))
 
 
 def test_what_would_help_says_how_far_it_is_and_is_cancelled(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,9 +17,9 @@ from test_exported_code import view_of
 
 import trunnion as tn
 from trunnion.app.parts.jobs import Job
-from trunnion.app.worker import Worker
+from trunnion.app.worker import WorkerLoop
 from trunnion.driveline.starter import starter
-from trunnion.pictures.picture import Mesh
+from trunnion.pictures.picture import ColouredGrid
 
 BOX = ((tn.rpm(650), tn.rpm(800), 5), (tn.deg(10), tn.deg(19), 4))
 
@@ -29,7 +29,7 @@ def test_a_zoom_after_many_clicks_asks_for_no_chart(monkeypatch: pytest.MonkeyPa
     calls: list[str] = []
     charted = tn.stability_chart
     monkeypatch.setattr(tn, "stability_chart", lambda *a, **k: (calls.append("chart"), charted(*a, **k))[1])
-    worker, toml = Worker(BytesIO(), BytesIO(), 1), starter("two-shaft")
+    worker, toml = WorkerLoop(BytesIO(), BytesIO(), 1), starter("two-shaft")
 
     def look(at_x: float) -> Any:
         settings = {"across": "12", "up": "10", "at_x": f"{at_x}", "at_y": "15", "look": "True"}
@@ -56,6 +56,6 @@ def test_a_zoom_after_many_clicks_asks_for_no_chart(monkeypatch: pytest.MonkeyPa
         assert zoomed.says[j, k] == pytest.approx(100 * per_turn, abs=1e-4)
 
 
-def mesh(data: dict[str, Any]) -> Mesh:
+def mesh(data: dict[str, Any]) -> ColouredGrid:
     """What of a chart is coloured, and what the pointer is told of each point."""
-    return next(item for item in data["picture"].panel.items if isinstance(item, Mesh))
+    return next(item for item in data["picture"].panel.items if isinstance(item, ColouredGrid))

@@ -15,7 +15,7 @@ from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.joint_angles import TABLE_ANGLE, TABLE_SPEED
 from trunnion.driveline.rules import APPLICATIONS, RULES, Weight, markdown
 from trunnion.errors import InputRemark
-from trunnion.reporting.answer import answer, asked, judged
+from trunnion.reporting.overview_assessment import answer, asked, judged
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.toml"))
@@ -347,7 +347,7 @@ def test_the_take_off_grows_unstable_where_it_is_raised() -> None:
 
 
 SLOW = ("4x4-free", "car", "marine")
-"""Bent lines that start free: every speed takes a motion of its own."""
+"""Free–free lines with joint angles: every speed takes a motion of its own."""
 
 
 @pytest.mark.parametrize(

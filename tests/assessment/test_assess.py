@@ -58,7 +58,7 @@ def test_the_torque_of_two_masses_by_hand():
 
 
 def test_a_loss_factor_at_all_frequencies_leaves_all_but_stability_judged():
-    """A coupling as its maker lists it beside a bent joint: torques by frequency, no equations in time."""
+    """A coupling as its maker lists it beside an angled joint: torques by frequency, no equations in time."""
     parts = [
         tn.ConstantSpeed(), tn.Shaft(stiffness=K, damping=1.0, name="shaft"), tn.Disk(inertia=0.5),
         tn.HookeJoint(angle=0.1), tn.Coupling(stiffness=K, relative_damping=0.8, name="coupling"), tn.Disk(inertia=0.5),

@@ -284,7 +284,7 @@ def test_the_command_prints_and_writes_what_helps(tmp_path):
 
 
 def bent_free(*limits):
-    """A free line with two bent joints, shaken by order 2; the lower mode crosses it inside the range."""
+    """A free line with two angled joints, shaken by order 2; the lower mode crosses it inside the range."""
     shaken = [{"order": 2, "amplitude": 30.0}]
     return tn.Driveline(
         [

@@ -10,7 +10,7 @@ from trunnion.studies.double_tripod.computed import exponent_from, floquet_expon
 from trunnion.studies.double_tripod.contraction import contraction, smallest_damping
 from trunnion.studies.double_tripod.estimator import printed_estimator
 from trunnion.studies.double_tripod.figures import beats, motion_of
-from trunnion.studies.double_tripod.published import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, Element
+from trunnion.studies.double_tripod.published import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, OuterElement
 from trunnion.systems.reference import linear_oscillator
 
 NINE = WORST_ANGLE
@@ -35,7 +35,7 @@ def test_steiner_terms_with_their_sine() -> None:
 
 @pytest.mark.parametrize("element", [INPUT, OUTPUT], ids=["input", "output"])
 @pytest.mark.parametrize("angle", [0.02, 0.1, NINE])
-def test_g_is_stiffness_over_inertia(element: Element, angle: float) -> None:
+def test_g_is_stiffness_over_inertia(element: OuterElement, angle: float) -> None:
     """k(φ)/I(φ) = Ω² g(φ) with Ī at the angle and χ_n with χ_nB."""
     shaft = DoubleTripod(angle=angle, nonuniformity="derived")
     which = "output" if element.mill else "input"

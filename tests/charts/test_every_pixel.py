@@ -303,7 +303,7 @@ def test_patches_that_do_not_converge_fall_back(monkeypatch: pytest.MonkeyPatch)
     chart = tn.stability_chart(
         tn.catalogue("two-shaft-cardan"), ("speed", 0.05, 2.0, 120), ("HookeJoint 1.angle", 0.0, 1.4, 100)
     )
-    assert chart.function.stubborn > 0 and chart.function.direct
+    assert chart.function.unconverged > 0 and chart.function.direct
     assert any("did not converge" in r for r in chart.remarks)
     check(chart)
 
@@ -313,5 +313,5 @@ def test_slabs_that_do_not_converge_fall_back(monkeypatch: pytest.MonkeyPatch) -
     chart = tn.stability_chart(
         tn.catalogue("two-shaft-cardan"), ("speed", 0.02, 2.0, 160), ("HookeJoint 1.angle", 0.0, 1.5, 130)
     )
-    assert chart.function.stubborn > 0
+    assert chart.function.unconverged > 0
     check(chart, 2000)

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.floquet.charts.leading_group import Settling, settle
+from trunnion.floquet.charts.leading_group import ConvergingMultipliers, settle
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ class Sixth:
 
 def test_each_point_takes_as_many_steps_as_it_needs_and_no_more():
     points = Sixth(np.array([0.0, 1e-2, 1.0, 50.0, 4e3]))
-    found = Settling(points, 1)  # type: ignore[arg-type]
+    found = ConvergingMultipliers(points, 1)  # type: ignore[arg-type]
     assert settle(found, 1, 1e-9, np.inf)
     # An error e/N⁶ is seen as the change from N/2 to N, of which an eighth is claimed from the second halving on.
     last, before = (points.error * ((found.steps / k) ** -6.0 - (found.steps * 2 / k) ** -6.0) for k in (2, 4))
@@ -45,7 +45,7 @@ def test_each_point_takes_as_many_steps_as_it_needs_and_no_more():
 
 def test_points_of_unlike_steps_are_sharpened_once_each():
     points = Sixth(np.zeros(3))
-    found = Settling(points, 1)  # type: ignore[arg-type]
+    found = ConvergingMultipliers(points, 1)  # type: ignore[arg-type]
     found.sharpen(np.array([2]))
     found.sharpen(np.array([0, 2]))
     assert found.steps.tolist() == [32, 16, 64]

@@ -72,12 +72,12 @@ def corrupt(monkeypatch: pytest.MonkeyPatch, way: str) -> None:
     if way == "smaller patches":
         monkeypatch.setattr(chart_families, "spread", corners_only)
     if way == "whole periods":
-        monkeypatch.setattr(chart_families, "symmetry_phase", lambda program, lanes, period: 0.0)
+        monkeypatch.setattr(chart_families, "symmetry_phase", lambda program, batch, period: 0.0)
     if way == "pixel by pixel":
         monkeypatch.setattr(patches, "dct", tails_unseen(patches.dct))
 
 
-@pytest.mark.parametrize("way", [way.name for way in building.LADDER])
+@pytest.mark.parametrize("way", [way.name for way in building.FALLBACKS])
 @pytest.mark.slow
 def test_each_way_holds_where_those_before_fail(way: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     with monkeypatch.context() as broken:
@@ -85,7 +85,7 @@ def test_each_way_holds_where_those_before_fail(way: str, monkeypatch: pytest.Mo
         chart = tn.stability_chart(line(), (*X, 100), (*Y, 100))
         assert chart.way == way
         assert chart.spot_check is not None and chart.spot_check.worst_ratio <= 1
-        first_try = way == building.LADDER[0].name
+        first_try = way == building.FALLBACKS[0].name
         assert any("built anew" in remark for remark in chart.remarks) is not first_try
         assert ("built anew" in str(chart)) is not first_try
         chart.save(tmp_path / "c.nc")
@@ -108,8 +108,8 @@ def test_a_chart_that_fails_in_every_way_is_refused(monkeypatch: pytest.MonkeyPa
     """An integration whose answer depends on its tolerance by far more than it says."""
     honest = chart_families.chain_monodromy
 
-    def careless(program: Any, lanes: Any, window: Any, tolerance: float, threads: int) -> Any:
-        matrix, error, trace = honest(program, lanes, window, tolerance, threads)
+    def careless(program: Any, batch: Any, window: Any, tolerance: float, threads: int) -> Any:
+        matrix, error, trace = honest(program, batch, window, tolerance, threads)
         return matrix * (1 + 1e3 * tolerance), error, trace
 
     monkeypatch.setattr(chart_families, "chain_monodromy", careless)
@@ -120,4 +120,4 @@ def test_a_chart_that_fails_in_every_way_is_refused(monkeypatch: pytest.MonkeyPa
 
 def test_a_way_that_is_none_is_refused() -> None:
     with pytest.raises(tn.InputError, match="is not a way of building charts"):
-        building.way_named("by guesswork")
+        building.strategy_named("by guesswork")

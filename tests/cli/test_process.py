@@ -53,7 +53,7 @@ def test_the_answer_loads_no_compiler(start):
     script = (
         "import sys, trunnion as tn\n"
         "from trunnion.cli import output\n"
-        "from trunnion.reporting.answer import answer, asked, judged\n"
+        "from trunnion.reporting.overview_assessment import answer, asked, judged\n"
         "with output.compile_notice():\n"
         "    given = answer(judged(asked(tn.load('line.toml'))))\n"
         "assert given.along is not None\n"

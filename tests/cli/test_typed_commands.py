@@ -9,9 +9,16 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from trunnion.cli.asked import REQUIRED, Asked, Bounds, Given, Read, Subject
+from trunnion.cli.command_input import (
+    REQUIRED,
+    CommandInput,
+    CommandSubject,
+    InputAttribute,
+    NumberBounds,
+    OptionReader,
+)
 from trunnion.cli.options import Line, Progress, Speed, SpeedUnit
-from trunnion.cli.places import NOTHING, Shown
+from trunnion.cli.places import NOTHING, CommandOutput
 from trunnion.cli.program import OneLineGroup
 from trunnion.cli.typed import Command, callback
 
@@ -29,7 +36,7 @@ class Found:
         return "found"
 
 
-def pair(asked: Asked, text: str, key: str) -> list[Any]:
+def pair(asked: CommandInput, text: str, key: str) -> list[Any]:
     return [key, text, asked.unit]
 
 
@@ -38,16 +45,16 @@ def invented(
     line: Line,
     *,
     speed: Speed,
-    many: Annotated[list[Any], Read(pair, REQUIRED, several=True)],
-    one: Annotated[Any, Read(pair, "as by default")],
-    none: Annotated[Any, Read(pair, missing=lambda asked: f"of {asked.file}")],
-    count: Annotated[int, Bounds(1, 3)] = 2,
+    many: Annotated[list[Any], OptionReader(pair, REQUIRED, several=True)],
+    one: Annotated[Any, OptionReader(pair, "as by default")],
+    none: Annotated[Any, OptionReader(pair, missing=lambda asked: f"of {asked.file}")],
+    count: Annotated[int, NumberBounds(1, 3)] = 2,
     flag: bool = False,
     both: bool = True,
     from_: str = "here",
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion invented a.toml
 
     --many, -m KEY=VALUE  Several, [N m], and words
@@ -61,7 +68,7 @@ def invented(
     """
     progress(1.0)
     names = [element.kind for element in line.elements]
-    return Shown(
+    return CommandOutput(
         Found(
             kinds=names, speed=speed, many=many, one=one, none=none, count=count, flag=flag, both=both, start=from_,
             unit=unit,
@@ -130,10 +137,10 @@ def test_help_has_the_sentence_the_docstring_and_the_words_of_every_option(ask, 
 
 
 def test_a_function_and_its_docstring_tell_of_the_same_options() -> None:
-    def forgotten(line: Line, *, count: int = 2) -> Shown:
+    def forgotten(line: Line, *, count: int = 2) -> CommandOutput:
         """Nothing is said of it."""
 
-    def invented_option(line: Line) -> Shown:
+    def invented_option(line: Line) -> CommandOutput:
         """--count  Of what?"""
 
     with pytest.raises(TypeError, match="--count"):
@@ -144,14 +151,17 @@ def test_a_function_and_its_docstring_tell_of_the_same_options() -> None:
 
 def test_what_a_command_is_about_may_be_anything(here) -> None:
     argument = typer.Argument(metavar="NUMBER", help="Any.")
-    about = Subject(lambda text, texts: Asked(float(text), "number", "Hz", texts), {})
+    about = CommandSubject(lambda text, texts: CommandInput(float(text), "number", "Hz", texts), {})
 
-    def doubled(number: Annotated[float, argument, about], *, asked: Annotated[Asked, Given("itself")]) -> Shown:
+    def doubled(
+        number: Annotated[float, argument, about], *, asked: Annotated[CommandInput, InputAttribute("itself")]
+    ) -> CommandOutput:
         """Twice as much."""
-        return Shown(Found(twice=2 * number, unit=asked.unit))
+        return CommandOutput(Found(twice=2 * number, unit=asked.unit))
 
     doubled.__annotations__ = {
-        "number": Annotated[float, argument, about], "asked": Annotated[Asked, Given("itself")], "return": Shown
+        "number": Annotated[float, argument, about],
+        "asked": Annotated[CommandInput, InputAttribute("itself")], "return": CommandOutput,
     }  # fmt: skip
     form = Command(writes=NOTHING)(doubled)
     told = CliRunner().invoke(program(form), ["invented", "21", "--json"])

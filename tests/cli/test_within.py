@@ -18,7 +18,7 @@ from trunnion.design.assessment.check import Status
 from trunnion.equations.coefficients import assemble
 from trunnion.numerics.threads import on_threads
 from trunnion.response.orders.response import response_about
-from trunnion.response.ranges.largest import Quantity, search
+from trunnion.response.ranges.largest import SearchedQuantity, search
 from trunnion.waiting import OutOfTime, keep_time, time_is_up, time_limit
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
@@ -210,7 +210,7 @@ def test_a_search_that_is_cut_short_does_not_call_its_largest_value_the_largest(
     """It knows the value, which may be exceeded already, and nothing of what it did not reach."""
     engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
     assembly = assemble(tn.Driveline([engine, tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]))
-    torque = Quantity(lambda r: np.abs(r.torque[:, :, 0]).sum(axis=1), lambda r: r.torque[:, :, 0])
+    torque = SearchedQuantity(lambda r: np.abs(r.torque[:, :, 0]).sum(axis=1), lambda r: r.torque[:, :, 0])
     grid = np.linspace(60.0, 160.0, 9)
     values = torque.values(response_about(assembly, grid))
     whole = search(assembly, partial(response_about, assembly), [grid], [torque])

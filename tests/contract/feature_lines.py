@@ -270,7 +270,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "excitation by order and frequency": (
         same, put("load", excitation=[{"order": -1, "frequency": 300.0, "amplitude": 9.0}])
     ),
-    "excitation of a held disk": (flywheel(), flywheel(excitation=[{"order": 2, "amplitude": 50.0}])),
+    "excitation of a prescribed disk": (flywheel(), flywheel(excitation=[{"order": 2, "amplitude": 50.0}])),
     "unlike damping in series": (in_series(10.0, 10.0), in_series(16.0, 4.0)),
     "excitation that varies with speed or load": (
         same, put("load", excitation=[{"order": 2, "quadratic_amplitude": 5e-4}])

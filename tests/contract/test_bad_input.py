@@ -39,7 +39,7 @@ TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
 
 
 def damped():
-    """A damper at the middle of three equal disks that start free."""
+    """A damper at the middle of three equal disks that are free–free."""
     ends, shaft = Disk(inertia=1.0), Shaft(stiffness=100.0)
     return Driveline(
         [ends, shaft, Disk(inertia=1.0), ViscousDamper(ring_inertia=0.1, damping=1.0, name="damper"), shaft, ends]
@@ -71,7 +71,7 @@ def line(*elements, **rest):
 
 
 def free(**engine):
-    """A bent line that nothing holds at a speed, with a load of 9 N m."""
+    """A line with joint angles that nothing holds at a speed, with a load of 9 N m."""
     return Driveline(
         [
             Disk(inertia=1.0, name="engine", **engine),
@@ -298,15 +298,15 @@ PYTHON = [
     ),
     (lambda: tn.run_up(line(), 10, 20, acceleration=5, ramp=9.0), "run_up.ramp = 9: does not fit", "0 to 4 s"),
     (lambda: tn.run_up(line(), 10, 20, acceleration=5, ramp=-1.0), "run_up.ramp = -1: does not fit", "0 to 4 s"),
-    # lines that start free
+    # free–free lines
     (
         lambda: tn.stability(free(load_torque=-5.0), 40.0),
-        "driveline.load_torque: starts free and its torques do not balance: the loads add up to 9 N m",
+        "driveline.load_torque: is free–free and its torques do not balance: the loads add up to 9 N m",
         'load_torque = "-9 N*m"',
     ),
     (
         lambda: tn.run_up(free(load_torque=-9.0), 30, 40, acceleration=5),
-        "driveline.drive_share: starts free, and no disk has a share",
+        "driveline.drive_share: is free–free, and no disk has a share",
         "drive_share = 1",
     ),
     (
@@ -328,37 +328,37 @@ PYTHON = [
     ),
     (
         lambda: tn.exact_motion(unbalanced(), 1.0, speed=30.0),
-        "driveline.load_torque: starts free and its torques do not balance, so that it leaves the speed",
+        "driveline.load_torque: is free–free and its torques do not balance, so that it leaves the speed",
         "use tn.simulate",
     ),
     (
         lambda: tn.sweep(unbalanced(), [30.0, 40.0]),
-        "driveline.load_torque: starts free and its torques do not balance, so that it leaves the speed",
+        "driveline.load_torque: is free–free and its torques do not balance, so that it leaves the speed",
         "drive_share = 1",
     ),
     (
         lambda: tn.stability_chart(free(drive_share=1), ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3)),
-        "driveline: starts free and is bent: it is judged about its own periodic motion",
+        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
         "stability at single speeds",
     ),
     (
         lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: starts free and is bent: it is judged about its own periodic motion",
+        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
         "stability at single speeds",
     ),
     (
         lambda: tn.harmonic_balance(free(drive_share=1), "speed", 30, 40),
-        "driveline: starts free",
+        "driveline: is free–free",
         "periodic_branch",
     ),
     (
         lambda: tn.lyapunov_spectrum(free(drive_share=1), 20, speed=30.0),
-        "driveline: starts free: its speed follows from its torques",
+        "driveline: is free–free: its speed follows from its torques",
         "simulate it",
     ),
     (
         lambda: tn.periodic_response(free(drive_share=1, excitation=[{"frequency": 10.0, "amplitude": 1.0}]), 30.0),
-        "driveline: starts free and is excited in time",
+        "driveline: is free–free and is excited in time",
         "orders instead of frequencies",
     ),
     (

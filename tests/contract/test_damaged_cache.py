@@ -17,7 +17,7 @@ from numba.core import event
 
 import trunnion
 from trunnion.numerics import kept_code
-from trunnion.numerics.jit import Kept
+from trunnion.numerics.jit import CodeCache
 
 Damage = Callable[[Path], object]
 
@@ -49,7 +49,7 @@ class Heard(event.Listener):
 def compiled(folder: Path, function=area) -> int:
     """How many functions a process that has compiled nothing yet compiles to call this one."""
     made = numba.njit(function)
-    made._cache = Kept(function, folder)
+    made._cache = CodeCache(function, folder)
     heard = Heard()
     with event.install_listener("numba:compile", heard):
         assert made(np.full(3, 2.0)) == (12.0 if function is area else 2.0)
@@ -177,7 +177,7 @@ def test_functions_that_mean_nothing_elsewhere_are_not_kept(tmp_path: Path) -> N
         return function(x)
 
     made = numba.njit(applied)
-    made._cache = Kept(applied, tmp_path)
+    made._cache = CodeCache(applied, tmp_path)
     assert made(numba.njit(lambda x: 3 * x), 2.0) == 6.0
     assert not list(tmp_path.glob("*.nbc"))
 

@@ -23,9 +23,9 @@ LAYERS = (
     {"equations", "results"},
     {"features"},
     # What stands still, and what repeats: modes of the straight line, then the periodic motion that stability,
-    # responses and motions are judged about. A line that starts free finds its own by shooting or by balance.
+    # responses and motions are judged about. A free–free line finds its own by shooting or by balance.
     {"modes", "steady", "steady/shooting"},
-    {"steady/own"},
+    {"steady/free"},
     {"steady/orders"},
     # What grows beside that motion comes before what it amounts to: a response without a verdict is worth nothing.
     {"floquet", "floquet/propagation"},

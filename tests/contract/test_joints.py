@@ -58,8 +58,8 @@ def line_with(joint: Joint, load: float = 20.0, damping: float = 2.0) -> tn.Driv
 
 
 def test_every_uneven_joint_has_a_row() -> None:
-    uneven = {name for name, kind in KINDS.items() if issubclass(kind, Joint) and kind.law is not Joint.law}
-    assert uneven == joints.JOINTS.keys()
+    nonuniform = {name for name, kind in KINDS.items() if issubclass(kind, Joint) and kind.law is not Joint.law}
+    assert nonuniform == joints.JOINTS.keys()
 
 
 @pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS)
@@ -90,14 +90,14 @@ def test_a_law_repeats_with_its_orders_and_turns_as_often_as_its_input(joint: Jo
     one, next_one = law.at(CHI), law.at(CHI + period)
     np.testing.assert_allclose(next_one.output - one.output, period, atol=1e-13)
     np.testing.assert_allclose(next_one.ratio, one.ratio, atol=1e-13)
-    assert law.uneven and 0 < law.spread < 1
+    assert law.nonuniform and 0 < law.spread < 1
 
 
 @pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS)
 def test_a_law_without_bend_passes_rotation_unchanged(joint: Joint) -> None:
     law = joint.law(numbers_of(joint))
     straight = law.straight()
-    assert not straight.uneven and straight.turned == law.turned
+    assert not straight.nonuniform and straight.turned == law.turned
     np.testing.assert_array_equal(straight.at(CHI).output, CHI[None])
     np.testing.assert_array_equal(straight.at(CHI).ratio, np.ones((1, len(CHI))))
     nearly = joint.law(lambda key: numbers_of(joint)(key) * (1e-5 if key == "angle" else 1.0))

@@ -62,10 +62,13 @@ def test_an_analysis_changes_at_most_eight_files(tmp_path) -> None:
     row = "| Which shaft does a mode twist? | `energy-share` | [assess](assess.md) |\n"
     walk.put("docs/README.md", row, before="| How large is the vibratory torque")
     walk.put("CHANGELOG.md", "\n- `energy_share`: which shaft a mode twists.\n", after="### Added\n")
+    noun = f"- **`{NAME}`**: Share of each spring in the elastic energy of each mode.\n"
+    walk.put("docs/glossary.md", noun, before="- **`envelope`**")
     walk.print_features()
     walk.check(RIGHT)
     walk.test(
-        f"{NAME} or EnergyShares or energy-share or page or row or asked or drawings",
+        f"{NAME} or EnergyShares or energy-share or page or row or asked or drawings or glossary",
         *("registry", "results", "signatures", "features", "speeds_in_text_and_pictures", "imports", "source", "help"),
+        "names",
     )
     assert len(walk.changed()) <= 8, walk.changed()

@@ -9,8 +9,8 @@ import pytest
 from scipy.optimize import minimize
 
 import trunnion as tn
-from trunnion.design.optimisation.aims import Aim, Answer, Question
-from trunnion.design.optimisation.search import Search, first
+from trunnion.design.optimisation.aims import Aim, DesignEvaluation, DesignProblem
+from trunnion.design.optimisation.search import DesignSearch, first
 from trunnion.design.optimisation.space import Space
 from trunnion.equations.coefficients import assemble
 from trunnion.results.files import read_dataset, save_dataset
@@ -113,14 +113,14 @@ def test_a_load_case_that_binds_only_where_the_search_ends_is_taken_in(monkeypat
     line = tn.Driveline(damped().elements, operation=tn.Operation(load_cases=cases))
     free, span = {"absorber.damping": (0.5, 10.0)}, (0.6 * W, 1.4 * W)
     tried = []
-    near_cases = Question.near_cases
+    near_cases = DesignProblem.near_cases
 
     def light_alone(question, line, *few):
         """Where the search begins, on a few points; where it ends, what is true."""
         tried.append(bool(few))
         return frozenset({"light"}) if few else near_cases(question, line)
 
-    monkeypatch.setattr(Question, "near_cases", light_alone)
+    monkeypatch.setattr(DesignProblem, "near_cases", light_alone)
     best = tn.optimise(line, free, "peak torque of spring", span, checks=False, designs=20)
     peaks = {name: tn.order_response(best.line.with_load(name), np.linspace(*span, 2001)).peak_torque[:, 0].max()
              for name in ("light", "heavy")}  # fmt: skip
@@ -162,11 +162,11 @@ def test_what_violates_less_goes_before_what_violates_more():
 
         def answer(self, line, points=0):
             offset = line.elements[line.index("Shaft 2")].fork_offset
-            return Answer((offset,), max(0.0, offset - 0.3), ("limit",) if offset > 0.3 else ())
+            return DesignEvaluation((offset,), max(0.0, offset - 0.3), ("limit",) if offset > 0.3 else ())
 
     line = joints([0.3, 0.2], [1.0, 0.0])
     for low, best in ((-1.0, 0.3), (0.5, 0.5)):  # where nothing is allowed, the least of all
-        search = Search(Space(assemble(line), {"Shaft 2.fork_offset": (low, 1.2)}), Limited(), 60, 0, None)
+        search = DesignSearch(Space(assemble(line), {"Shaft 2.fork_offset": (low, 1.2)}), Limited(), 60, 0, None)
         found = search.best(first)
         assert search.space.values(found.shares)[0] == pytest.approx(best, abs=1e-6)
         assert bool(found.answer.violation) == (low > 0.3)

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.floquet.stability.along import stability_along
+from trunnion.floquet.stability.stability_over_speed import stability_along
 
 INERTIA, STIFFNESS = 0.12, 3e4
 OMEGA = np.sqrt(STIFFNESS / INERTIA)

@@ -11,13 +11,13 @@ import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.kinematics import base_motion
 from trunnion.laws import hooke
-from trunnion.laws.joint import Passed
+from trunnion.laws.joint import TransmittedRotation
 
 Array = NDArray[np.float64]
 TURN = np.linspace(0.0, 2 * np.pi, 20_001)
 
 
-def passed(chi: Array, beta: float) -> Passed:
+def passed(chi: Array, beta: float) -> TransmittedRotation:
     return hooke.law(beta).at(chi)
 
 

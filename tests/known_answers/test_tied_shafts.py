@@ -75,7 +75,7 @@ def test_a_port_that_is_none_is_refused() -> None:
 def test_bent_joints_beside_it_are_refused() -> None:
     line = tn.Driveline([*car().elements[:2], tn.Disk(inertia=0.01), tn.HookeJoint(angle=0.2), *car().elements[2:]])
     for ask in (lambda one: tn.order_response(one, [60.0]), lambda one: tn.stability(one, 60.0)):
-        with pytest.raises(tn.InputError, match="has bent joints beside a differential or a loop"):
+        with pytest.raises(tn.InputError, match="has angled joints beside a differential or a loop"):
             ask(line)
     assert "joint angles zero" in str(tn.natural_frequencies(line))
 
@@ -132,7 +132,7 @@ def test_a_loop_that_does_not_close_is_refused() -> None:
         tn.natural_frequencies(parallel(ratio=1.004))
     with pytest.raises(tn.InputError, match="second.to = 'laod': is not an earlier element; did you mean .load."):
         parallel().replace("second", to="laod")
-    with pytest.raises(tn.InputError, match="bent joints beside a differential or a loop"):
+    with pytest.raises(tn.InputError, match="angled joints beside a differential or a loop"):
         tn.order_response(parallel(joint=0.2), [50.0])
 
 

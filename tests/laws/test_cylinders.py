@@ -72,14 +72,14 @@ def test_cylinders_repeat_what_is_listed_once():
 
 
 def test_firing_angles_are_phases_of_minus_k_alpha():
-    uneven = [0.0, 1.1, 5.0]
+    nonuniform = [0.0, 1.1, 5.0]
     written = [
-        dict(one, phase=one["phase"] - one["order"] * angle) for angle in uneven for one in GAS
+        dict(one, phase=one["phase"] - one["order"] * angle) for angle in nonuniform for one in GAS
     ]  # fmt: skip
-    ours = tn.order_response(engine(excitation=GAS, firing_angles=uneven), [90.0, 150.0])
+    ours = tn.order_response(engine(excitation=GAS, firing_angles=nonuniform), [90.0, 150.0])
     by_hand = tn.order_response(engine(excitation=written), [90.0, 150.0])
     assert ours.torque == pytest.approx(by_hand.torque, rel=1e-11)
-    line = engine(excitation=GAS, firing_angles=uneven).replace("engine", drive_share=1.0)
+    line = engine(excitation=GAS, firing_angles=nonuniform).replace("engine", drive_share=1.0)
     twin = engine(excitation=written).replace("engine", drive_share=1.0)
     one, other = (tn.simulate(each, 0.3, speed=90.0) for each in (line, twin))
     assert one.torque[-1] == pytest.approx(other.torque[-1], rel=1e-5), "the nonlinear equations count them too"
@@ -98,7 +98,7 @@ def test_amplitudes_over_speed_by_hand():
 @pytest.mark.parametrize("keys", [{"speeds": [20.0, 60.0, 100.0], "amplitudes": [10.0, 80.0, 10.0]},
                                   {"quadratic_amplitude": 0.01}])  # fmt: skip
 def test_amplitudes_over_speed_behind_bent_joints_are_those_of_each_speed_by_itself(keys):
-    """Many speeds of a bent line share its equations, but not what shakes it from a table."""
+    """Many speeds of a line with joint angles share its equations, but not what shakes it from a table."""
     line = tn.Driveline(
         [
             tn.ConstantSpeed(), tn.Shaft(stiffness=5e3, damping=5.0),

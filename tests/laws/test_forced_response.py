@@ -130,7 +130,7 @@ def excited_beside_a_joint() -> tn.Driveline:
 
 
 def test_everything_that_excites_is_in_the_response() -> None:
-    """Excitation of a disk beside a bent joint, against the nonlinear periodic motion; in the sweep as well."""
+    """Excitation of a disk beside an angled joint, against the nonlinear periodic motion; in the sweep as well."""
     line, speed = excited_beside_a_joint(), 40.0
     response = tn.stability(line, speed).response
     assert response is not None

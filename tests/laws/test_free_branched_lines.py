@@ -1,8 +1,8 @@
-"""Random branched lines that start free, with bent joints, against their return map written anew.
+"""Random branched free–free lines, with angled joints, against their return map written anew.
 
-Nodes j with inertia J_j hang on parents: f_j = k_j(φ_j − ψ_j) + c_j(φ̇_j − ψ̇_j) with ψ_j the rotation that the joint and
-ratio between make of the parent's. J_jφ̈_j = −f_j − M_j(φ̇_j) + Σ_children (∂ψ/∂φ) f. The rotation of the root is the
-independent variable, so that the return map needs no event; the drive torque is the unknown that keeps the speed.
+Nodes j with inertia J_j hang on parents: f_j = k_j(φ_j − ψ_j) + c_j(φ̇_j − ψ̇_j) with ψ_j the rotation that the joint
+and ratio between make of the parent's. J_jφ̈_j = −f_j − M_j(φ̇_j) + Σ_children (∂ψ/∂φ) f. The rotation of the root is
+the independent variable, so that the return map needs no event; the drive torque is the unknown that keeps the speed.
 """
 
 from __future__ import annotations

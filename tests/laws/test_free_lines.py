@@ -1,4 +1,4 @@
-"""Lines that start free, and loads that depend on the speed, against closed forms and equations written anew here."""
+"""Free–free lines, and loads that depend on the speed, against closed forms and equations written anew here."""
 
 from __future__ import annotations
 
@@ -148,7 +148,7 @@ def test_a_bent_free_line_about_its_own_motion(beta: float, load: dict[str, floa
 
 
 def test_a_drive_beside_its_excitation_keeps_the_speed() -> None:
-    """An excited bent line has a periodic motion at the mean speed asked for."""
+    """An excited line with joint angles has a periodic motion at the mean speed asked for."""
     line = bent_pair(0.3, {"quadratic_load": 0.02})
     line = line.replace("Disk 1", excitation=[{"order": 2, "amplitude": 40.0}])
     motion = tn.periodic_response(line, 40.0)
@@ -214,7 +214,7 @@ REFUSED = [
     ),
     (
         lambda: tn.stability_chart(bent_pair(0.2, {}), ("speed", 30, 60, 4), ("Disk 1.inertia", 1, 2, 3)),
-        "starts free and is bent: it is judged about its own periodic motion.*stability at single speeds",
+        "is free–free and has joint angles: it is judged about its own periodic motion.*stability at single speeds",
     ),
     (
         lambda: tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1.0), tn.Disk(inertia=1.0, drive_share=1.0)]),

@@ -1,4 +1,4 @@
-"""Lines that start free, run up by their drives and followed over speed, against closed forms and balances."""
+"""Free–free lines, run up by their drives and followed over speed, against closed forms and balances."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_what_leaves_the_drive_open_is_refused() -> None:
         lambda: tn.safe_accelerations(line, 60.0, 100.0, limit=100.0, accelerations=(1.0, 10.0), points=2),
         lambda: tn.simulate(line, 0.1, speed=tn.SpeedProfile([0.0, 1.0], [60.0, 70.0])),
     ):
-        with pytest.raises(tn.InputError, match=r"drive_share: starts free, and no disk has a share.*\"Disk 1\" say"):
+        with pytest.raises(tn.InputError, match=r"drive_share: is free–free, and no disk has a share.*\"Disk 1\" say"):
             ask()
     with pytest.raises(tn.InputError, match=r"nothing drives"):
         tn.periodic_branch(line.replace("Disk 1", load_torque=0.0), "speed", 60.0, 70.0)

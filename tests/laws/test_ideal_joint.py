@@ -28,7 +28,7 @@ def _bent(axis: np.ndarray, side: np.ndarray, angle: float) -> np.ndarray:
     return np.cos(angle) * axis + np.sin(angle) * side
 
 
-def _unevenness(arms: np.ndarray, axis: np.ndarray) -> np.ndarray:
+def _nonuniformity(arms: np.ndarray, axis: np.ndarray) -> np.ndarray:
     """Rotation of a shaft less that of what drives it, at equal steps, from a fork arm (steps, 3) across ``axis``."""
     across = arms[0] / np.linalg.norm(arms[0])
     angle = np.unwrap(np.arctan2(arms @ np.cross(axis, across), arms @ across))
@@ -51,7 +51,7 @@ def radius_in_space(angle: float, plane: float, *, rigid: bool = False) -> float
     middle = _bent(first, side, FIRST)
     driving = Rotation.from_rotvec(turns[:, None] * first).apply(side)  # its fork begins in the plane of the joint
     driven = np.cross(middle, driving)
-    feed = _series(_unevenness(driven, middle))
+    feed = _series(_nonuniformity(driven, middle))
     fork = driven[0] / np.linalg.norm(driven[0])
     # The plane of the first bend, seen from the middle shaft, and that of the ideal joint ``plane`` further round.
     onward = np.cos(FIRST) * side - np.sin(FIRST) * first
@@ -60,7 +60,7 @@ def radius_in_space(angle: float, plane: float, *, rigid: bool = False) -> float
     carry = Rotation.from_rotvec(angle * np.cross(middle, away))
     forks = carry.apply(Rotation.from_rotvec(turns[:, None] * middle).apply(fork))
     output = _bent(last, carry.apply(away), SECOND)
-    behind = _series(_unevenness(np.cross(output, forks), output))
+    behind = _series(_nonuniformity(np.cross(output, forks), output))
 
     def rate(t: float, y: np.ndarray) -> list[float]:
         drive, speed = SPEED * t + feed(SPEED * t, 0), SPEED * (1 + feed(SPEED * t, 1))

@@ -274,7 +274,7 @@ def test_a_table_refuses_what_cannot_be_solved_together() -> None:
     ]))  # fmt: skip
     table = free.table(2)
     table[:, 0] = 100.0
-    with pytest.raises(tn.InputError, match="starts free and is bent"):
+    with pytest.raises(tn.InputError, match="is free–free and has joint angles"):
         response_of_table(free, table)
 
 

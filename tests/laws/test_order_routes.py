@@ -1,4 +1,4 @@
-"""Order responses behind bent joints by two other routes, written here once more: the monodromy matrix for viscous
+"""Order responses behind angled joints by two other routes, written here once more: the monodromy matrix for viscous
 lines, and Hill's matrix assembled entry by entry for loss factors."""
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Orders of bent lines that start free, about their own motion: against the nonlinear periodic motion."""
+"""Orders of free–free lines with joint angles, about their own motion: against the nonlinear periodic motion."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_a_line_with_stages_is_refused_with_a_way_out():
     line = chain(1.0)
     parts = list(line.elements)
     parts[1] = tn.PiecewiseShaft.symmetric([(4e3, 0.02), (9e3, None)], damping=5, name="clutch")
-    with pytest.raises(tn.InputError, match="starts free and is bent.*tn.periodic_response"):
+    with pytest.raises(tn.InputError, match="is free–free and has joint angles.*tn.periodic_response"):
         tn.order_response(tn.Driveline(parts), [100.0])
 
 

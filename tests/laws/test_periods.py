@@ -105,7 +105,7 @@ def test_growth_rates_compare_across_periods() -> None:
 
 @pytest.mark.parametrize("teeth", [(2, 1), (2, 3), (3, 2), (10, 41)])
 def test_resonance_keeps_its_name_over_longer_periods(teeth: tuple[int, int]) -> None:
-    """S1 in its ω₂-subharmonic tongue, with a negligible tail behind a ratio and a hardly bent joint.
+    """S1 in its ω₂-subharmonic tongue, with a negligible tail behind a ratio and a hardly angled joint.
 
     The tail changes the period, hence the sign of the critical multiplier, but not the resonance.
     """

@@ -8,15 +8,15 @@ from scipy.optimize import minimize_scalar
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.floquet.ranges.exponents import SideOrders, floquet_exponents, meeting_exponents
+from trunnion.floquet.ranges.exponents import ExponentOrders, colliding_exponents, floquet_exponents
 from trunnion.floquet.ranges.resonances import Modes, orders_acting, resonances
-from trunnion.floquet.ranges.slow import slow_enough
+from trunnion.floquet.ranges.slow_speeds import slow_enough
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
-from trunnion.floquet.stability.along import stability_along
+from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import response_about
-from trunnion.response.ranges.largest import Quantity, first_speeds, search, sharpened
+from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search, sharpened
 from trunnion.steady.orders.amplitudes import joined
 from trunnion.steady.orders.spectrum import order_spectrum
 
@@ -50,7 +50,7 @@ def ranges_of(line: tn.Driveline, low: float, high: float) -> UnstableRanges:
 def test_exponents_are_those_of_the_multipliers(line: tn.Driveline, speed: float) -> None:
     """By Hill's blocks and by integration over a period: two ways to the same numbers."""
     assembly = assemble(line)
-    sides = SideOrders.of(assembly, reach=6)
+    sides = ExponentOrders.of(assembly, reach=6)
     table = assembly.table(1, speed)
     values, shapes = loaded_modes(assembly, np.array([speed]))
     multipliers = tn.stability(line, speed).multipliers
@@ -65,9 +65,9 @@ def test_two_exponents_that_have_met_grow_as_integration_says() -> None:
     line = bent(0.3)
     assembly, speed = assemble(line), np.array([1.118])
     span = Span(assembly, 0.5, 2.0)
-    modes, sides = Modes.of(span), SideOrders.of(assembly, reach=6)
+    modes, sides = Modes.of(span), ExponentOrders.of(assembly, reach=6)
     one, two = (modes.at(speed, np.array([mode])) for mode in (0, 1))
-    found = meeting_exponents(
+    found = colliding_exponents(
         assembly, sides, span.table(speed), 2 * sides.turns**0, (one[0], two[0]), (one[1], two[1])
     )  # fmt: skip
     assert found.real.max() == pytest.approx(tn.stability(line, 1.118).growth_rate, rel=1e-3)
@@ -180,7 +180,7 @@ def torque(speed: float, order: int, amplitude: float, damping: float) -> comple
 def test_the_largest_torque_is_that_of_the_closed_form(damping: float) -> None:
     line = shaken(damping)
     span = Span(assemble(line), 60.0, 200.0)
-    vibratory = Quantity(lambda r: r.vibratory_torque[:, 0], lambda r: r.torque[:, :, 0])
+    vibratory = SearchedQuantity(lambda r: r.vibratory_torque[:, 0], lambda r: r.torque[:, :, 0])
     angle = 2 * np.pi * np.arange(4096) / 4096
 
     def swing(speed: float) -> float:
@@ -205,7 +205,7 @@ def test_the_largest_torque_is_that_of_the_closed_form(damping: float) -> None:
 
 def test_a_top_is_located_closely_enough_to_differentiate_there() -> None:
     line, damping = shaken(0.4), 0.4
-    single = Quantity(lambda r: np.abs(r.torque[:, 0, 0]), lambda r: r.torque[:, :1, 0])
+    single = SearchedQuantity(lambda r: np.abs(r.torque[:, 0, 0]), lambda r: r.torque[:, :1, 0])
     at = sharpened(lambda s: response_about(assemble(line), s), single, (124.0, 125.0, 127.0))
     truth = minimize_scalar(
         lambda s: -abs(torque(s, 2, 100.0, damping)), bounds=(124, 127), method="bounded", options={"xatol": 1e-12}

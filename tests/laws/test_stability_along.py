@@ -7,11 +7,11 @@ from scipy.linalg import expm
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.floquet.stability.along import NoSharedMotion, stability_along, straight_decay
+from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, stability_along, straight_decay
 from trunnion.numerics.chain.exponential_monodromy import exponential, exponential_monodromies
 from trunnion.results.verdict import Verdict
-from trunnion.steady.own.free_balance import FreeBalance
-from trunnion.steady.own.own_motions import MotionsBySpeed
+from trunnion.steady.free.free_balance import FreeBalance
+from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 
 def test_the_exponential_is_that_of_scipy():
@@ -112,7 +112,7 @@ def test_motions_that_are_known_give_the_same_whatever_was_asked_before():
         shaft(6e4, 4.0), disk(0.3, load_torque=50.0),
     ])  # fmt: skip
     assembly, speeds = assemble(line), np.array([60.0, 87.0, 150.0])
-    solved = MotionsBySpeed(line)
+    solved = SteadyStatesBySpeed(line)
     for speed in (150.0, 3.0, 61.0):
         solved.at_all(np.array([speed]))
     together = solved.at_all(np.array([3.0, 61.0, 150.0]))
@@ -147,7 +147,7 @@ def test_free_lines_with_play_have_no_shared_motion():
         disk(0.4, drive_share=1), shaft(8e3, 4.0), disk(0.05), joint(0.2), shaft(5e3, 2.0),
         disk(0.1), play, disk(0.3, load_torque=20.0),
     ])  # fmt: skip
-    with pytest.raises(NoSharedMotion, match="stages or play"):
+    with pytest.raises(SpeedBySpeedError, match="stages or play"):
         stability_along(assemble(line), [100.0])
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from trunnion.numerics.condensation import Plan
-from trunnion.numerics.tree_blocks import Block, TreeMatrix
+from trunnion.numerics.tree_blocks import TreeBlock, TreeMatrix
 
 CASES, HARMONICS = 3, 4
 
@@ -26,7 +26,7 @@ def random_system(seed: int, *, blocks: int = 3) -> TreeMatrix:
     for i in rng.choice(np.arange(1, n), size=blocks, replace=False).tolist():
         p = int(parent[i])
         kept[[i, p]] = True
-        made += [Block(a, b, far, near, numbers(CASES, len(far))) for a, b in ((i, i), (i, p), (p, i))]
+        made += [TreeBlock(a, b, far, near, numbers(CASES, len(far))) for a, b in ((i, i), (i, p), (p, i))]
     own, coupling = numbers(n, CASES, HARMONICS), numbers(n, CASES, HARMONICS)
     coupling[0] = 0.0
     return TreeMatrix(Plan.of(parent, kept), parent, own, coupling, made)

@@ -1,4 +1,4 @@
-"""Run-ups of lines that start free: reached or captured, as an independent stiff integrator finds.
+"""Run-ups of free–free lines: reached or captured, as an independent stiff integrator finds.
 
 The chains' equations are written anew in absolute angles (``oracles.driven_chains``) and integrated by ODEPACK's LSODA
 or scipy's Radau. Only the start and what the drive gives beyond loads and inertia are taken from the run: it may begin
@@ -225,8 +225,8 @@ def test_a_joint_captures_at_half_of_the_mode(degrees: float, kind: str) -> None
 
 
 def test_a_line_whose_losses_take_the_torque_is_not_captured() -> None:
-    """Dampers behind a bent joint far below any resonance: the steady motion at the last speed asks for more than there
-    is, by another method."""
+    """Dampers behind an angled joint far below any resonance: the steady motion at the last speed asks for more than
+    there is, by another method."""
     from trunnion.equations.line_system import line_system
     from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.rubbing_disks import RubbingDisks
+from oracles.friction_disks import RubbingDisks
 
 import trunnion as tn
 
@@ -62,7 +62,8 @@ def test_a_load_beyond_the_friction_is_refused_with_its_name(force: float) -> No
 
 @pytest.mark.parametrize("bend", [{}, {"viscous_load": 0.06}, {"quadratic_load": 1e-3}])
 def test_what_loads_by_speed_and_bent_joints_add_is_refused_as_well(bend: dict[str, float]) -> None:
-    """Behind a bent joint the mean torque is not that of the loads exactly: there it is said once nothing was found."""
+    """Behind an angled joint the mean torque is not that of the loads exactly: there it is said once nothing was
+    found."""
     line = tn.Driveline(
         [
             tn.ConstantSpeed(),

@@ -18,7 +18,7 @@ from oracles.sampling import quick_only
 from oracles.taylor import end_state
 
 import trunnion as tn
-from trunnion.numerics.integration.integration import End, integrate
+from trunnion.numerics.integration.integration import IntegrationEnd, integrate
 
 
 @pytest.mark.slow
@@ -211,7 +211,7 @@ def test_section_map_and_its_derivative() -> None:
     flow = section.system.rate_at(0.0, x)
     np.testing.assert_allclose(slopes @ flow, 0, atol=1e-9 * np.abs(flow).max() * np.abs(slopes).max())
     never = tn.SectionMap(section.system, tn.Event("z", 270.0, -1), longest=5.0).apply(x)
-    assert never.end is End.REACHED and np.isnan(never.state).all()
+    assert never.end is IntegrationEnd.REACHED and np.isnan(never.state).all()
 
 
 def grows(t, x, p):

@@ -44,7 +44,7 @@ def driven(clutch: object, *, load: float = 45.0, angle: float = 0.3) -> tn.Driv
 
 
 def car(clutch: object, *, torque: float = 150.0) -> tn.Driveline:
-    """Free: engine, clutch, gearbox, propeller shaft between bent joints, axle."""
+    """Free: engine, clutch, gearbox, propeller shaft between angled joints, axle."""
     return tn.Driveline(
         [
             tn.Disk(inertia=0.25, drive_share=1, excitation=[{"order": 2, "amplitude": torque}], name="engine"),

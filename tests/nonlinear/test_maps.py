@@ -8,7 +8,7 @@ import pytest
 import trunnion as tn
 from trunnion.errors import InputError
 from trunnion.motion.orbits.exact_map import OscillatorMap
-from trunnion.steady.shooting.closing import Closing, Phase, close
+from trunnion.steady.shooting.shooting_problem import Phase, ShootingProblem, close
 from trunnion.systems.maps import IntegratedMap, TimedMap
 
 OSCILLATOR = tn.PiecewiseOscillator.gap(1.0, damping=0.1, mean_force=0.1, force=0.05, frequency=0.6)
@@ -44,7 +44,7 @@ def test_both_settle_and_close_on_one_orbit() -> None:
     ends = [place.settle(START, 40) for place in maps]
     np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
     scale = np.array([1.0, 0.6])
-    roots = [close(START, lambda guess, place=place: Closing(place, scale))[1] for place in maps]
+    roots = [close(START, lambda guess, place=place: ShootingProblem(place, scale))[1] for place in maps]
     assert all(root.converged for root in roots)
     np.testing.assert_allclose(roots[0].x, roots[1].x, atol=1e-10)
 
@@ -62,8 +62,8 @@ def test_a_phase_condition_finds_the_period_of_a_limit_cycle() -> None:
     system, scale = van_der_pol(), np.ones(2)
     place = TimedMap.over(system, 6.5, tolerance=1e-12)
 
-    def held(guess: np.ndarray) -> Closing[TimedMap]:
-        return Closing(place, np.append(scale, 6.5), Phase.held(1, 0.0, scale), 1e-9)
+    def held(guess: np.ndarray) -> ShootingProblem[TimedMap]:
+        return ShootingProblem(place, np.append(scale, 6.5), Phase.held(1, 0.0, scale), 1e-9)
 
     _, root = close(np.array([2.0, 0.0]), held, (6.5,))
     assert root.converged and abs(root.x[1]) < 1e-9
@@ -74,7 +74,7 @@ def test_values_that_are_none_are_no_motion() -> None:
     place = OscillatorMap.of(OSCILLATOR)
     with pytest.raises(InputError, match="must be positive"):
         place.at(-1.0)
-    left, slope = Closing(place, np.ones(3)).equations(np.array([*START, -1.0]))
+    left, slope = ShootingProblem(place, np.ones(3)).equations(np.array([*START, -1.0]))
     assert np.isnan(left).all() and np.isnan(slope).all()
     with pytest.raises(InputError, match="is autonomous and has no forcing period"):
         _ = IntegratedMap.of(van_der_pol()).length

@@ -263,7 +263,7 @@ def test_refusals() -> None:
         tn.periodic_response(tn.reference_system("duffing"), 3.0)
     with pytest.raises(tn.InputError, match="periods"):
         tn.periodic_response(tn.reference_system("duffing"), periods=0)
-    with pytest.raises(tn.InputError, match="starts free and is excited in time"):
+    with pytest.raises(tn.InputError, match="is free–free and is excited in time"):
         tn.periodic_response(torque_driven(20.0, excitation=[{"frequency": 5.0, "amplitude": 1.0}]), 50.0)
     with pytest.raises(tn.InputError, match="without a common period"):
         tn.periodic_response(two_shafts(excitation=[{"frequency": 1.2345678, "amplitude": 1.0}]), 50.0)

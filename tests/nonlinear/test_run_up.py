@@ -133,7 +133,7 @@ REFUSED = [
     (lambda line: tn.run_up(line, 10.0, 20.0, acceleration=-1.0), "acceleration"),
     (lambda line: tn.run_up(line, 10.0, 10.0, acceleration=1.0), "also the last"),
     (lambda line: tn.run_up(line, 10.0, 5000.0, acceleration=0.01), "turns"),
-    (lambda line: tn.run_up(tn.Driveline(line.elements[2:]), 10.0, 20.0, acceleration=1.0), "starts free"),
+    (lambda line: tn.run_up(tn.Driveline(line.elements[2:]), 10.0, 20.0, acceleration=1.0), "is free–free"),
     (lambda line: tn.safe_accelerations(line, 1.0, 2.0, limit=0.0, accelerations=(1, 2)), "positive torque"),
     (lambda line: tn.safe_accelerations(line, 1.0, 2.0, limit={"Shaft 9": 1.0}, accelerations=(1, 2)), "shafts are"),
     (lambda line: tn.safe_accelerations(line, 1.0, 2.0, limit=1.0, accelerations=(2, 1)), "rising pair"),

@@ -1,4 +1,4 @@
-"""Lines that start free turn as their torques let them: turns, speeds, orders and meshes are those of that rotation.
+"""Free–free lines turn as their torques let them: turns, speeds, orders and meshes are those of that rotation.
 
 Truth is integrated by scipy in absolute angles, of equations written here.
 """

@@ -1,4 +1,4 @@
-"""Chains that start free and are run up by their first disk, in absolute angles, with scipy's integrators.
+"""Chains that are free–free and are run up by their first disk, in absolute angles, with scipy's integrators.
 
 Disks φ_0 … φ_n in a row, a shaft between each two, some behind a Hooke's joint with tan ψ(χ) = tan χ / cos β:
 

@@ -1,7 +1,7 @@
 """Straight lines shaken by one harmonic torque, and what it makes of them in closed form.
 
 The harmonic goes by turns, in time, or by both; its amplitude is constant, by the square of the speed, or from a table;
-its disk stands behind the shaft, behind a gear that reverses it, or in front of the shaft of a line that starts free.
+its disk stands behind the shaft, behind a gear that reverses it, or in front of the shaft of a free–free line.
 """
 
 from __future__ import annotations

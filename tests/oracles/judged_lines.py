@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 import trunnion as tn
 from oracles.dense_scan import Scan
+from oracles.free_shooting import growth_of_own, leads_over
 from oracles.growth import growth
 from oracles.line_equations import Steady
-from oracles.own_shooting import growth_of_own, leads_over
 from oracles.scanned_lines import ScannedLine
 
 Array = NDArray[np.float64]

@@ -8,7 +8,7 @@ r′ = dr/da_n and the elastic twist x_e (the error of the teeth over the driven
 
 About a base motion: δ_i, x = δ_f − r δ_n, ẋ = δ̇_f − r δ̇_n − r′ ȧ_n δ_n, and the near end gets r f̃ + r′ f̄ δ_n. The
 base of a driven line turns without vibrating, its springs twisted by the mean torque; what it leaves over shakes the
-line. A bent line that starts free is taken about its periodic motion, found by collocation.
+line. A free–free line with joint angles is taken about its periodic motion, found by collocation.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ class Steady:
         """What the response is taken about; ``rigid``: of a line that moves by itself too without its vibration."""
         turned = 2 * np.pi / float(self.step) * np.arange(self.samples) / self.samples
         if self.moves and not rigid:
-            from oracles.own_orbits import orbit
+            from oracles.free_orbits import orbit
 
             return orbit(self, speed, turned)
         return self.rigid(speed, turned)

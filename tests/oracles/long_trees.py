@@ -22,7 +22,7 @@ ORDER = 2
 
 def random_tree(seed: int, least: int = 20, most: int = 120, *, driven: bool = False) -> tn.Driveline:
     """A line, ``driven`` or else either driven or free, of ``least`` to ``most`` inertias on up to four branches, with
-    gears, a mesh that varies, bent joints, and damping of 0.1 % to 5 %; one disk is shaken.
+    gears, a mesh that varies, angled joints, and damping of 0.1 % to 5 %; one disk is shaken.
 
     A free one has loss factors in place of dampers, as its response has a motion of rigid shafts for a base then.
     """

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import trunnion as tn
+from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import assemble
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.topology import require_period
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.spectrum import multipliers, spectral_radius
@@ -25,11 +25,11 @@ def chain_kernel(
     topo = assembly.topology
     coefficients = assembly.coefficients(table)
     by_speed = loaded_by_speed(topo, coefficients)
-    program, lanes = chain_program(topo, coefficients, by_speed), chain_lanes(topo, coefficients, by_speed)
+    program, batch = chain_program(topo, coefficients, by_speed), chain_batch(topo, coefficients, by_speed)
     period = 2 * np.pi * float(require_period(line, topo))
-    begin = symmetry_phase(program, lanes, period) if halved else None
+    begin = symmetry_phase(program, batch, period) if halved else None
     window = Window(0.0 if begin is None else begin, period, begin is not None)
-    return chain_monodromy(program, lanes, window, tolerance)
+    return chain_monodromy(program, batch, window, tolerance)
 
 
 def chain_radius(line: tn.Driveline, speed: float | Array, tolerance: float = 1e-10) -> tuple[Array, Array]:

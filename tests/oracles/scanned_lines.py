@@ -102,7 +102,7 @@ class ScannedLine:
 
     @property
     def free(self) -> bool:
-        """Whether it starts free; its first mass drives it then."""
+        """Whether it is free–free; its first mass drives it then."""
         return self.links[0] is None
 
     def loaded(self, case: dict[int, float]) -> ScannedLine:

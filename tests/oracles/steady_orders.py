@@ -182,7 +182,7 @@ class Solved:
             if order:
                 self._put(self.rotation, (order, 0.0), part)
         if steady.moves:
-            from oracles.own_orbits import twists
+            from oracles.free_orbits import twists
 
             parts = steady.series(twists(steady, self.base), period), steady.series(self.base.torque, period)
             for mean, found, part in zip(self.means, (self.twist, self.torque), parts, strict=True):

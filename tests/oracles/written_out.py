@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.topology import Link, Topology
+from trunnion.equations.topology import LinkKind, Topology
 
 Array = NDArray[np.float64]
 
@@ -34,9 +34,9 @@ class NonlinearLine:
         """Angles a_g of the unknowns at zero twist when the input stands at ``tau`` [rad]."""
         topo, angles = self.topology, np.zeros(len(self.topology.stations))
         for s, station in enumerate(topo.stations):
-            if station.link is Link.ROOT:
+            if station.link is LinkKind.ROOT:
                 angles[s] = tau
-            elif station.link is Link.SHAFT:
+            elif station.link is LinkKind.SHAFT:
                 angles[s] = angles[station.before] + self.coefficients.shift[0, s]
             else:
                 angles[s] = self._behind(s, angles[station.before])[0]
@@ -49,7 +49,7 @@ class NonlinearLine:
         r, r1 = np.zeros_like(a), np.zeros_like(a)
         for s, station in enumerate(topo.stations):
             i, b = topo.coordinate[station.group], station.before
-            if station.link in (Link.ROOT, Link.SHAFT):
+            if station.link in (LinkKind.ROOT, LinkKind.SHAFT):
                 speed = float(co.speed[0])
                 a[s], v[s] = (angle[i], rate[i]) if i >= 0 else (speed * time, speed)
                 r[s] = 1.0
@@ -76,7 +76,7 @@ class NonlinearLine:
 
     def _behind(self, s: int, before: float) -> tuple[float, float, float]:
         """Angle behind a joint or ratio, its speed ratio and the slope of that ratio."""
-        if self.topology.stations[s].link is Link.RATIO:
+        if self.topology.stations[s].link is LinkKind.RATIO:
             return before / self.ratios[s], 1 / self.ratios[s], 0.0
         law = self.coefficients.joints[self.topology.joints.index(s)]
         passed = law.at(np.array([[before + self.coefficients.shift[0, s]]]))
@@ -87,6 +87,6 @@ def nonlinear_line(assembly: Assembly, table: Array) -> NonlinearLine:
     """The nonlinear equations at one row of packed numbers."""
     topo = assembly.topology
     coefficients = assembly.coefficients(table, statically_twisted=False)
-    entered = {station.element: s for s, station in enumerate(topo.stations) if station.link is Link.SHAFT}
+    entered = {station.element: s for s, station in enumerate(topo.stations) if station.link is LinkKind.SHAFT}
     offset = np.array([sum(coefficients.shift[0, entered[i]] for i in c.shafts) for c in topo.compliances])
     return NonlinearLine(topo, coefficients, topo.ratio_values, offset)

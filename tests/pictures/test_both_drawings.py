@@ -20,11 +20,11 @@ from trunnion.pictures.picture import (
     Axis,
     Band,
     Bars,
+    ColouredGrid,
     Colours,
     Key,
     Level,
     Line,
-    Mesh,
     Panel,
     Picture,
     Points,
@@ -138,7 +138,7 @@ def test_names_in_rows_stand_at_their_rows_from_the_top() -> None:
 def test_colours_of_a_mesh_are_those_of_the_file() -> None:
     values = np.add.outer(np.arange(4.0), np.arange(5.0)) - 2
     colours = Colours("exponent", "signed", -2.0, 5.0, "zero")
-    one = panel(Mesh(np.arange(5.0), np.arange(4.0), values, colours))
+    one = panel(ColouredGrid(np.arange(5.0), np.arange(4.0), values, colours))
     image = drawn(one)["mesh"]
     np.testing.assert_array_equal(image["image"][0], values.astype(np.float32))
     assert (image["x"], image["y"], image["dw"], image["dh"]) == ([-0.5], [-0.5], [5.0], [4.0])
@@ -153,7 +153,7 @@ def test_colours_of_a_mesh_are_those_of_the_file() -> None:
 
 def test_points_that_are_not_evenly_apart_keep_their_places() -> None:
     x = np.array([1.0, 2.0, 4.0, 8.0])
-    one = panel(Mesh(x, np.arange(2.0), np.array([x, x]), Colours("", "amplitude", 1.0, 8.0)))
+    one = panel(ColouredGrid(x, np.arange(2.0), np.array([x, x]), Colours("", "amplitude", 1.0, 8.0)))
     image = drawn(one)["mesh"]
     across = image["x"][0] + (np.arange(image["image"][0].shape[1]) + 0.5) * image["dw"][0] / image["image"][0].shape[1]
     nearest = x[np.abs(across[:, None] - x).argmin(axis=1)]

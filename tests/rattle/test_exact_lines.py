@@ -185,12 +185,12 @@ def test_parts_make_the_whole() -> None:
 @pytest.mark.parametrize(
     ("law", "clock"), [("in contact", "speed"), ("never pulling", "speed"), ("always", "frequency")]
 )
-def test_tangents_through_crossings(law: str, clock: str) -> None:
+def test_tangents_through_crossings(law: str, independent_variable: str) -> None:
     """Against central differences of the motion over a period, by start and by speed or frequency."""
-    line = long_line(law, ()) if clock == "speed" else branched()
+    line = long_line(law, ()) if independent_variable == "speed" else branched()
     prepared = staged_line(line, 12.3)
-    value = prepared.value if clock == "frequency" else 12.3
-    assert prepared.clock == clock
+    value = prepared.value if independent_variable == "frequency" else 12.3
+    assert prepared.independent_variable == independent_variable
 
     def after(state: np.ndarray, value: float) -> np.ndarray:
         return move(prepared.flow(value), state, 0.0, 4 * prepared.period(value)).state
@@ -398,7 +398,7 @@ def between(element: Any) -> tn.Driveline:
         (lambda: tn.piecewise_orbit(pair()), "excited by nothing"),
         (lambda: tn.piecewise_orbit(pair(excitation=[TIME]), periods=0), "periods = 0"),
         (lambda: tn.piecewise_orbit(pair(excitation=[TIME, {**TIME, "frequency": 44.44}])), "no common period"),
-        (lambda: tn.piecewise_orbit(branched().replace("Disk 1", excitation=[ORDER]), speed=9.0), "starts free under"),
+        (lambda: tn.piecewise_orbit(branched().replace("Disk 1", excitation=[ORDER]), speed=9.0), "is free–free under"),
         (lambda: tn.piecewise_branch(pair(excitation=[TIME, ORDER]), 15.0, 60.0), "by its rotation and in time"),
         (lambda: tn.piecewise_branch(pair(), 15.0, 60.0), "excited by nothing"),
         (lambda: tn.piecewise_branch(pair(excitation=[TIME]), 60.0, 15.0), "rising range"),

@@ -17,7 +17,7 @@ from trunnion.motion.orbits.harmonic_balance import harmonic_balance
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs
 from trunnion.motion.orbits.periodic_branch import piecewise_branch
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.integration.integration import End
+from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.pictures.draw_matplotlib import draw
 from trunnion.pictures.frequency_response import sweeps
 from trunnion.systems import maps as map_module
@@ -93,7 +93,7 @@ def test_a_point_that_cannot_be_seen_is_no_number(monkeypatch: pytest.MonkeyPatc
         if not options["dense"] or options["tolerance"] > limit:
             return run
         refused.append(options["tolerance"])
-        return map_module.Trajectory(**{**run.__dict__, "end": End.CHATTER})
+        return map_module.Trajectory(**{**run.__dict__, "end": IntegrationEnd.CHATTER})
 
     monkeypatch.setattr(map_module, "integrate", chattering)
     limit = 2e-11

@@ -1,4 +1,4 @@
-"""Lines as engineers first wrote them: a 4x4 and a ship's shaft that start free, an engine held by its drive."""
+"""Lines as engineers first wrote them: a 4x4 and a ship's shaft that are free–free, an engine held by its drive."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import pytest
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.modes.resonance_speeds import resonance_speeds
-from trunnion.reporting.answer import answer, asked, judged
 from trunnion.reporting.contents import gather
 from trunnion.reporting.overview import at_speed, charted
+from trunnion.reporting.overview_assessment import answer, asked, judged
 from trunnion.reporting.overview_findings import remark_findings, response_findings
 from trunnion.results.finding import Gravity
 from trunnion.results.words import Words
@@ -91,7 +91,7 @@ def test_the_report_of_a_bent_line_that_starts_free_says_what_would_help() -> No
 
 
 def coupled(*ends: tn.Disk | tn.ConstantSpeed) -> tn.Driveline:
-    """A coupling that damps all frequencies alike, before a bent joint: no equations in time."""
+    """A coupling that damps all frequencies alike, before an angled joint: no equations in time."""
     rubber = tn.Coupling(name="coupling", stiffness="8 kN*m/rad", relative_damping=0.8)
     return tn.Driveline(
         [
@@ -126,7 +126,8 @@ def test_modes_that_need_the_same_check_are_said_together() -> None:
 
 
 def test_lines_without_a_linear_response_are_reported_without_its_findings() -> None:
-    """A bent line that starts free and has play: joints' resonances are left to its own motion, and nothing fails."""
+    """A free–free line with joint angles and has play: joints' resonances are left to its own motion, and nothing
+    fails."""
     line = tn.Driveline(
         [
             tn.Disk(inertia=0.3, name="engine", drive_share=1),

@@ -7,14 +7,16 @@ import pytest
 from long_lines import Small, long_line
 
 import trunnion as tn
-from trunnion.floquet.tongues.from_resonances import Followed, followed
+from trunnion.floquet.tongues.from_resonances import TrackedResonances, followed
 from trunnion.floquet.tongues.naming import eigenvalues
 from trunnion.floquet.tongues.region import patched, unpatched
-from trunnion.floquet.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
+from trunnion.floquet.tongues.rows import BY_RESONANCES, BY_ROWS, TongueRow, looked_at, unstable_intervals
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 
 
-def paths(line: tn.Driveline, low: float, high: float, angles: tuple[float, float], *, patch: bool = False) -> Followed:
+def paths(
+    line: tn.Driveline, low: float, high: float, angles: tuple[float, float], *, patch: bool = False
+) -> TrackedResonances:
     """All resonances of a line followed over angles of all joints."""
     task = task_of(line, ("speed", low, high), ("HookeJoint *.angle", *angles), None, True, "tongues")
     box = task.family, task.x.values, task.y.values
@@ -24,11 +26,11 @@ def paths(line: tn.Driveline, low: float, high: float, angles: tuple[float, floa
     return found
 
 
-def alone(found: Followed, angle: float) -> tuple[np.ndarray, Row]:
+def alone(found: TrackedResonances, angle: float) -> tuple[np.ndarray, TongueRow]:
     """What resonances alone lead to at an angle: intervals of speed, and the row."""
     v = float(found.region.family.to_patch(np.array([angle]), False)[0])
     none = np.zeros(0)
-    empty = Row(
+    empty = TongueRow(
         v, none, none, none, none.astype(np.int8), np.zeros((0, 2), bool), np.zeros((0, 2)), none.astype(np.int8), ()
     )
     _, ends, opened = found.stretches(v)

@@ -11,11 +11,11 @@ from long_lines import long_line
 
 import trunnion as tn
 from trunnion.floquet.tongues.boundaries import boundary_functions
+from trunnion.floquet.tongues.boundary_traces import joined
 from trunnion.floquet.tongues.bracketing import bracketed
-from trunnion.floquet.tongues.joining import joined
-from trunnion.floquet.tongues.meetings import meetings
+from trunnion.floquet.tongues.multiplier_collisions import multiplier_collisions
 from trunnion.floquet.tongues.region import Region, patched
-from trunnion.floquet.tongues.rows import Row, looked_at, unstable_intervals
+from trunnion.floquet.tongues.rows import TongueRow, looked_at, unstable_intervals
 from trunnion.floquet.tongues.series_roots import row_roots
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.results.verdict import Verdict
@@ -233,13 +233,13 @@ def test_meetings_of_multipliers_are_closed_in_on() -> None:
         half = np.exp(1j * phases - decay)
         return np.concatenate([half, half.conj()], axis=1)
 
-    row, met = meetings(multipliers, theta, multipliers(theta, theta)[None])
+    row, met = multiplier_collisions(multipliers, theta, multipliers(theta, theta)[None])
     one = np.roots([0.05, -1.1, 2.0]).min()
     other, third = np.roots([0.05, -0.5, -0.4 - 0.0]), (np.pi - 2.9) / 0.2
     assert not row.any() and np.abs(met - one).min() < 1e-12 and np.abs(met - third).min() < 1e-12
     conjugates = [x for x in other.real if 0 < x < 3]
     assert len(met) == 2 + len(conjugates)
-    assert not len(meetings(multipliers, theta, multipliers(theta, theta, 0.2)[None])[0])
+    assert not len(multiplier_collisions(multipliers, theta, multipliers(theta, theta, 0.2)[None])[0])
 
 
 @pytest.mark.slow
@@ -366,13 +366,13 @@ def test_regions_that_close_beside_a_wider_one_keep_their_tips() -> None:
 def test_a_region_that_another_parts_from_goes_on() -> None:
     """Where a wide one falls into two, an edge of either leaps; both go on from row to row."""
 
-    def search(v: np.ndarray) -> list[Row]:
+    def search(v: np.ndarray) -> list[TongueRow]:
         return [made(float(x), [(0.1, 0.9)] if x < 0.5 else [(0.1, 0.15), (0.2, 0.9)]) for x in v]
 
-    def made(v: float, intervals: list[tuple[float, float]]) -> Row:
+    def made(v: float, intervals: list[tuple[float, float]]) -> TongueRow:
         low, high = np.array(intervals).T
         some = len(low)
-        return Row(
+        return TongueRow(
             v, low, high, (low + high) / 2, np.zeros(some, np.int8), np.zeros((some, 2), bool), np.zeros((0, 2)),
             np.ones(some, np.int8), (frozenset(),) * some,
         )  # fmt: skip

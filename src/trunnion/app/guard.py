@@ -15,7 +15,7 @@ from urllib.parse import urlsplit
 
 import tornado.httputil as httputil
 
-from trunnion.app.parts.pieces import markup
+from trunnion.app.parts.widgets import markup
 
 REFUSAL = b"This server answers its own pages only: open the address that trunnion app printed.\n"
 SERVED = re.compile(r"/|/ws|/favicon\.ico|/(static|components|download)/.*")
@@ -56,7 +56,7 @@ class Guard(httputil.HTTPServerConnectionDelegate):
 
     def start_request(self, server_conn: object, request_conn: httputil.HTTPConnection) -> Any:
         """A delegate that looks at the headers and hands the request on, or refuses it."""
-        return _Looking(self, server_conn, _Headed(request_conn, self.hosts))
+        return _GuardedHandler(self, server_conn, _HeaderConnection(request_conn, self.hosts))
 
     def on_close(self, server_conn: object) -> None:
         """Handed on."""
@@ -102,7 +102,7 @@ def with_nonce(page: bytes, nonce: str) -> bytes:
     return _SCRIPT.sub(b'<script nonce="' + nonce.encode() + b'"', page)
 
 
-class _Headed:
+class _HeaderConnection:
     """A connection whose answers carry the headers of this server."""
 
     def __init__(self, connection: Any, hosts: frozenset[str]) -> None:
@@ -127,7 +127,7 @@ class _Headed:
         return self._connection.write_headers(start_line, headers, chunk)
 
 
-class _Looking(httputil.HTTPMessageDelegate):
+class _GuardedHandler(httputil.HTTPMessageDelegate):
     def __init__(self, guard: Guard, server_conn: object, request_conn: Any) -> None:
         self.guard, self.server_conn, self.connection = guard, server_conn, request_conn
         self.inner: Any = None

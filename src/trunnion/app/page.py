@@ -8,7 +8,7 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.parts.pieces import Quiet, Shown, column, heading, joined, markup, pane
+from trunnion.app.parts.widgets import HtmlPane, ProgrammaticChange, column, heading, joined, markup, pane
 from trunnion.app.views.base import View
 
 MOST_OFTEN = 0.1
@@ -78,19 +78,19 @@ class Page:
     def __init__(self, views: Mapping[str, str], choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
         """``views``: names of the views by their titles."""
         pn.config.raw_css = [_STYLE]
-        self.quiet = Quiet()
+        self.programmatic = ProgrammaticChange()
         self.navigation = pn.widgets.RadioButtonGroup(
             label="View", options=dict(views), button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
         )
-        self.navigation.param.watch(lambda event: choose(event.new) if not self.quiet else None, "value")
+        self.navigation.param.watch(lambda event: choose(event.new) if not self.programmatic else None, "value")
         self.said = pane(margin=(4, 0), css_classes=["refusal"])
         self.bar = pn.indicators.Progress(
             name="progress", value=0, max=100, width=220, active=False, visible=False, margin=(8, 0)
         )
-        self.state = Shown("", margin=(4, 10))
+        self.state = HtmlPane("", margin=(4, 10))
         self.cancel_button = pn.widgets.Button(label="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
-        self.mark = Shown("", width=0, height=0, margin=0)
+        self.mark = HtmlPane("", width=0, height=0, margin=0)
         told = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
         self.status = column(self.said, told)
         self.main, self.aside = column(), column()
@@ -114,7 +114,7 @@ class Page:
         if key == self._shown:
             return
         self._shown = key
-        with self.quiet:
+        with self.programmatic:
             self.navigation.value = view.name
         one = len(variants) == 1
         titles = {"kept": "the kept variant", "now": "now"}

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import IO
 
-from trunnion.app.parts.jobs import CUT_OFF, Answer, Job, Request, receive, send
+from trunnion.app.parts.jobs import CUT_OFF, Job, Request, WorkerMessage, receive, send
 from trunnion.errors import ComputationError, InputError
 
 SINGLE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -28,7 +28,7 @@ SUPERSEDED = "superseded"
 """What a task is cancelled with where nobody waits for its end."""
 
 
-class Worker:
+class WorkerProcess:
     """One process. Answers arrive in the event loop."""
 
     def __init__(self, loop: asyncio.AbstractEventLoop, threads: int) -> None:
@@ -39,8 +39,8 @@ class Worker:
         self.inward: IO[bytes] = self.process.stdin
         self.loop = loop
         self.number = 0
-        self.answered: asyncio.Future[Answer] | None = None
-        self.tell: Callable[[float], None] = _nobody
+        self.answered: asyncio.Future[WorkerMessage] | None = None
+        self.report_progress: Callable[[float], None] = _nobody
         self.used_by: object = None
         self.ended = False
         threading.Thread(target=self._listen, args=(self.process.stdout,), daemon=True).start()
@@ -49,10 +49,10 @@ class Worker:
     def alive(self) -> bool:
         return not self.ended and self.process.poll() is None
 
-    def begin(self, job: Job, tell: Callable[[float], None]) -> asyncio.Future[Answer]:
+    def begin(self, job: Job, report_progress: Callable[[float], None]) -> asyncio.Future[WorkerMessage]:
         """Start a job; the future holds its last answer."""
         self.number += 1
-        self.tell = tell
+        self.report_progress = report_progress
         self.answered = self.loop.create_future()
         try:
             send(self.inward, Request(self.number, job))
@@ -80,17 +80,19 @@ class Worker:
                 self.process.wait()
                 self.loop.call_soon_threadsafe(self._ended)
 
-    def _heard(self, answer: Answer) -> None:
+    def _heard(self, answer: WorkerMessage) -> None:
         if answer.number != self.number:
             return
         if answer.kind == "progress":
-            self.tell(answer.value)
+            self.report_progress(answer.value)
         elif self.answered and not self.answered.done():
             self.answered.set_result(answer)
 
     def _ended(self) -> None:
         if self.answered and not self.answered.done():
-            self.answered.set_result(Answer(self.number, "failed", "the computing process ended; try fewer points"))
+            self.answered.set_result(
+                WorkerMessage(self.number, "failed", "the computing process ended; try fewer points")
+            )
 
 
 def _nobody(share: float) -> None:
@@ -103,15 +105,15 @@ class Pool:
     def __init__(self, loop: asyncio.AbstractEventLoop, threads: int, most: int | None = None) -> None:
         self.loop, self.threads = loop, threads
         self.most = most or max(3, min(6, os.cpu_count() or 1))
-        self.idle: list[Worker] = []
-        self.busy: set[Worker] = set()
+        self.idle: list[WorkerProcess] = []
+        self.busy: set[WorkerProcess] = set()
         self.waiting: list[asyncio.Future[None]] = []
         self.warming: asyncio.Task[None] | None = None
         self.closed = False
 
     def start(self) -> None:
         """Begin with one worker; a spare one comes when the first page is there, see ``warm``."""
-        self.idle = [Worker(self.loop, self.threads)]
+        self.idle = [WorkerProcess(self.loop, self.threads)]
 
     def warm(self, jobs: tuple[Job, ...], owner: object = None) -> None:
         """Load, or the first time compile, what ``jobs`` need, in the worker of ``owner``; once in a server's life.
@@ -126,9 +128,9 @@ class Pool:
             with suppress(InputError, ComputationError):
                 await self.run(job, owner)
         if len(self.idle) < 2 and not self.closed:
-            self.idle.insert(0, Worker(self.loop, self.threads))
+            self.idle.insert(0, WorkerProcess(self.loop, self.threads))
 
-    async def run(self, job: Job, owner: object, tell: Callable[[float], None] = _nobody) -> Answer:
+    async def run(self, job: Job, owner: object, report_progress: Callable[[float], None] = _nobody) -> WorkerMessage:
         """The answer to a job. Cancelling the caller ends the job, soon where it is not SUPERSEDED.
 
         Raises
@@ -136,7 +138,7 @@ class Pool:
         InputError, ComputationError : as the function raised them.
         """
         worker = await self._borrow(owner)
-        answered = worker.begin(job, tell)
+        answered = worker.begin(job, report_progress)
         try:
             answer = await asyncio.shield(answered)
         except asyncio.CancelledError as cancelled:
@@ -153,7 +155,7 @@ class Pool:
             raise ComputationError(str(answer.value))
         return answer
 
-    async def _borrow(self, owner: object) -> Worker:
+    async def _borrow(self, owner: object) -> WorkerProcess:
         while True:
             self.idle = [w for w in self.idle if w.alive]
             if self.idle:
@@ -162,7 +164,7 @@ class Pool:
                 self.idle.remove(worker)
                 break
             if len(self.busy) < self.most:
-                worker = Worker(self.loop, self.threads)
+                worker = WorkerProcess(self.loop, self.threads)
                 break
             freed = self.loop.create_future()
             self.waiting.append(freed)
@@ -171,7 +173,7 @@ class Pool:
         self.busy.add(worker)
         return worker
 
-    def _give_back(self, worker: Worker) -> None:
+    def _give_back(self, worker: WorkerProcess) -> None:
         """Without waiting for anything, so that no cancellation can lose a worker."""
         self.busy.discard(worker)
         if worker.alive:
@@ -181,14 +183,14 @@ class Pool:
             if not freed.done():
                 freed.set_result(None)
 
-    async def _dismiss(self, worker: Worker, grace: float) -> None:
+    async def _dismiss(self, worker: WorkerProcess, grace: float) -> None:
         worker.ask_to_stop()
         assert worker.answered is not None
         await asyncio.wait([worker.answered], timeout=grace)
         if not worker.answered.done():
             worker.end()
             if not self.closed and len(self.idle) < 2:
-                self.idle.append(Worker(self.loop, self.threads))
+                self.idle.append(WorkerProcess(self.loop, self.threads))
         self._give_back(worker)
 
     def close(self) -> None:

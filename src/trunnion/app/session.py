@@ -18,14 +18,14 @@ from trunnion.app import address
 from trunnion.app.page import Page
 from trunnion.app.parts.calls import LINE, Call, script
 from trunnion.app.parts.document import Document
-from trunnion.app.parts.jobs import Answer, Job
-from trunnion.app.parts.pieces import Html, markup, pane
+from trunnion.app.parts.jobs import Job, WorkerMessage
 from trunnion.app.parts.variants import Sliders, buttons, difference
+from trunnion.app.parts.widgets import Html, markup, pane
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.views import VIEWS
-from trunnion.app.views.base import Step, View, links
+from trunnion.app.views.base import View, ViewStep, links
 from trunnion.app.warming import WARMING
-from trunnion.design.assessment.own_limits import unlimited
+from trunnion.design.assessment.stated_limits import unlimited
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
 from trunnion.equations.coefficients import assemble
@@ -56,7 +56,7 @@ class Session:
         self.rest: asyncio.TimerHandle | None = None
         self.resting = False
         self.side_tasks: set[asyncio.Task[None]] = set()
-        self.known: dict[tuple[str, str, str], tuple[Job, Answer]] = {}
+        self.known: dict[tuple[str, str, str], tuple[Job, WorkerMessage]] = {}
         self.took: dict[tuple[str, str], float] = {}
         self.query = _query()
         self.unread = False
@@ -323,10 +323,10 @@ class Session:
             finally:
                 self.resting = False
 
-    def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[Step]:
+    def _unknown(self, view: View, side: str, toml: str, remarks: list[str]) -> list[ViewStep]:
         """The steps of a side that are to be computed; what is known is shown at once, its remarks are added."""
-        left: list[Step] = []
-        known: list[tuple[Step, Job, Any]] = []
+        left: list[ViewStep] = []
+        known: list[tuple[ViewStep, Job, Any]] = []
         for step in view.steps(self.line(side)):
             job, answer = self.known.get((view.name, side, step.name), (None, None))
             if answer is None or job != step.job(toml):

@@ -16,18 +16,18 @@ from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from typing import IO, Any
 
-from trunnion.app.parts.jobs import CUT_OFF, Answer, Job, Request, receive, send
+from trunnion.app.parts.jobs import CUT_OFF, Job, Request, WorkerMessage, receive, send
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
 MOST_KEPT = 4
 """Results of a function that stay: a coarse and a full chart of two variants."""
 
 
-class _Stopped(Exception):
+class _JobCancelled(Exception):
     """The job is not wanted any more."""
 
 
-class Worker:
+class WorkerLoop:
     def __init__(self, inward: IO[bytes], outward: IO[bytes], threads: int) -> None:
         self.inward, self.outward, self.threads = inward, outward, threads
         self.jobs: queue.Queue[tuple[int, Job]] = queue.Queue()
@@ -50,30 +50,30 @@ class Worker:
             else:
                 self.jobs.put((request.number, request.job))
 
-    def _answer(self, number: int, job: Job) -> Answer:
+    def _answer(self, number: int, job: Job) -> WorkerMessage:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always", InputRemark)
             try:
                 value = self.compute(job, self._progress(number))
-            except _Stopped:
-                return Answer(number, "stopped", "stopped")
+            except _JobCancelled:
+                return WorkerMessage(number, "stopped", "stopped")
             except InputError as error:
-                return Answer(number, "refused", str(error))
+                return WorkerMessage(number, "refused", str(error))
             except TrunnionError as error:
-                return Answer(number, "failed", str(error))
+                return WorkerMessage(number, "failed", str(error))
             except MemoryError:
-                return Answer(number, "failed", "not enough memory; ask for fewer points")
+                return WorkerMessage(number, "failed", "not enough memory; ask for fewer points")
             except Exception as error:
-                return Answer(number, "failed", f"unexpected {type(error).__name__}: {error}")
+                return WorkerMessage(number, "failed", f"unexpected {type(error).__name__}: {error}")
         remarks = dict.fromkeys(str(w.message) for w in said if issubclass(w.category, InputRemark))
-        return Answer(number, "done", value, tuple(remarks))
+        return WorkerMessage(number, "done", value, tuple(remarks))
 
     def _progress(self, number: int) -> Callable[[float], None]:
         def report(share: float) -> None:
             if number in self.stopped:
                 self.stopped.discard(number)
-                raise _Stopped
-            send(self.outward, Answer(number, "progress", float(share)))
+                raise _JobCancelled
+            send(self.outward, WorkerMessage(number, "progress", float(share)))
 
         return report
 
@@ -103,7 +103,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's, which closes the pipe
     outward = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # whatever prints must not mix with the answers
-    Worker(sys.stdin.buffer, outward, int(sys.argv[1])).run()
+    WorkerLoop(sys.stdin.buffer, outward, int(sys.argv[1])).run()
 
 
 if __name__ == "__main__":

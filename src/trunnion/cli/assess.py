@@ -9,8 +9,8 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.options import Line, LoadCase, OwnLine, Progress, SpeedEnds, SpeedUnit
-from trunnion.cli.places import NOTHING, Shown
+from trunnion.cli.options import Line, LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit
+from trunnion.cli.places import NOTHING, CommandOutput
 from trunnion.cli.typed import Command
 
 if TYPE_CHECKING:
@@ -29,13 +29,13 @@ DIAGRAM_POINTS = 201
 
 @Command("assessment", writes=NOTHING, within=True)
 def assess(
-    line: OwnLine,
+    line: LineOfFile,
     *,
     load_case: LoadCase = None,
     remedies: bool = False,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion assess truck.toml --load-case climb --remedies
 
     --remedies  What would help: the smallest single changes for what is exceeded.
@@ -48,7 +48,7 @@ def assess(
         if helping is not None:
             print_remedies(helping)
 
-    return Shown(
+    return CommandOutput(
         result, content=lambda: assessment_json(result) | (remedies_json(helping) if helping else {}),
         text=lambda: result.sentence, style="bold", more=more,
     )  # fmt: skip
@@ -62,7 +62,7 @@ def campbell_diagram(
         Path | None, typer.Option("--output", "-o", metavar="PATH", help="Picture ending in .png, .pdf or .svg.")
     ] = None,
     unit: SpeedUnit,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion campbell-diagram truck.toml --load-case climb -o campbell.png"""
     import numpy as np
 
@@ -73,29 +73,29 @@ def campbell_diagram(
         check_format(picture)
     result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
     if picture is None:
-        return Shown(result)
+        return CommandOutput(result)
     from trunnion.pictures.draw_matplotlib import save
 
     save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
-    return Shown(result, more=lambda: output.say(f"  written: {picture}"))
+    return CommandOutput(result, more=lambda: output.say(f"  written: {picture}"))
 
 
 @Command("envelope")
 def envelope(
-    line: OwnLine,
+    line: LineOfFile,
     *,
     speeds: SpeedEnds,
     points: int = 5,
     parameter: str = "",
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion envelope truck.toml -o envelope.png
 
     --points  Of each schedule, beside those it states.
     --parameter, -p PARAMETER  Also its largest stable value everywhere.
     """
-    return Shown(tn.envelope(line, speeds, points=points, parameter=parameter, unit=unit, progress=progress))
+    return CommandOutput(tn.envelope(line, speeds, points=points, parameter=parameter, unit=unit, progress=progress))
 
 
 def print_assessment(result: Assessment) -> None:

@@ -7,10 +7,10 @@ from typing import Annotated, Any, Final
 import typer
 
 import trunnion as tn
-from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
+from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
 from trunnion.cli.motion import Tolerance
 from trunnion.cli.options import SPEED, LoadCase, Progress, Set, Start, Unit
-from trunnion.cli.places import PICTURES_AND_DATA, Shown
+from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
 from trunnion.cli.readers import loaded_line, only_for_lines, read_set, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
@@ -18,7 +18,7 @@ from trunnion.errors import InputError
 TRIPOD: Final = "double-tripod"
 
 
-def _system(file: str, texts: Texts) -> Asked:
+def _system(file: str, texts: Texts) -> CommandInput:
     """The system that FILE names, with parameters set."""
     from trunnion.motion.chaos.chaos_subject import as_system
     from trunnion.systems.reference import SYSTEMS
@@ -31,10 +31,10 @@ def _system(file: str, texts: Texts) -> Asked:
     else:
         asked = loaded_line(file, texts, (*SYSTEMS, TRIPOD))
         system = as_system(asked.line, None if speed is None else read_speed(asked, speed, "--speed"))
-    return Asked(system.with_parameters(read_set(texts["parameters"])), called, "", texts)
+    return CommandInput(system.with_parameters(read_set(texts["parameters"])), called, "", texts)
 
 
-def _section(asked: Asked, text: str, key: str) -> tn.Event:
+def _section(asked: CommandInput, text: str, key: str) -> tn.Event:
     state, _, rest = text.partition("=")
     level, _, sign = rest.partition(":")
     try:
@@ -45,7 +45,7 @@ def _section(asked: Asked, text: str, key: str) -> tn.Event:
         raise InputError("is not STATE=LEVEL", key=key, value=text, remedy='write "z=27" or "z=27:-"') from None
 
 
-def _swept(asked: Asked, text: str, key: str) -> tuple[str, float, float, int]:
+def _swept(asked: CommandInput, text: str, key: str) -> tuple[str, float, float, int]:
     parts = text.rsplit(":", 3)
     try:
         return parts[0], float(parts[1]), float(parts[2]), int(parts[3])
@@ -60,7 +60,7 @@ System = Annotated[
         metavar="FILE",
         help="Driveline file, name of the catalogue, reference system (ueda, …), or double-tripod[:output].",
     ),
-    Subject(
+    CommandSubject(
         _system,
         {"speed": Annotated[str | None, SPEED], "parameters": Set, "unit": Unit, "load_case": LoadCase},
     ),
@@ -72,7 +72,7 @@ Transient = Annotated[int | None, typer.Option("--transient", help="Periods to l
 Section = Annotated[
     "tn.Event | None",
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
-    Read(_section),
+    OptionReader(_section),
 ]
 
 
@@ -87,7 +87,7 @@ def lyapunov_spectrum(
     transient: Transient = None,
     tolerance: Tolerance = 1e-10,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion lyapunov-spectrum ueda --set force=7.5"""
     result = tn.lyapunov_spectrum(
         system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
@@ -105,20 +105,20 @@ def lyapunov_spectrum(
         "by_start": result.by_start,
         **_ending(result),
     }
-    return Shown(result, content=lambda: content, outcome=result.outcome)
+    return CommandOutput(result, content=lambda: content, outcome=result.outcome)
 
 
 @Command("Poincaré map", writes=PICTURES_AND_DATA, part="map")
 def poincare_map(
     system: System,
     *,
-    points: Annotated[int, Bounds(1)] = 2000,
+    points: Annotated[int, NumberBounds(1)] = 2000,
     section: Section,
     every: float | None = None,
     start: Start,
     transient: Transient = None,
     tolerance: Tolerance = 1e-10,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion poincare-map rossler --section y=0 -o map.png
 
     --points  Points of the map.
@@ -137,7 +137,7 @@ def poincare_map(
         "states": dict(zip(system.states, result.points.T, strict=True)),
         **_ending(result),
     }
-    return Shown(result, content=lambda: content, outcome=result.outcome, alone=True)
+    return CommandOutput(result, content=lambda: content, outcome=result.outcome, alone=True)
 
 
 @Command("exponents, map and sweep", writes=PICTURES_AND_DATA, part="certificate", within=True)
@@ -150,10 +150,10 @@ def certify_chaos(
     start: Start,
     starts: Starts = 2,
     transient: Transient = None,
-    sweep: Annotated[tuple[str, float, float, int] | bool, Read(_swept, missing=lambda asked: True)],
+    sweep: Annotated[tuple[str, float, float, int] | bool, OptionReader(_swept, missing=lambda asked: True)],
     tolerance: Tolerance = 1e-10,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
 
     --sweep NAME:LOW:HIGH:N  Exponents over this in the figure.
@@ -174,7 +174,7 @@ def certify_chaos(
         "half_width": result.spectrum.half_width,
         "zero_one_test": None if result.zero_one is None else result.zero_one.k,
     }
-    return Shown(result, content=lambda: content)
+    return CommandOutput(result, content=lambda: content)
 
 
 def _ending(result: Any) -> dict[str, Any]:

@@ -11,10 +11,17 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import REQUIRED, Asked, Bounds, Given, Read, Subject
-from trunnion.cli.options import LoadCase, OwnLine, Progress, SpeedEnds, SpeedUnit, Unit
-from trunnion.cli.places import Shown
-from trunnion.cli.readers import is_number, own_line, read_box_range, read_line, read_speed, read_speed_ends
+from trunnion.cli.command_input import (
+    REQUIRED,
+    CommandInput,
+    CommandSubject,
+    InputAttribute,
+    NumberBounds,
+    OptionReader,
+)
+from trunnion.cli.options import LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit, Unit
+from trunnion.cli.places import CommandOutput
+from trunnion.cli.readers import is_number, line_of_file, read_box_range, read_line, read_speed, read_speed_ends
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -22,11 +29,11 @@ FREE_EXAMPLE = '--free "Shaft 2.fork_offset:-90deg:90deg"'
 Before = Annotated[
     "tn.Driveline",
     typer.Argument(metavar="BEFORE", help="Driveline file (TOML) or a name of the catalogue."),
-    Subject(own_line, {"unit": Unit}),
+    CommandSubject(line_of_file, {"unit": Unit}),
 ]
 
 
-def _bounds(asked: Asked, text: str, key: str) -> tuple[str, tuple[object, object]]:
+def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[object, object]]:
     """``PARAMETER:LOW:HIGH``, bounds as numbers in SI units or texts with a unit."""
     parts = text.rsplit(":", 2)
     if len(parts) != 3:
@@ -36,14 +43,14 @@ def _bounds(asked: Asked, text: str, key: str) -> tuple[str, tuple[object, objec
     return path, (low, high)
 
 
-def _place_of_line(asked: Asked, text: str, key: str) -> Path:
+def _place_of_line(asked: CommandInput, text: str, key: str) -> Path:
     best = Path(text)
     if best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir():
         raise InputError("is no place for a driveline file", key=key, value=text, remedy="best.toml, say")
     return best
 
 
-def _direction(asked: Asked, text: str, key: str) -> str:
+def _direction(asked: CommandInput, text: str, key: str) -> str:
     from trunnion.design.sensitivity.directions import directions_of
     from trunnion.equations.coefficients import assemble
 
@@ -56,12 +63,12 @@ def compare(
     before: Before,
     after: Annotated[str, typer.Argument(metavar="AFTER", help="The other one.")],
     *,
-    speed: Annotated[tuple[float, float] | None, Read(read_speed_ends)],
+    speed: Annotated[tuple[float, float] | None, OptionReader(read_speed_ends)],
     load_case: LoadCase = None,
-    file: Annotated[str, Given("file")],
+    file: Annotated[str, InputAttribute("file")],
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion compare truck.toml truck-stiffer.toml
 
     --speed LOW:HIGH  Of both; default the range of each file.
@@ -69,24 +76,24 @@ def compare(
     found = tn.compare(before, read_line(after), speed, load_case=load_case, unit=unit, progress=progress)
     names = (Path(file).stem, Path(after).stem)
     found = replace(found, names=names if names[0] != names[1] else (file, after))
-    return Shown(found, table=found.data.drop_dims("change"))
+    return CommandOutput(found, table=found.data.drop_dims("change"))
 
 
 @Command("optimise", within=True)
 def optimise(
-    line: OwnLine,
+    line: LineOfFile,
     *,
-    free: Annotated[list[Any], Read(_bounds, REQUIRED, several=True)],
+    free: Annotated[list[Any], OptionReader(_bounds, REQUIRED, several=True)],
     aim: list[str],
     speeds: SpeedEnds,
     checks: bool = True,
     designs: int = 600,
-    seed: Annotated[int, Bounds(0)] = 0,
-    write: Annotated[Path | None, Read(_place_of_line)],
+    seed: Annotated[int, NumberBounds(0)] = 0,
+    write: Annotated[Path | None, OptionReader(_place_of_line)],
     load_case: LoadCase = None,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Aims: irregularity, growth rate, peak torque of SPRING, vibratory torque of SPRING (smallest); margin of CHECK,
     least spare margin (largest).
 
@@ -105,22 +112,22 @@ def optimise(
     )  # fmt: skip
     if write is not None:
         tn.dump(found.line, write)
-    return Shown(found, written=[write] if write else [])
+    return CommandOutput(found, written=[write] if write else [])
 
 
 @Command()
 def sensitivity(
-    line: OwnLine,
+    line: LineOfFile,
     *,
-    speed: Annotated[list[float] | None, Read(read_speed, several=True)],
-    parameter: Annotated[list[str] | None, Read(_direction, several=True)],
+    speed: Annotated[list[float] | None, OptionReader(read_speed, several=True)],
+    parameter: Annotated[list[str] | None, OptionReader(_direction, several=True)],
     of: list[str] | None = None,
     check: list[str] | None = None,
     tips: str | None = None,
     draw: str | None = None,
     load_case: LoadCase = None,
-    asked: Annotated[Asked, Given("itself")],
-) -> Shown:
+    asked: Annotated[CommandInput, InputAttribute("itself")],
+) -> CommandOutput:
     """Example: trunnion sensitivity truck.toml --speed 1500rpm -p "Shaft *.stiffness" -p "HookeJoint *.angle"
 
     --speed, -s SPEED  Repeat it for more; default the file's.
@@ -139,10 +146,10 @@ def sensitivity(
             unit=asked.unit, progress=advance,
         )  # fmt: skip
     rows = found.data[["quantity_unit", "kind", "method", "value", "derivative"]]
-    return Shown(found, draw=partial(found.plot, draw), table=rows)
+    return CommandOutput(found, draw=partial(found.plot, draw), table=rows)
 
 
-def _tips(asked: Asked, text: str, load_case: str | None) -> Any:
+def _tips(asked: CommandInput, text: str, load_case: str | None) -> Any:
     if load_case is not None:
         asked = replace(asked, subject=asked.line.with_load(load_case))
     up, rows = read_box_range(asked, text, "--tips")

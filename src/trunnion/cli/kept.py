@@ -10,7 +10,7 @@ from trunnion.cli import output
 from trunnion.errors import InputError
 from trunnion.numerics import shipped
 from trunnion.numerics.cache_folder import chosen_folder
-from trunnion.numerics.kept_code import Found, found_below
+from trunnion.numerics.kept_code import CachedFile, found_below
 from trunnion.numerics.memory import size_text
 from trunnion.numerics.sources import SOURCES, VERSIONS, digest_of
 
@@ -51,7 +51,7 @@ def say_what_is_kept() -> None:
         raise InputError(problem, element="cache folder", value=str(folder), remedy='run "trunnion warm-up"')
 
 
-def _fits(one: Found) -> bool:
+def _fits(one: CachedFile) -> bool:
     """Whether a file is of these versions, sources and processor."""
     if one.code is None or (one.code.versions, one.code.processor) != (VERSIONS, _processor()):
         return False
@@ -64,6 +64,6 @@ def _processor() -> str:
     return str(cpu_target.target_context.codegen().magic_tuple()[1])
 
 
-def _amount(files: Sequence[Found]) -> str:
+def _amount(files: Sequence[CachedFile]) -> str:
     functions = len({one.code.function for one in files if one.code is not None})
     return f"{functions} functions in {len(files)} files, {size_text(sum(one.size for one in files))}"

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import Asked, Bounds, Read
+from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
 from trunnion.cli.options import Line, Speed, SpeedUnit
-from trunnion.cli.places import Shown, write_result
+from trunnion.cli.places import CommandOutput, write_result
 from trunnion.cli.readers import read_quantity
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 SUPPORT_EXAMPLE = 'write "Shaft 1:-300mm:-100mm", positions from the joint in front (first shaft: behind)'
 
 
-def _torque(asked: Asked, text: str, key: str) -> float:
+def _torque(asked: CommandInput, text: str, key: str) -> float:
     from trunnion.driveline.quantities import TORQUE
 
     return read_quantity(text, TORQUE, key)
 
 
-def _length(asked: Asked, text: str, key: str) -> tuple[str, float]:
+def _length(asked: CommandInput, text: str, key: str) -> tuple[str, float]:
     """``SHAFT:LENGTH``."""
     from trunnion.driveline.quantities import LENGTH
 
@@ -36,7 +36,7 @@ def _length(asked: Asked, text: str, key: str) -> tuple[str, float]:
     return name, read_quantity(value, LENGTH, key)
 
 
-def _support(asked: Asked, text: str, key: str) -> tuple[object, ...]:
+def _support(asked: CommandInput, text: str, key: str) -> tuple[object, ...]:
     """``SHAFT:AT`` or ``SHAFT:AT:AT``, read from the right because names may have colons."""
     from trunnion.driveline.quantities import LENGTH
 
@@ -48,7 +48,7 @@ def _support(asked: Asked, text: str, key: str) -> tuple[object, ...]:
     return name, *(read_quantity(place, LENGTH, key, SUPPORT_EXAMPLE) for place in places)
 
 
-def _friction(asked: Asked, text: str, key: str) -> tn.CrossFriction:
+def _friction(asked: CommandInput, text: str, key: str) -> tn.CrossFriction:
     from trunnion.driveline.quantities import LENGTH, RATIO
 
     parts = text.split(":")
@@ -58,10 +58,10 @@ def _friction(asked: Asked, text: str, key: str) -> tn.CrossFriction:
     return tn.CrossFriction(*(read_quantity(p, k, key) for p, k in zip(parts, kinds, strict=True)))
 
 
-Torque = Annotated[float, Read(_torque, "0")]
-Friction = Annotated["tn.CrossFriction | None", Read(_friction)]
-Supports = Annotated[list[Any] | None, Read(_support, several=True)]
-Lengths = Annotated[list[tuple[str, float]] | None, Read(_length, several=True)]
+Torque = Annotated[float, OptionReader(_torque, "0")]
+Friction = Annotated["tn.CrossFriction | None", OptionReader(_friction)]
+Supports = Annotated[list[Any] | None, OptionReader(_support, several=True)]
+Lengths = Annotated[list[tuple[str, float]] | None, OptionReader(_length, several=True)]
 
 
 @Command()
@@ -76,13 +76,13 @@ def kinetostatics(
     friction: Friction,
     support: Supports,
     length: Lengths,
-    limit: Annotated[float, Bounds(0.0)] = 0.0027,
+    limit: Annotated[float, NumberBounds(0.0)] = 0.0027,
     phase: bool = False,
     pitch: str | None = None,
-    turns: Annotated[int, Bounds(1)] = 1,
-    points: Annotated[int, Bounds(8)] = 720,
+    turns: Annotated[int, NumberBounds(1)] = 1,
+    points: Annotated[int, NumberBounds(8)] = 720,
     unit: SpeedUnit,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion kinetostatics truck.toml --support "front tube:1.2m" --elastic -o truck.csv
 
     --elastic  Let the shafts twist under their torque.
@@ -118,7 +118,7 @@ def kinetostatics(
             output.say(str(phasing))
         output.findings((*limits, *result.findings), "Limits and findings")
 
-    return Shown(result, files=lambda base: _files(result, base, unit), content=content, more=more)
+    return CommandOutput(result, files=lambda base: _files(result, base, unit), content=content, more=more)
 
 
 def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:

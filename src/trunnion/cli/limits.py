@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Annotated, Any
 
 import trunnion as tn
-from trunnion.cli.asked import Asked, Bounds, Read
-from trunnion.cli.options import Line, OwnLine, Progress, Speed, SpeedRange, SpeedUnit
-from trunnion.cli.places import PICTURES_AND_DATA, Shown
+from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
+from trunnion.cli.options import Line, LineOfFile, Progress, Speed, SpeedRange, SpeedUnit
+from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
 from trunnion.cli.readers import read_box_range, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
@@ -17,12 +17,12 @@ Box = tuple[tuple[str, float, float], int]
 """A range of a parameter, and rows of the search over it."""
 
 
-def _damping(asked: Asked, text: str, key: str) -> str:
+def _damping(asked: CommandInput, text: str, key: str) -> str:
     tn.pack(asked.line).resolve(text)
     return text
 
 
-def _tolerance(asked: Asked, text: str, key: str) -> tuple[str, object]:
+def _tolerance(asked: CommandInput, text: str, key: str) -> tuple[str, object]:
     """``PARAMETER=10%``, ``PARAMETER=0.1`` or ``PARAMETER=normal 3%``."""
     path, equals, given = text.rpartition("=")
     kind, _, number = given.strip().rpartition(" ")
@@ -35,26 +35,26 @@ def _tolerance(asked: Asked, text: str, key: str) -> tuple[str, object]:
     return path.strip(), ("normal", share) if kind else share
 
 
-def _operating(asked: Asked, text: str | None = None, key: str = "") -> float:
+def _operating(asked: CommandInput, text: str | None = None, key: str = "") -> float:
     """A speed at which the line can run [rad/s], by default that of the file."""
     from trunnion.driveline.operating_speed import operating_speed
 
     return operating_speed(asked.line, None if text is None else read_speed(asked, text, key))
 
 
-Tolerances = Annotated[list[Any] | None, Read(_tolerance, several=True)]
+Tolerances = Annotated[list[Any] | None, OptionReader(_tolerance, several=True)]
 
 
 @Command("tongues")
 def tongues(
     line: Line,
     *,
-    x: Annotated[Box, Read(read_box_range, "speed")],
-    y: Annotated[Box, Read(read_box_range, "HookeJoint *.angle")],
+    x: Annotated[Box, OptionReader(read_box_range, "speed")],
+    y: Annotated[Box, OptionReader(read_box_range, "HookeJoint *.angle")],
     speed: Speed,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion tongues two-shaft-cardan --x speed:0.2rad/s:2rad/s --y "HookeJoint 1.angle:0deg:60deg"
 
     --x PARAMETER:LOW:HIGH  Or PARAMETER for the file's range.
@@ -62,20 +62,20 @@ def tongues(
     """
     found = tn.tongues(line, x[0], y[0], speed=speed, rows=y[1], progress=progress).in_unit(unit)
     boundaries = found.data[["of_tongue", "boundary_x", "boundary_y"]]
-    return Shown(found, table=boundaries)
+    return CommandOutput(found, table=boundaries)
 
 
 @Command("minimum damping", within=True)
 def minimum_damping(
     line: Line,
     *,
-    damping: Annotated[str | None, Read(_damping)],
+    damping: Annotated[str | None, OptionReader(_damping)],
     maximum: float = 100.0,
     speeds: SpeedRange,
     margin: float = 0.0,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion minimum-damping two-shaft-cardan --speed 1.4:1.8 --maximum 40
 
     --damping PARAMETER  A damping; default a factor of all.
@@ -83,19 +83,19 @@ def minimum_damping(
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     found = tn.minimum_damping(line, speeds, damping=damping, maximum=maximum, margin=margin, progress=progress)
-    return Shown(found.in_unit(unit))
+    return CommandOutput(found.in_unit(unit))
 
 
 @Command("stable windows", within=True)
 def stable_windows(
     line: Line,
     *,
-    parameter: Annotated[Box, Read(read_box_range, "HookeJoint *.angle")],
+    parameter: Annotated[Box, OptionReader(read_box_range, "HookeJoint *.angle")],
     speeds: SpeedRange,
     margin: float = 0.0,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion stable-windows two-shaft-cardan -p "HookeJoint 1.angle:0deg:60deg" --speed 1.4:1.8
 
     --parameter, -p PARAMETER:LOW:HIGH[:ROWS]  Or an angle alone.
@@ -103,7 +103,7 @@ def stable_windows(
     """
     ends, rows = parameter
     found = tn.stable_windows(line, *ends, speeds, margin=margin, rows=rows, progress=progress)
-    return Shown(found.in_unit(unit))
+    return CommandOutput(found.in_unit(unit))
 
 
 @Command("tolerance study", within=True)
@@ -111,13 +111,13 @@ def tolerance_study(
     line: Line,
     *,
     tolerance: Tolerances,
-    speed: Annotated[list[float], Read(_operating, several=True, missing=lambda asked: [_operating(asked)])],
+    speed: Annotated[list[float], OptionReader(_operating, several=True, missing=lambda asked: [_operating(asked)])],
     checks: int = 0,
     samples: int = 1 << 14,
-    seed: Annotated[int, Bounds(0)] = 0,
+    seed: Annotated[int, NumberBounds(0)] = 0,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion tolerance-study truck.toml -t "Shaft *.stiffness=10%" -t "HookeJoint 1.angle=5%" --speed 25Hz
 
     --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=10%" or "…=normal 3%"; default those of the file.
@@ -130,19 +130,19 @@ def tolerance_study(
         line, dict(tolerance) if tolerance else None, speed,
         checks=True if checks < 0 else checks, samples=samples, seed=seed, progress=progress,
     )  # fmt: skip
-    return Shown(found.in_unit(unit))
+    return CommandOutput(found.in_unit(unit))
 
 
 @Command("certificate", writes=PICTURES_AND_DATA, part="certificate", within=True)
 def certify_stability(
-    line: OwnLine,
+    line: LineOfFile,
     *,
     tolerance: Tolerances,
     speeds: SpeedRange,
     boxes: int = 20_000,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
 
     --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=1%"; default those of the file.
@@ -150,4 +150,4 @@ def certify_stability(
     """
     given = dict(tolerance) if tolerance else None
     found = tn.certify_stability(line, given, speeds, most_boxes=boxes, progress=progress)
-    return Shown(found.in_unit(unit))
+    return CommandOutput(found.in_unit(unit))

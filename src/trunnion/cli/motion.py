@@ -9,9 +9,9 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
+from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
 from trunnion.cli.options import Line, LoadCase, Set, Speed, SpeedUnit, Start, Unit
-from trunnion.cli.places import Shown
+from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import (
     loaded_line,
     only_for_lines,
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 
 
-def line_or_system(file: str, texts: Texts) -> Asked:
+def line_or_system(file: str, texts: Texts) -> CommandInput:
     """The reference system that FILE names, with ``--set`` applied, or a driveline."""
     from trunnion.systems.reference import SYSTEMS
 
@@ -39,21 +39,21 @@ def line_or_system(file: str, texts: Texts) -> Asked:
         system = tn.reference_system(file, **read_set(texts["parameters"]))
         of_lines = {"--speed": texts.get("speed"), "--to-speed": texts.get("to_speed")}
         only_for_lines("use --set for a reference system", {**of_lines, "--load-case": texts["load_case"]})
-        return Asked(system, file, texts["unit"] or "rad/s", texts)
+        return CommandInput(system, file, texts["unit"] or "rad/s", texts)
     if texts["parameters"]:
         remedy = f"edit the file instead; reference systems are: {', '.join(SYSTEMS)}"
         raise InputError("belongs to reference systems", key="--set", value=texts["parameters"][0], remedy=remedy)
     return loaded_line(file, texts, SYSTEMS)
 
 
-def _period(asked: Asked, text: str, key: str) -> float:
+def _period(asked: CommandInput, text: str, key: str) -> float:
     if isinstance(asked.subject, tn.Driveline):
         remedy = "leave it out; the speed of a driveline gives it"
         raise InputError("belongs to reference systems", key=key, value=text, remedy=remedy)
     return read_time(text, key)
 
 
-def _torque(asked: Asked, text: str, key: str) -> float:
+def _torque(asked: CommandInput, text: str, key: str) -> float:
     """A positive torque [N m]."""
     from trunnion.driveline.quantities import TORQUE
 
@@ -66,7 +66,7 @@ def _torque(asked: Asked, text: str, key: str) -> float:
 Subjects = Annotated[
     "tn.System | tn.Driveline",
     typer.Argument(metavar="FILE", help="Driveline file, a name of the catalogue, or a reference system."),
-    Subject(line_or_system, {"parameters": Set, "unit": Unit, "load_case": LoadCase}),
+    CommandSubject(line_or_system, {"parameters": Set, "unit": Unit, "load_case": LoadCase}),
 ]
 Tolerance = Annotated[float, typer.Option("--tolerance", help="Error allowed per step.", min=1e-15, max=0.1)]
 
@@ -76,12 +76,12 @@ def simulate(
     subject: Subjects,
     *,
     speed: Speed,
-    to_speed: Annotated[float | None, Read(read_speed)],
+    to_speed: Annotated[float | None, OptionReader(read_speed)],
     turns: float | None = None,
     duration: float | None = None,
     start: Start,
     tolerance: Tolerance = 1e-10,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
 
     --to-speed  Speed at the end, reached evenly.
@@ -95,7 +95,7 @@ def simulate(
     else:
         only_for_lines("use --duration, in seconds", {"--turns": turns})
         found = tn.simulate(subject, 100.0 if duration is None else duration, start=start, tolerance=tolerance)
-    return Shown(found, content=lambda: _simulation_json(found), outcome=found.outcome)
+    return CommandOutput(found, content=lambda: _simulation_json(found), outcome=found.outcome)
 
 
 @Command("periodic response")
@@ -103,11 +103,11 @@ def periodic_response(
     subject: Subjects,
     *,
     speed: Speed,
-    periods: Annotated[int, Bounds(1)] = 1,
-    period: Annotated[float | None, Read(_period)],
+    periods: Annotated[int, NumberBounds(1)] = 1,
+    period: Annotated[float | None, OptionReader(_period)],
     start: Start,
     unit: SpeedUnit,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
 
     --periods  Of the excitation in one of the motion.
@@ -116,10 +116,10 @@ def periodic_response(
     if not isinstance(subject, tn.Driveline):
         orbit: Any = tn.periodic_response(subject, start=start, period=period, periods=periods)
         orbit.outcome.require()
-        return Shown(orbit, content=lambda: _orbit_json(orbit))
+        return CommandOutput(orbit, content=lambda: _orbit_json(orbit))
     found: Any = tn.periodic_response(subject, speed, start=start, periods=periods)
     found.outcome.require()
-    return Shown(
+    return CommandOutput(
         found, content=lambda: _orbit_json(found) | _response_json(found), more=lambda: _print_orders(found, unit)
     )
 
@@ -132,7 +132,7 @@ def linearity_check(
     allowed: float = 0.05,
     acceleration: float | None = None,
     spring: str | None = None,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
 
     --allowed  Difference up to which linear theory holds, of the largest order.
@@ -141,20 +141,20 @@ def linearity_check(
     """
     found = tn.linearity_check(line, speed, allowed=allowed, acceleration=acceleration)
     found.nonlinear.outcome.require()
-    return Shown(found, draw=partial(found.plot, spring=spring))
+    return CommandOutput(found, draw=partial(found.plot, spring=spring))
 
 
 @Command("run-up", within=True)
 def run_up(
     line: Line,
     *,
-    from_: Annotated[float, Read(read_speed, missing=lambda asked: range_of(asked)[0])],
-    to: Annotated[float, Read(read_speed, missing=lambda asked: range_of(asked)[1])],
-    acceleration: Annotated[float, Read(read_speed, "100 rpm")],
+    from_: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[0])],
+    to: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[1])],
+    acceleration: Annotated[float, OptionReader(read_speed, "100 rpm")],
     ramp: float | None = None,
-    limit: Annotated[float | None, Read(_torque)],
+    limit: Annotated[float | None, OptionReader(_torque)],
     unit: SpeedUnit,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion run-up truck.toml --from 300rpm --to 2400rpm --acceleration 100rpm --limit "2 kN*m"
 
     --from  First speed; default: of the file's range.
@@ -170,7 +170,7 @@ def run_up(
         safe = tn.safe_accelerations(line, from_, to, limit=limit, accelerations=tried, points=9, ramp=ramp)
         content["safe_accelerations"] = _safe_json(safe, unit)
         said += f"\n  {safe.describe(unit)}"
-    return Shown(found, content=lambda: content, text=lambda: said, outcome=found.outcome)
+    return CommandOutput(found, content=lambda: content, text=lambda: said, outcome=found.outcome)
 
 
 def _course(line: tn.Driveline, first: float | None, last: float | None, duration: float | None) -> Any:

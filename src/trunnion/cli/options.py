@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from trunnion.cli.asked import Given, Read, Subject
-from trunnion.cli.readers import loaded_line, own_line, range_of, read_speed, read_speed_ends, read_state
+from trunnion.cli.command_input import CommandSubject, InputAttribute, OptionReader
+from trunnion.cli.readers import line_of_file, loaded_line, range_of, read_speed, read_speed_ends, read_state
 
 if TYPE_CHECKING:
     import trunnion as tn
@@ -28,16 +28,16 @@ Set = Annotated[
     typer.Option("--set", metavar="NAME=VALUE", help="Parameter of a reference system; repeat it for more."),
 ]
 
-Line = Annotated["tn.Driveline", FILE, Subject(loaded_line, {"unit": Unit, "load_case": LoadCase})]
+Line = Annotated["tn.Driveline", FILE, CommandSubject(loaded_line, {"unit": Unit, "load_case": LoadCase})]
 """Under its own torques, or those of a load case."""
-OwnLine = Annotated["tn.Driveline", FILE, Subject(own_line, {"unit": Unit})]
+LineOfFile = Annotated["tn.Driveline", FILE, CommandSubject(line_of_file, {"unit": Unit})]
 """Under its own torques."""
-SpeedUnit = Annotated[str, Given("unit")]
+SpeedUnit = Annotated[str, InputAttribute("unit")]
 """Of the speeds that are printed."""
 Progress = Callable[[float], None]
-Speed = Annotated[float | None, SPEED, Read(read_speed)]
-SpeedEnds = Annotated[tuple[float, float] | None, SPEED_RANGE, Read(read_speed_ends)]
-SpeedRange = Annotated[tuple[float, float], SPEED_RANGE, Read(read_speed_ends, missing=range_of)]
+Speed = Annotated[float | None, SPEED, OptionReader(read_speed)]
+SpeedEnds = Annotated[tuple[float, float] | None, SPEED_RANGE, OptionReader(read_speed_ends)]
+SpeedRange = Annotated[tuple[float, float], SPEED_RANGE, OptionReader(read_speed_ends, missing=range_of)]
 Start = Annotated[
-    list[float] | None, typer.Option("--start", metavar="X,Y,…", help="State to start from."), Read(read_state)
+    list[float] | None, typer.Option("--start", metavar="X,Y,…", help="State to start from."), OptionReader(read_state)
 ]

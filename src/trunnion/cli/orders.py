@@ -10,9 +10,9 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import Asked, Read
+from trunnion.cli.command_input import CommandInput, OptionReader
 from trunnion.cli.options import Line, Progress, SpeedUnit
-from trunnion.cli.places import Shown
+from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import is_number, range_of, read_even_axis, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
@@ -41,7 +41,7 @@ POINTS, FEW = 241, 61
 """Speeds where their number is not stated; of a stable limit, each of which is a scan."""
 
 
-def _close_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
+def _close_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
     """Speeds asked for [rad/s], one or many; without a number of them closer together about the resonances."""
     import numpy as np
 
@@ -51,7 +51,7 @@ def _close_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
     return np.linspace(low, rest[0], counted) if counted else tn.sweep_speeds(asked.line, low, rest[0], POINTS)
 
 
-def _even_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
+def _even_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
     """The same, a range at even steps."""
     import numpy as np
 
@@ -61,7 +61,7 @@ def _even_speeds(asked: Asked, text: str = "", key: str = "") -> Array:
     return np.linspace(low, rest[0], counted or FEW)
 
 
-def _stated_speeds(asked: Asked, text: str, key: str) -> tuple[tuple[float, ...], int]:
+def _stated_speeds(asked: CommandInput, text: str, key: str) -> tuple[tuple[float, ...], int]:
     """One speed or both ends of a range [rad/s], by default that of the file, and how many are stated, 0 for none."""
     if not text:
         return range_of(asked), 0
@@ -78,14 +78,14 @@ def _stated_speeds(asked: Asked, text: str, key: str) -> tuple[tuple[float, ...]
     return read, int(counted or 0)
 
 
-def _orders(asked: Asked, text: str, key: str) -> list[float]:
+def _orders(asked: CommandInput, text: str, key: str) -> list[float]:
     parts = text.split(",")
     if not all(is_number(part) and 0 < float(part) < float("inf") for part in parts):
         raise InputError("is no list of orders", key=key, value=text, remedy='write "0.5,1,2"')
     return [float(part) for part in parts]
 
 
-def _known_spring(asked: Asked, text: str, key: str) -> str:
+def _known_spring(asked: CommandInput, text: str, key: str) -> str:
     from trunnion.driveline.refusals import nearest
     from trunnion.equations.coefficients import assemble
     from trunnion.steady.orders.forced_response import shaft_names
@@ -97,15 +97,15 @@ def _known_spring(asked: Asked, text: str, key: str) -> str:
     return text
 
 
-def _raised(asked: Asked, text: str, key: str) -> tuple[str, float, float, int]:
+def _raised(asked: CommandInput, text: str, key: str) -> tuple[str, float, float, int]:
     """A parameter that is raised, and the number of points at which limits are compared."""
     from trunnion.design.limits.other_limits import SCAN
 
     return read_even_axis(asked, text, key, SCAN + 1)
 
 
-CloseSpeeds = Annotated["Array", SPEEDS, Read(_close_speeds, missing=_close_speeds)]
-EvenSpeeds = Annotated["Array", SPEEDS, Read(_even_speeds, missing=_even_speeds)]
+CloseSpeeds = Annotated["Array", SPEEDS, OptionReader(_close_speeds, missing=_close_speeds)]
+EvenSpeeds = Annotated["Array", SPEEDS, OptionReader(_even_speeds, missing=_even_speeds)]
 
 
 @Command("order response")
@@ -113,11 +113,11 @@ def order_response(
     line: Line,
     *,
     speeds: CloseSpeeds,
-    orders: Annotated[list[float] | None, Read(_orders)],
-    spring: Annotated[str | None, Read(_known_spring)],
+    orders: Annotated[list[float] | None, OptionReader(_orders)],
+    spring: Annotated[str | None, OptionReader(_known_spring)],
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion order-response truck.toml --load-case climb --speed 300rpm:2400rpm -o truck.png -o truck.csv
 
     --orders K,K,…  Cycles per turn of the input to list: 0.5,1,2; default: all.
@@ -130,17 +130,17 @@ def order_response(
         output.table(result.table())
         output.findings(findings)
 
-    return Shown(
+    return CommandOutput(
         result, draw=partial(result.plot, spring=spring, operating=line.operation), table=_by_order(result),
         content=lambda: _response_json(result, findings), text=lambda: result.headline, more=more,
     )  # fmt: skip
 
 
 @Command("torque over speed")
-def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> Shown:
+def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> CommandOutput:
     """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""
     result = tn.speed_sweep(line, speeds, progress=progress).in_unit(unit)
-    return Shown(
+    return CommandOutput(
         result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
         content=lambda: _sweep_json(result),
     )  # fmt: skip
@@ -150,13 +150,13 @@ def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: P
 def stable_limit(
     line: Line,
     *,
-    parameter: Annotated[tuple[str, float, float, int], Read(_raised, "HookeJoint *.angle")],
+    parameter: Annotated[tuple[str, float, float, int], OptionReader(_raised, "HookeJoint *.angle")],
     speeds: EvenSpeeds,
     margin: float = 0.0,
     between: bool = True,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion stable-limit truck.toml --parameter "joint 2.angle:0deg:40deg:120" --speed 300rpm:2400rpm:50
 
     --parameter, -p PARAMETER:LOW:HIGH[:STEPS]  What is raised until the line is unstable, or PARAMETER alone for
@@ -168,7 +168,7 @@ def stable_limit(
     result = tn.stable_limit(
         line, label, speeds, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=progress
     ).in_unit(unit)
-    return Shown(
+    return CommandOutput(
         result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
         content=lambda: _limit_json(result),
     )  # fmt: skip

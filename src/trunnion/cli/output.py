@@ -158,7 +158,7 @@ def progress(what: str, within: float | None = None) -> Iterator[Callable[[float
     """
     with stoppable(within), compile_notice() as clock:
         if not sys.stderr.isatty():
-            with _Lines(what, clock) as lines:
+            with _ProgressLines(what, clock) as lines:
                 yield lines
             return
         from rich.console import Console
@@ -236,7 +236,7 @@ def compile_notice() -> Iterator[_Clock]:
         if COMPILER in sys.modules:
             listen()
         else:
-            waiting = _Before(COMPILER, listen)
+            waiting = _ImportHook(COMPILER, listen)
             sys.meta_path.insert(0, waiting)
             stack.callback(waiting.leave)
         yield clock
@@ -246,7 +246,7 @@ COMPILER = "trunnion.numerics.jit"
 """The module through which everything is compiled."""
 
 
-class _Before(MetaPathFinder):
+class _ImportHook(MetaPathFinder):
     """Calls ``then`` when the module ``name`` is about to be loaded."""
 
     def __init__(self, name: str, then: Callable[[], None]) -> None:
@@ -276,7 +276,7 @@ def _listening(clock: _Clock) -> AbstractContextManager[Any]:
     return listening
 
 
-class _Lines:
+class _ProgressLines:
     """Progress for logs: silent while it is quick, then a line now and then, whether the work tells a share or not."""
 
     def __init__(self, what: str, clock: _Clock) -> None:
@@ -284,7 +284,7 @@ class _Lines:
         self.last = clock.start
         self.done = threading.Event()
 
-    def __enter__(self) -> _Lines:
+    def __enter__(self) -> _ProgressLines:
         # A thread of its own, as many a computation has nothing to tell before it is done.
         threading.Thread(target=copy_context().run, args=(self._tell,), daemon=True).start()
         return self

@@ -52,7 +52,7 @@ def write_result(path: Path, found: Any, draw: Callable[[], Any], table: Any = N
 
 
 @dataclass(frozen=True)
-class Shown:
+class CommandOutput:
     """What a command found, and what it shows of it where that is not the result's own.
 
     draw : its picture. table : as of ``write_numbers``. files : writes what stands in the default folder, given the
@@ -99,7 +99,7 @@ class Shown:
         return write_result(path, self.found, partial(plot, **known), self.table)
 
 
-def answer(command: str, written: Sequence[Path] | None, as_json: bool, shown: Shown, unit: str = "") -> None:
+def answer(command: str, written: Sequence[Path] | None, as_json: bool, shown: CommandOutput, unit: str = "") -> None:
     """A result as one JSON object, or in words, and where it was written: None of a command that writes nothing."""
     if as_json:
         places = {} if written is None else {"written": [str(path) for path in written]}

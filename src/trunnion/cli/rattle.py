@@ -12,9 +12,9 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import Asked, Bounds, Given, Read, Subject, Texts
+from trunnion.cli.command_input import CommandInput, CommandSubject, InputAttribute, NumberBounds, OptionReader, Texts
 from trunnion.cli.options import Progress, SpeedUnit
-from trunnion.cli.places import PICTURES_AND_DATA, Shown
+from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
 from trunnion.cli.readers import range_of, read_line, read_set, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
@@ -27,7 +27,7 @@ DEAD_ZONE = "dead-zone-oscillator"
 
 
 @dataclass(frozen=True)
-class AskedSwing(Asked):
+class AskedSwing(CommandInput):
     """Also the unit of what swings, "" where it has none."""
 
     length: str
@@ -77,7 +77,7 @@ def _of_line(line: tn.Driveline) -> tuple[tn.PiecewiseOscillator | tn.Driveline,
     return tn.exact_oscillator(line), "m" if isinstance(spring, tn.GearPair) else "rad"
 
 
-def _usual(asked: Asked) -> tuple[float, float]:
+def _usual(asked: CommandInput) -> tuple[float, float]:
     """A line's range of speeds, or frequencies about that of the excitation."""
     if isinstance(asked.subject, tn.Driveline):
         return range_of(asked)
@@ -91,15 +91,15 @@ Subjects = Annotated[
     typer.Argument(
         metavar="NAME", help="gear-rattle, dead-zone-oscillator, another reference system, or a driveline file."
     ),
-    Subject(_swinging, {"parameters": Annotated[list[str] | None, SET]}),
+    CommandSubject(_swinging, {"parameters": Annotated[list[str] | None, SET]}),
 ]
 LOW = typer.Option(
     "--from", help='Lowest frequency, "40 Hz", or speed, "300 rpm"; a number is in the unit that is printed.'
 )
 HIGH = typer.Option("--to", help="Highest frequency or speed.")
-From = Annotated[float, LOW, Read(read_speed, missing=lambda asked: _usual(asked)[0])]
-To = Annotated[float, HIGH, Read(read_speed, missing=lambda asked: _usual(asked)[1])]
-XUnit = Annotated[str, Given("length")]
+From = Annotated[float, LOW, OptionReader(read_speed, missing=lambda asked: _usual(asked)[0])]
+To = Annotated[float, HIGH, OptionReader(read_speed, missing=lambda asked: _usual(asked)[1])]
+XUnit = Annotated[str, InputAttribute("length")]
 
 
 @Command("frequency response", writes=PICTURES_AND_DATA)
@@ -110,12 +110,12 @@ def frequency_response(
     high: To,
     method: list[str] | None = None,
     fit_range: float | None = None,
-    harmonics: Annotated[int | None, Bounds(1)] = None,
+    harmonics: Annotated[int | None, NumberBounds(1)] = None,
     curve: str = "",
     length: XUnit,
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion frequency-response gear-rattle --method all -o response.png
 
     --method  exact, harmonic balance, averaging, …; repeat it, or write all.
@@ -145,7 +145,7 @@ def frequency_response(
             response.outcome.require()
     one = found.responses[chosen[0]]
     text = one.describe(unit) if len(chosen) == 1 else f"{found.describe(unit)}\n\n{one.describe(unit)}"
-    return Shown(
+    return CommandOutput(
         one, draw=partial(found.plot, length=length), content=lambda: {"methods": _json(found)}, text=lambda: text
     )
 
@@ -156,13 +156,13 @@ def sweep(
     *,
     low: From,
     high: To,
-    points: Annotated[int, Bounds(2, 100_000)] = 101,
+    points: Annotated[int, NumberBounds(2, 100_000)] = 101,
     direction: str = "both",
     curve: str = "",
-    name: Annotated[str, Given("file")],
+    name: Annotated[str, InputAttribute("file")],
     length: XUnit,
     unit: SpeedUnit,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion sweep gear-rattle --set mean_force=0 -o sweep.png
 
     --points  Frequencies.
@@ -196,7 +196,7 @@ def sweep(
     found: list[Any] = [tn.sweep(subject, values) for values in grids]
     one_equation = isinstance(subject, tn.PiecewiseOscillator)
     measured = _oscillator_json if one_equation else _line_json
-    return Shown(
+    return CommandOutput(
         _Sweeps(found),
         draw=lambda: draw(
             sweeps(found, length=length) if one_equation else line_sweeps(found, spring=curve, unit=unit)
@@ -227,7 +227,7 @@ def _line_json(one: Any) -> dict[str, Any]:
     """Torques of all springs of a line with several inertias, and contacts of those with stages."""
     staged = [contact.spring for contact in one.contacts[0]]
     return {
-        one.line.clock: one.value,
+        one.line.independent_variable: one.value,
         "torque_peak_to_peak": {s: one.swing_of(s) for s in one.springs},
         "contact": {s: one.contact_of(s) for s in staged},
         "impact_energy": {s: [row[i].impact_energy for row in one.contacts] for i, s in enumerate(staged)},

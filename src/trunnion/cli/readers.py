@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import trunnion as tn
-from trunnion.cli.asked import Asked, Texts
+from trunnion.cli.command_input import CommandInput, Texts
 from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
 
 if TYPE_CHECKING:
     from trunnion.driveline.parameters import PackedLine
-    from trunnion.driveline.quantities import Kind
+    from trunnion.driveline.quantities import QuantityKind
 
 TABLES_ANYWHERE = ContextVar("TABLES_ANYWHERE", default=False)
 """Whether a driveline file may name tables outside its folder: an option before the command."""
@@ -25,19 +25,19 @@ ROWS = 65
 AXIS_EXAMPLE = 'write "speed:300rpm:2400rpm:400" or "HookeJoint 1.angle:0deg:30deg:300"'
 
 
-def own_line(file: str, texts: Texts, besides: Collection[str] = ()) -> Asked:
+def line_of_file(file: str, texts: Texts, besides: Collection[str] = ()) -> CommandInput:
     """The driveline under its own torques, and the unit asked for or else that of the file; ``besides`` as of
     ``read_line``."""
     from trunnion.driveline.operating_speed import speed_unit
 
     line, unit = read_line(file, besides), texts["unit"]
     speed_factor(unit or "rad/s")
-    return Asked(line, file, unit or speed_unit(line), texts)
+    return CommandInput(line, file, unit or speed_unit(line), texts)
 
 
-def loaded_line(file: str, texts: Texts, besides: Collection[str] = ()) -> Asked:
+def loaded_line(file: str, texts: Texts, besides: Collection[str] = ()) -> CommandInput:
     """The same under the torques of ``--load-case``, where one is asked for."""
-    asked, case = own_line(file, texts, besides), texts["load_case"]
+    asked, case = line_of_file(file, texts, besides), texts["load_case"]
     return asked if case is None else replace(asked, subject=asked.line.with_load(case))
 
 
@@ -62,7 +62,7 @@ def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
     raise InputError(problem, key="FILE", value=file, remedy=nearest(file, [*names, *besides]))
 
 
-def read_quantity(text: str, kind: Kind, key: str, remedy: str = "", per: float = 1.0) -> float:
+def read_quantity(text: str, kind: QuantityKind, key: str, remedy: str = "", per: float = 1.0) -> float:
     """A number with a unit, or a bare one, ``per`` of which are the SI unit of ``kind``."""
     from trunnion.driveline.quantities import parse
 
@@ -72,7 +72,7 @@ def read_quantity(text: str, kind: Kind, key: str, remedy: str = "", per: float 
         raise InputError(error.problem, key=key, value=text, remedy=remedy or error.remedy) from None
 
 
-def read_speed(asked: Asked, text: str, key: str) -> float:
+def read_speed(asked: CommandInput, text: str, key: str) -> float:
     """``"1500 rpm"``, or a bare number in the unit asked for, as a positive speed in rad/s."""
     from trunnion.driveline.quantities import SPEED
 
@@ -82,7 +82,7 @@ def read_speed(asked: Asked, text: str, key: str) -> float:
     return speed
 
 
-def read_speed_ends(asked: Asked, text: str, key: str) -> tuple[float, float]:
+def read_speed_ends(asked: CommandInput, text: str, key: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s."""
     read = [read_speed(asked, end, key) for end in text.split(":")]
     if len(read) != 2 or not read[0] < read[1]:
@@ -90,7 +90,7 @@ def read_speed_ends(asked: Asked, text: str, key: str) -> tuple[float, float]:
     return read[0], read[1]
 
 
-def range_of(asked: Asked) -> tuple[float, float]:
+def range_of(asked: CommandInput) -> tuple[float, float]:
     """The speed range of the file, in rad/s."""
     from trunnion.reporting.ranges import speed_range
 
@@ -99,15 +99,15 @@ def range_of(asked: Asked) -> tuple[float, float]:
 
 def read_time(text: str, key: str) -> float:
     """``"20 ms"``, or a bare number of seconds, as a positive time in seconds."""
-    from trunnion.driveline.quantities import Kind
+    from trunnion.driveline.quantities import QuantityKind
 
-    time = float(text) if is_number(text) else read_quantity(text, Kind("time", "s", "2.5 s"), key)
+    time = float(text) if is_number(text) else read_quantity(text, QuantityKind("time", "s", "2.5 s"), key)
     if not (math.isfinite(time) and time > 0):
         raise InputError("must be a positive time", key=key, value=text, remedy='write "2.5 s", say')
     return time
 
 
-def read_state(asked: Asked, text: str, key: str) -> list[float]:
+def read_state(asked: CommandInput, text: str, key: str) -> list[float]:
     """``0.1,0`` as a state to start from."""
     parts = text.split(",")
     if not all(is_number(part) for part in parts):
@@ -124,7 +124,7 @@ def is_number(text: str) -> bool:
     return True
 
 
-def read_axis(asked: Asked, text: str, key: str, points: int) -> tuple[str, float, float, int, str]:
+def read_axis(asked: CommandInput, text: str, key: str, points: int) -> tuple[str, float, float, int, str]:
     """``PARAMETER[:LOW:HIGH[:POINTS]][:log]`` as an axis request, of every command that varies something.
 
     PARAMETER alone takes the range of the file, and without POINTS there are ``points``. Ends that are multiples,
@@ -177,7 +177,7 @@ def _is_parameter(packed: PackedLine, path: str) -> bool:
         return False
 
 
-def read_even_axis(asked: Asked, text: str, key: str, points: int) -> tuple[str, float, float, int]:
+def read_even_axis(asked: CommandInput, text: str, key: str, points: int) -> tuple[str, float, float, int]:
     """The same where steps are even: a box that is searched, a parameter that is raised."""
     label, low, high, count, scale = read_axis(asked, text, key, points)
     if scale == "log":
@@ -185,7 +185,7 @@ def read_even_axis(asked: Asked, text: str, key: str, points: int) -> tuple[str,
     return label, low, high, count
 
 
-def read_box_range(asked: Asked, text: str, key: str) -> tuple[tuple[str, float, float], int]:
+def read_box_range(asked: CommandInput, text: str, key: str) -> tuple[tuple[str, float, float], int]:
     """``PARAMETER:LOW:HIGH[:ROWS]`` as a range and a number of rows."""
     label, low, high, rows = read_even_axis(asked, text, key, ROWS)
     return (label, low, high), rows
@@ -214,7 +214,7 @@ def _count(text: str, key: str) -> int:
     return count
 
 
-def _read_end(text: str, kind: Kind, unit: str, key: str) -> float:
+def _read_end(text: str, kind: QuantityKind, unit: str, key: str) -> float:
     """As ``read_quantity``, but a bare speed is in ``unit``."""
     if is_number(text) and not math.isfinite(float(text)):
         raise InputError("must be finite", key=key, value=text, remedy=f'write "{kind.example}", say')

@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from trunnion.floquet.stability.stability import Stability
     from trunnion.modes.natural_frequencies import NaturalFrequencies
     from trunnion.modes.resonance_speeds import ResonanceSpeeds
-    from trunnion.reporting.answer import Answer, Asked, Judged
     from trunnion.reporting.overview import Overview
+    from trunnion.reporting.overview_assessment import AssessableLine, AssessedLine, OverviewAssessment
     from trunnion.results.chart import StabilityChart
 
 MOST_ROWS = 24
 """Resonances that an overview prints."""
 
 
-def print_begin(given: Asked) -> None:
+def print_begin(given: AssessableLine) -> None:
     """What is about to be judged: the verdict of a long line takes some seconds."""
     span = Words(given.unit).ends(*given.speed_range)
     said = [counted(len(given.line.elements), "element"), f"judged from {span}"]
@@ -38,7 +38,7 @@ def print_begin(given: Asked) -> None:
     output.say(f"{given.line.name or 'driveline'}: {', '.join(said)}", wrap=True)
 
 
-def print_judged(given: Judged) -> None:
+def print_judged(given: AssessedLine) -> None:
     """The verdict and the checks: what is known first."""
     from trunnion.design.assessment.check import Status
 
@@ -51,13 +51,13 @@ def print_judged(given: Judged) -> None:
         output.say(f"  switched off: {one}")
 
 
-def print_findings(given: Answer) -> None:
+def print_findings(given: OverviewAssessment) -> None:
     """What follows from the verdict, before anything is drawn."""
     output.findings(given.findings)
     output.say("\ntrunnion assess gives the reasons and rules of every check", wrap=True)
 
 
-def print_overview(seen: Overview, given: Answer) -> None:
+def print_overview(seen: Overview, given: OverviewAssessment) -> None:
     """What follows the answer: modes, resonance speeds, the joints, stability at one speed, the chart."""
     unit, words = seen.unit, Words(seen.unit)
     output.heading("Driveline")

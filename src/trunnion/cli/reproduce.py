@@ -9,7 +9,7 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.places import DEFAULT_FOLDER, Shown, answer
+from trunnion.cli.places import DEFAULT_FOLDER, CommandOutput, answer
 from trunnion.cli.typed import Json
 
 
@@ -42,7 +42,7 @@ def reproduce(
         content: dict[str, object] = {"studies": [_plain(study) for study in found.studies]}
     else:
         content = _plain(found)
-    answer("reproduce", found.save(target), as_json, Shown(found, content=lambda: content))
+    answer("reproduce", found.save(target), as_json, CommandOutput(found, content=lambda: content))
 
 
 def _plain(found: Any) -> dict[str, object]:

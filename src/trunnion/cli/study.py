@@ -12,16 +12,16 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.asked import Asked, Bounds, Read, Subject, Texts
-from trunnion.cli.options import FILE, SPEED, Line, LoadCase, OwnLine, Progress, Speed, SpeedUnit, Unit
-from trunnion.cli.places import DEFAULT_FOLDER, NOTHING, Shown, write_result
-from trunnion.cli.readers import loaded_line, own_line, read_axis, read_points, read_speed, read_time
+from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
+from trunnion.cli.options import FILE, SPEED, Line, LineOfFile, LoadCase, Progress, Speed, SpeedUnit, Unit
+from trunnion.cli.places import DEFAULT_FOLDER, NOTHING, CommandOutput, write_result
+from trunnion.cli.readers import line_of_file, loaded_line, read_axis, read_points, read_speed, read_time
 from trunnion.cli.typed import Command, Json
 from trunnion.waiting import TimeLimit, to_the_end
 
 if TYPE_CHECKING:
-    from trunnion.reporting.answer import Answer
     from trunnion.reporting.overview import Overview
+    from trunnion.reporting.overview_assessment import OverviewAssessment
     from trunnion.reporting.report import Report
 
 
@@ -67,9 +67,9 @@ def analyze(
     seconds = None if within is None else read_time(within, "--within")
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_begin, print_findings, print_judged, print_overview
-    from trunnion.reporting.answer import answer as answer_of
-    from trunnion.reporting.answer import asked, judged
     from trunnion.reporting.overview import at_speed
+    from trunnion.reporting.overview_assessment import answer as answer_of
+    from trunnion.reporting.overview_assessment import asked, judged
 
     check_report(to)
     question = asked(about.line, speed=at, unit=about.unit)
@@ -103,7 +103,7 @@ def analyze(
 
 
 def _reported(
-    given: Answer, file: str, to: Path, size: tuple[int, int] | None, limit: TimeLimit
+    given: OverviewAssessment, file: str, to: Path, size: tuple[int, int] | None, limit: TimeLimit
 ) -> tuple[Overview, tuple[str, ...], list[Path]]:
     """Write the report, then once more with the chart: what is interrupted leaves the first. Also what it left out."""
     from trunnion.reporting.overview import at_speed, charted
@@ -143,7 +143,7 @@ def _written(page: Report, to: Path, file: str) -> list[Path]:
     return [to / path.name for path in written]
 
 
-def _size(asked: Asked, text: str, key: str) -> tuple[int, int]:
+def _size(asked: CommandInput, text: str, key: str) -> tuple[int, int]:
     return read_points(text)
 
 
@@ -152,21 +152,21 @@ AXIS = partial(read_axis, points=0)
 """With as many points as ``--points`` says where none are stated."""
 
 
-def _frequencies(file: str, texts: Texts) -> Asked:
+def _frequencies(file: str, texts: Texts) -> CommandInput:
     """The line, and the unit of frequencies that goes with that of its speeds."""
     from trunnion.results.words import Words
 
-    asked = own_line(file, texts)
+    asked = line_of_file(file, texts)
     return asked if texts["unit"] else replace(asked, unit=Words(asked.unit).of_frequencies.of_speeds)
 
 
 @Command("stability", writes=NOTHING)
-def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> Shown:
+def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> CommandOutput:
     """Example: trunnion stability truck.toml --speed "1500 rpm" """
     from trunnion.cli.report import stability_json
 
     found = tn.stability(line, speed).in_unit(unit)
-    return Shown(
+    return CommandOutput(
         found,
         content=lambda: stability_json(found),
         more=lambda: output.findings(found.findings),
@@ -178,13 +178,13 @@ def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> Shown:
 def stability_chart(
     line: Line,
     *,
-    x: Annotated[Axis, Read(AXIS, "speed")],
-    y: Annotated[Axis, Read(AXIS, "HookeJoint *.angle")],
+    x: Annotated[Axis, OptionReader(AXIS, "speed")],
+    y: Annotated[Axis, OptionReader(AXIS, "HookeJoint *.angle")],
     speed: Speed,
-    points: Annotated[tuple[int, int], Read(_size, "200x150")],
+    points: Annotated[tuple[int, int], OptionReader(_size, "200x150")],
     unit: SpeedUnit,
     progress: Progress,
-) -> Shown:
+) -> CommandOutput:
     """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
 
     --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
@@ -195,19 +195,21 @@ def stability_chart(
 
     across, up = ((*axis[:3], axis[3] or n, axis[4]) for axis, n in zip((x, y), points, strict=True))
     chart = tn.stability_chart(line, across, up, speed=speed, progress=progress)
-    return Shown(chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True)
+    return CommandOutput(
+        chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True
+    )
 
 
-LineInFrequencies = Annotated["tn.Driveline", FILE, Subject(_frequencies, {"unit": Unit})]
+LineInFrequencies = Annotated["tn.Driveline", FILE, CommandSubject(_frequencies, {"unit": Unit})]
 
 
 @Command(writes=NOTHING)
-def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> Shown:
+def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> CommandOutput:
     """Example: trunnion natural-frequencies truck.toml --unit Hz"""
     from trunnion.cli.report import modes_json
 
     modes = tn.natural_frequencies(line)
-    return Shown(
+    return CommandOutput(
         modes,
         content=lambda: modes_json(modes, unit),
         text=lambda: f"{len(modes.names)} natural frequencies, all joints straight",
@@ -218,8 +220,8 @@ def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> Shown:
 
 @Command(writes=NOTHING)
 def resonance_speeds(
-    line: OwnLine, *, orders: Annotated[int, Bounds(1, 20)] = 2, all_: bool = False, unit: SpeedUnit
-) -> Shown:
+    line: LineOfFile, *, orders: Annotated[int, NumberBounds(1, 20)] = 2, all_: bool = False, unit: SpeedUnit
+) -> CommandOutput:
     """Example: trunnion resonance-speeds truck.toml --orders 3 --all
 
     --orders  Highest order k.
@@ -232,7 +234,7 @@ def resonance_speeds(
     shown = found if all_ or limits is None else found.within(*limits)
     rows = shown.table(unit)
     where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
-    return Shown(
+    return CommandOutput(
         shown,
         content=lambda: resonances_json(shown, unit),
         text=lambda: f"{len(rows)} resonance speeds up to order {orders}{where}",

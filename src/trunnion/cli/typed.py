@@ -2,10 +2,10 @@
 
 The annotation of a parameter says what the function takes, and how the terminal states it:
 
-- a type alone is read by Typer, in bounds where ``Bounds`` stands beside it;
-- with ``Read`` the text is read here, for the line and in the unit of speeds that are asked about;
-- ``Subject`` reads what the command is about, and brings options of its own, ``--unit`` say;
-- ``Given`` is a part of that, the unit, and no option.
+- a type alone is read by Typer, in bounds where ``NumberBounds`` stands beside it;
+- with ``OptionReader`` the text is read here, for the line and in the unit of speeds that are asked about;
+- ``CommandSubject`` reads what the command is about, and brings options of its own, ``--unit`` say;
+- ``InputAttribute`` is a part of that, the unit, and no option.
 
 What ``--help`` says of an option is a line of the docstring, as it is written in a terminal and two blanks before the
 words: ``--orders K,K,…  Cycles per turn of the input``; options that several commands share bring theirs along. A
@@ -26,8 +26,16 @@ from typing import Annotated, Any, TypeVar, get_args
 import typer
 
 from trunnion.cli import output
-from trunnion.cli.asked import REQUIRED, Asked, Bounds, Given, Read, Subject, Texts
-from trunnion.cli.places import PICTURES_AND_DATA, TABLES, Shown, answer, check_places
+from trunnion.cli.command_input import (
+    REQUIRED,
+    CommandInput,
+    CommandSubject,
+    InputAttribute,
+    NumberBounds,
+    OptionReader,
+    Texts,
+)
+from trunnion.cli.places import PICTURES_AND_DATA, TABLES, CommandOutput, answer, check_places
 from trunnion.cli.readers import read_time
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,7 +54,7 @@ OPTION = re.compile(r"^(--[\w-]+(?:/--[\w-]+)?)(?:, (-\w))?(?: (\S+))?  (.*(?:\n
 
 @dataclass(frozen=True)
 class Command:
-    """How a command computes and hands over what its function finds, a ``Shown``.
+    """How a command computes and hands over what its function finds, a ``CommandOutput``.
 
     doing : what it says it is at; "" where it is quick. writes : endings of its files. unasked : whether it writes some
     where none is asked for. part : what they are called beside the file asked about; by default as the command.
@@ -75,7 +83,7 @@ class Command:
 
 
 @dataclass(frozen=True)
-class _Stated:
+class _TypedParameter:
     """A parameter that the terminal states."""
 
     parameter: inspect.Parameter
@@ -85,22 +93,22 @@ class _Stated:
     def of_typer(self) -> tuple[str, Any, Any]:
         """Name, annotation and default, for Typer."""
         name, default, kind = self.parameter.name, self.parameter.default, self.parameter.annotation
-        if _mark(self.parameter, Subject):
+        if _mark(self.parameter, CommandSubject):
             return name, Annotated[str, self.info], REQUIRED
-        if read := _mark(self.parameter, Read):
+        if read := _mark(self.parameter, OptionReader):
             return name, Annotated[read.text, self.info], read.default
         return name, Annotated[get_args(kind)[0] if _marks(self.parameter) else kind, self.info], default
 
-    def value(self, asked: Asked, texts: Texts) -> Any:
+    def value(self, asked: CommandInput, texts: Texts) -> Any:
         """What the function takes."""
-        if _mark(self.parameter, Subject):
+        if _mark(self.parameter, CommandSubject):
             return asked.subject
-        text, read = texts[self.parameter.name], _mark(self.parameter, Read)
+        text, read = texts[self.parameter.name], _mark(self.parameter, OptionReader)
         # Typer has the first name of an option where others have its default.
         return read.value(asked, text, str(self.info.default)) if read else text
 
 
-def callback(name: str, sentence: str, function: Callable[..., Shown]) -> Callable[..., None]:
+def callback(name: str, sentence: str, function: Callable[..., CommandOutput]) -> Callable[..., None]:
     """What Typer calls for the command ``name``: reads the options, calls ``function``, writes and says the answer.
 
     Raises
@@ -114,14 +122,14 @@ def callback(name: str, sentence: str, function: Callable[..., Shown]) -> Callab
     for key, parameter in parameters.items():
         info = described.pop(key.rstrip("_"), None) or _mark(parameter, typer.models.ParameterInfo)
         if info:
-            stated.append(_Stated(parameter, _bounded(info, _mark(parameter, Bounds))))
-        elif mark := _mark(parameter, Given):
+            stated.append(_TypedParameter(parameter, _bounded(info, _mark(parameter, NumberBounds))))
+        elif mark := _mark(parameter, InputAttribute):
             given[key] = mark.attribute
         elif key != "progress":
             raise TypeError(f"{name}: its docstring has no line --{key}")
     if described:
         raise TypeError(f"{name}: takes nothing that is called {', '.join(described)}")
-    file, subject = next((key, s) for key, p in parameters.items() if (s := _mark(p, Subject)))
+    file, subject = next((key, s) for key, p in parameters.items() if (s := _mark(p, CommandSubject)))
 
     def run(**texts: Any) -> None:
         asked = subject.read(texts[file], texts)
@@ -165,7 +173,7 @@ def _options_in(docstring: str) -> tuple[dict[str, Any], str]:
     return found, OPTION.sub("", docstring).strip()
 
 
-def _bounded(info: Any, bounds: Bounds | None) -> Any:
+def _bounded(info: Any, bounds: NumberBounds | None) -> Any:
     if bounds is not None:
         info.min, info.max = bounds.least, bounds.most
     return info

@@ -38,7 +38,7 @@ def warm_up(
         say_what_is_kept()
         return
     if part is not None:
-        from trunnion.floquet.charts.prices import compile_at_once
+        from trunnion.floquet.charts.cost_model import compile_at_once
 
         compile_at_once()
         PARTS[part]()

@@ -19,7 +19,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.schedules import FOLLOWING, KEYS, Schedule
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.floquet.ranges.span import Span
 from trunnion.results.counts import few
 from trunnion.results.drawing import Axes, drawing
@@ -36,7 +36,7 @@ LIMIT_SPEEDS = 9
 
 
 @labelled
-class Place:
+class SchedulePoint:
     """One point of a schedule ("" for the line as stated), and the line there."""
 
     schedule: str = variable()
@@ -55,7 +55,9 @@ class Envelope(Result):
     """
 
     verdict: Status = attribute()
-    places: tuple[Place, ...] = members(Place, "place", "points of schedules, the line as stated first", name="label")
+    places: tuple[SchedulePoint, ...] = members(
+        SchedulePoint, "place", "points of schedules, the line as stated first", name="label"
+    )
     checks: tuple[Check, ...] = members(Check, "check", WORST, name="name", only="status load_case value speed because")
     where: tuple[int, ...] = internal("number of the place of each check")
     margin: Array = variable("place check", "1", "distance to the limit over the limit")
@@ -128,11 +130,11 @@ def envelope(
     InputError : as ``assess``; a number of points below 2; a line at a point of a schedule that is refused.
     """
     points = whole_number(points, "points", 2)
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
     stated = _stripped(line, line.operation, {})
     first = assess(stated, speeds, unit=unit)
     words = Words(unit or speed_unit(line))
-    places = [Place("", "", nan, "as stated", stated)]
+    places = [SchedulePoint("", "", nan, "as stated", stated)]
     for schedule in line.operation.schedules if line.operation else ():
         places += _places(line, schedule, points, (first.low, first.high), words)
         places += _whole(line, schedule, (first.low, first.high), words)
@@ -141,7 +143,7 @@ def envelope(
         if k:
             judged.append(_judged(line, place, first, unit))
         limits.append(_limit(place, parameter, (low, high), _span(place, first)))
-        tell((k + 1) / len(places))
+        report_progress((k + 1) / len(places))
     return _together(line, places, judged, limits, parameter, words.of_speeds)
 
 
@@ -156,28 +158,28 @@ def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, d
 
 def _places(
     line: Driveline, schedule: Schedule, points: int, span: tuple[float, float], words: Words
-) -> Iterator[Place]:
+) -> Iterator[SchedulePoint]:
     at_speed = schedule.over == "speed"
     for value in schedule.between(points, *(span if at_speed else ())):
         shown = words.speed(value) if at_speed else f"{1e3 * value:.4g} mm"
         changed = _stripped(line, line.operation, schedule.changes_at(value))
-        yield Place(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
+        yield SchedulePoint(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
 
 
-def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], words: Words) -> Iterator[Place]:
-    """All of a schedule over speed; not of a bent line that starts free, which is solved speed by speed."""
+def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], words: Words) -> Iterator[SchedulePoint]:
+    """All of a schedule over speed; not of a free–free line with joint angles, which is solved speed by speed."""
     low, high = max(schedule.points[0], span[0]), min(schedule.points[-1], span[1])
     if schedule.over != "speed" or not low < high:
         return
     # The line at the point where its joints are bent most: what is bent anywhere counts as bent.
     bend = [sum(abs(angles[k]) for angles in schedule.angles.values()) for k in range(len(schedule.points))]
     changed = _stripped(line, line.operation, schedule.changes_at(schedule.points[int(np.argmax(bend))]))
-    if not moves_by_itself(assemble(changed)):
+    if not has_periodic_base(assemble(changed)):
         label = f"along {schedule.name}, {words.ends(low, high)}"
-        yield Place(schedule.name, "speed", nan, label, changed, (low, high))
+        yield SchedulePoint(schedule.name, "speed", nan, label, changed, (low, high))
 
 
-def _judged(line: Driveline, place: Place, first: Assessment, unit: str | None) -> Assessment:
+def _judged(line: Driveline, place: SchedulePoint, first: Assessment, unit: str | None) -> Assessment:
     """What is judged at a place, or along a schedule."""
     if place.along is None:
         return assess(place.line, _span(place, first), unit=unit)
@@ -204,14 +206,14 @@ def _following(assembly: Assembly, schedule: Schedule) -> Span:
     return Span(assembly, schedule.points[0], schedule.points[-1], put, schedule.points)
 
 
-def _span(place: Place, first: Assessment) -> tuple[float, float]:
+def _span(place: SchedulePoint, first: Assessment) -> tuple[float, float]:
     """The speeds that a place is judged at: its own where the schedule goes over speed."""
     if place.along is not None:
         return place.along
     return (place.value, place.value) if place.over == "speed" else (first.low, first.high)
 
 
-def _limit(place: Place, parameter: str, ends: tuple[float, float], span: tuple[float, float]) -> float:
+def _limit(place: SchedulePoint, parameter: str, ends: tuple[float, float], span: tuple[float, float]) -> float:
     """The least over load cases and speeds of the largest stable value."""
     if not parameter:
         return nan
@@ -235,7 +237,7 @@ def _not_reached(line: Driveline, first: Assessment) -> Iterator[str]:
 
 def _together(
     line: Driveline,
-    places: list[Place],
+    places: list[SchedulePoint],
     judged: list[Assessment],
     limits: list[float],
     parameter: str,

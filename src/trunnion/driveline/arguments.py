@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.quantities import SPEED, Kind, parse
+from trunnion.driveline.quantities import SPEED, QuantityKind, parse
 from trunnion.errors import InputError
 
 SpeedEnds: TypeAlias = tuple[float | str, float | str]
@@ -29,7 +29,7 @@ def one_number(value: object, key: str, remedy: str = "") -> float:
     return float(value)
 
 
-def quantity(value: object, kind: Kind, key: str) -> float:
+def quantity(value: object, kind: QuantityKind, key: str) -> float:
     """A quantity [SI] of a kind, from a number or a text with its unit.
 
     Raises

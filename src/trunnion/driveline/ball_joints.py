@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.joints import Joint
-from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Maybe, Tables, optional
+from trunnion.driveline.quantities import DEGREE, Angle, Dimensionless, Maybe, TableList, optional
 from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
 
@@ -68,7 +68,7 @@ class RzeppaJoint(Joint):
 
     angle: Angle = optional(default=0.0, description="bend angle between the two shafts")
     plane: Angle = optional(default=0.0, description="joint plane relative to the previous joint's")
-    ripple: Annotated[Tables[Ripple], BeforeValidator(listed(Ripple, "harmonic"))] = optional(
+    ripple: Annotated[TableList[Ripple], BeforeValidator(listed(Ripple, "harmonic"))] = optional(
         default=(), description="harmonics of the output over a turn"
     )
     reference_angle: Maybe[Angle] = optional(default=None, description="bend angle at which the amplitudes hold")

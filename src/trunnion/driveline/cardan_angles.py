@@ -19,7 +19,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.layout import jointed
-from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, Kind, parse
+from trunnion.driveline.quantities import ANGLE, STIFFNESS, TORQUE, QuantityKind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
 
@@ -67,7 +67,7 @@ def cardan_line(
     return jointed(joints, shafts, Disk(inertia=1.0, load_torque=load), name)
 
 
-def _one_per_shaft(values: object, key: str, joints: int, kind: Kind = ANGLE) -> list[float]:
+def _one_per_shaft(values: object, key: str, joints: int, kind: QuantityKind = ANGLE) -> list[float]:
     found = _numbers(values, key, kind)
     if len(found) != joints - 1:
         raise InputError(
@@ -76,7 +76,7 @@ def _one_per_shaft(values: object, key: str, joints: int, kind: Kind = ANGLE) ->
     return found
 
 
-def _numbers(values: Any, key: str, kind: Kind = ANGLE) -> list[float]:
+def _numbers(values: Any, key: str, kind: QuantityKind = ANGLE) -> list[float]:
     if isinstance(values, str | Mapping) or not np.iterable(values):
         raise InputError("is not a list", key=key, value=values, remedy=f'write {key}=["{kind.example}"], say')
     try:

@@ -22,7 +22,7 @@ HOURS = 0.006
 """What the stability of a chain of 2000 elements takes at one speed."""
 
 
-class Chain(Record):
+class ElementChain(Record):
     """What the elements of a driveline are without where it runs and what it bears: see ``Driveline``."""
 
     elements: tuple[SerializeAsAny[Element], ...]
@@ -113,7 +113,7 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     return found
 
 
-def wrong_places(line: Chain) -> Iterator[InputError]:
+def wrong_places(line: ElementChain) -> Iterator[InputError]:
     """Names twice, branches from nowhere, drives in mid-line."""
     wrong = [*_wrong_names(line.names), *problems_of(partial(_parent, line, i) for i in range(len(line.elements)))]
     wrong += list(_wrong_loops(line))
@@ -130,7 +130,7 @@ def _wrong_names(names: tuple[str, ...]) -> Iterator[InputError]:
             yield InputError(f"names elements {some}", element=name, key="name", remedy="rename one of them")
 
 
-def _wrong_loops(line: Chain) -> Iterator[InputError]:
+def _wrong_loops(line: ElementChain) -> Iterator[InputError]:
     for i, (name, element) in enumerate(line.parts):
         to = getattr(element, "to", None)
         if to is not None and to not in line.names[:i]:
@@ -138,7 +138,7 @@ def _wrong_loops(line: Chain) -> Iterator[InputError]:
             yield InputError("is not an earlier element", element=name, key="to", value=to, remedy=remedy)
 
 
-def _parent(line: Chain, place: int) -> tuple[int | None, int]:
+def _parent(line: ElementChain, place: int) -> tuple[int | None, int]:
     """The element that one follows, and the coordinate there; −1 is the last."""
     after, name = line.elements[place].after, line.names[place]
     if after is None:
@@ -162,7 +162,7 @@ def _parent(line: Chain, place: int) -> tuple[int | None, int]:
     return parent, line.elements[parent].onward
 
 
-def _wrong_ends(line: Chain) -> Iterator[InputError]:
+def _wrong_ends(line: ElementChain) -> Iterator[InputError]:
     """A prescribed rotation in mid-line would cut it into two independent ones."""
     for i, element in enumerate(line.elements):
         if isinstance(element, ConstantSpeed) and i > 0 and i in line.parents:

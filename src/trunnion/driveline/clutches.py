@@ -13,11 +13,11 @@ from trunnion.driveline.quantities import (
     TORQUE,
     Angle,
     Frequency,
-    Kind,
     Maybe,
+    QuantityKind,
     Several,
     Stiffness,
-    Tables,
+    TableList,
     Torque,
     optional,
     parse,
@@ -96,7 +96,7 @@ class Clutch(PiecewiseShaft):
     breakpoints: Annotated[Several[Angle], BeforeValidator(quantities)] = optional(
         default=(), description="twists at which the stiffness of the spring changes, rising; none by default"
     )
-    friction: Annotated[Tables[Slider], BeforeValidator(_sliders)] = Field(
+    friction: Annotated[TableList[Slider], BeforeValidator(_sliders)] = Field(
         description="sliders in parallel with the spring, each with a spring of its own"
     )
     linear_amplitude: Maybe[Angle] = optional(
@@ -168,7 +168,7 @@ class Clutch(PiecewiseShaft):
         return stiffness, damping, self.fork_offset + float(middle) - mean / stiffness
 
 
-def _positive(value: float | str, kind: Kind, key: str) -> float:
+def _positive(value: float | str, kind: QuantityKind, key: str) -> float:
     found = parse(value, kind)
     if not found > 0:
         raise InputError("must be positive", element="Clutch", key=key, value=value, remedy=f'write "{kind.example}"')

@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 from pydantic import field_validator, model_validator
 
 from trunnion.driveline.addressed import wrong_addresses
-from trunnion.driveline.chain import Chain, checked, wrong_places
+from trunnion.driveline.chain import ElementChain, checked, wrong_places
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
@@ -18,14 +18,14 @@ from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
 from trunnion.errors import InputError, InputRemark
 
 
-class Driveline(Chain):
+class Driveline(ElementChain):
     """A chain of elements from the drive to the load, with branches where an element says ``after``.
 
     Parameters
@@ -140,7 +140,7 @@ class Driveline(Chain):
     __str__ = __repr__
 
 
-_SPRINGS = (Spring, PiecewiseShaft, GearPair)
+_SPRINGS = (SpringElement, PiecewiseShaft, GearPair)
 
 
 def _wrong_damping(line: Driveline) -> Iterator[InputError]:
@@ -154,7 +154,7 @@ def _wrong_damping(line: Driveline) -> Iterator[InputError]:
     for name, element in line.parts:
         keys = ("damping", "loss_factor", "mesh_damping") if isinstance(element, _SPRINGS) else ()
         key = next((k for k in keys if getattr(element, k, None)), None)
-        if key is None and isinstance(element, Spring) and element.loss is not None:
+        if key is None and isinstance(element, SpringElement) and element.loss is not None:
             key = "loss_factor" if element.loss_factor is not None else "relative_damping"
         if key is not None:
             remedy = "leave out one of the two"

@@ -139,7 +139,7 @@ class Disk(Element):
     load_torque : outer torque [N m]; positive resists rotation.
     viscous_load, quadratic_load : outer torques proportional to the speed [N m s/rad] and to its square
         [N m s²/rad²]; positive resists rotation.
-    drive_share : in a line that starts free (no ConstantSpeed), the disk's share of the power that balances the
+    drive_share : in a free–free line (no ConstantSpeed), the disk's share of the power that balances the
         loads at the mean speed asked for; shares count relative to each other, so one drive has any positive one.
     excitation : harmonic torques on the disk, see ``Excitation``; in a file also the name of a CSV table beside it.
     firing_angles : where the disk carries cylinders: ``excitation`` is that of one of them, and each adds it at its

@@ -17,7 +17,7 @@ from trunnion.driveline.quantities import (
     QuadraticLoad,
     Several,
     Speed,
-    Tables,
+    TableList,
     Torque,
     optional,
     shown,
@@ -167,4 +167,4 @@ def _tables(value: object) -> tuple[Excitation, ...]:
     return _READ(value)
 
 
-Excitations = Annotated[Tables[Excitation], BeforeValidator(_tables)]
+Excitations = Annotated[TableList[Excitation], BeforeValidator(_tables)]

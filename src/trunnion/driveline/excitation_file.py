@@ -22,12 +22,18 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.driveline.excitation import Excitation
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, Kind, parse
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, QuantityKind, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.reading import regular_bytes
 
-COLUMNS: dict[str, Kind] = {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE}
+COLUMNS: dict[str, QuantityKind] = {
+    "order": RATIO,
+    "speed": SPEED,
+    "torque": TORQUE,
+    "amplitude": TORQUE,
+    "phase": ANGLE,
+}
 LARGEST_TABLE = 1_000_000
 """Bytes; a table of 20 orders at 50 speeds has 30 000."""
 _HEAD = re.compile(r"([A-Za-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
@@ -108,7 +114,7 @@ def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
     return found
 
 
-def _is_unit(unit: str, kind: Kind) -> bool:
+def _is_unit(unit: str, kind: QuantityKind) -> bool:
     try:
         parse(f"1 {unit}", kind)
     except InputError:
@@ -116,7 +122,7 @@ def _is_unit(unit: str, kind: Kind) -> bool:
     return True
 
 
-def _usual(kind: Kind) -> str:
+def _usual(kind: QuantityKind) -> str:
     return {SPEED: "rpm", ANGLE: "deg"}.get(kind, kind.unit)
 
 

@@ -21,8 +21,8 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
-from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, held_excitations, unlike_in_series
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
+from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 
 Finder = Callable[[Driveline], list[str]]
@@ -61,7 +61,7 @@ def _excited(test: Callable[[Excitation], object]) -> Finder:
     return _where(Disk, "excitation", lambda disk: any(map(test, disk.excitation)))
 
 
-def _rubbing(at_one_motion: bool) -> Finder:
+def _dry_friction(at_one_motion: bool) -> Finder:
     return _where(
         Clutch, "friction", lambda one: bool(one.friction) and (one.linear_amplitude is not None) is at_one_motion
     )
@@ -87,7 +87,7 @@ def _prescribed_end(line: Driveline) -> list[str]:
     return [n for n, e in zip(line.names[1:], line.elements[1:], strict=True) if isinstance(e, ConstantSpeed)]
 
 
-SPRINGS = [name for name, kind in KINDS.items() if issubclass(kind, Spring | PiecewiseShaft)]
+SPRINGS = [name for name, kind in KINDS.items() if issubclass(kind, SpringElement | PiecewiseShaft)]
 JOINTS = {name: kind for name, kind in KINDS.items() if issubclass(kind, Joint)}
 _LISTED = ("HookeJoint", "IdealJoint", "TripodJoint", "RzeppaJoint", "DoubleCardanJoint")
 """Joints whose features stand in the list; one of another kind is a feature of its own, called as the kind."""
@@ -223,12 +223,12 @@ FEATURES = (
     Feature(
         "dry friction",
         ("Clutch.friction", "DualMassFlywheel.friction", "Slider.torque", "Slider.stiffness"),
-        _rubbing(False),
+        _dry_friction(False),
     ),
     Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
-        _rubbing(True),
+        _dry_friction(True),
     ),
     Feature("load torque", ("Disk.load_torque",)),
     Feature("drive share", ("Disk.drive_share",)),
@@ -250,7 +250,7 @@ FEATURES = (
     Feature("cylinders", ("Disk.firing_angles", "Disk.misfiring")),
     Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited(lambda one: not one.order)),
     Feature("excitation by order and frequency", (), _excited(lambda one: one.order and one.frequency)),
-    Feature(HELD, (), lambda line: [f"{name}.excitation" for name in held_excitations(line)]),
+    Feature(HELD, (), lambda line: [f"{name}.excitation" for name in prescribed_excitations(line)]),
     Feature(
         SERIES,
         (),

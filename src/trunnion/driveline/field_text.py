@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from trunnion.driveline.quantities import RATIO, Kind
+from trunnion.driveline.quantities import RATIO, QuantityKind
 
 
 def label_of(key: str) -> str:
@@ -13,7 +13,7 @@ def label_of(key: str) -> str:
     return key.replace("_", " ")
 
 
-def text_of(value: Any, kind: Kind | None) -> str:
+def text_of(value: Any, kind: QuantityKind | None) -> str:
     """A value as text in a field, numbers with their unit."""
     if isinstance(value, bool):
         return "true" if value else "false"

@@ -36,7 +36,7 @@ from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
-from trunnion.driveline.quantities import SPEED, Kind, written
+from trunnion.driveline.quantities import SPEED, QuantityKind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
@@ -393,7 +393,7 @@ def _tolerance_blocks(tolerance: Tolerance) -> list[str]:
     return [_block("[[tolerance]]", plain), *(_block(f"[tolerance.{key}]", value) for key, value in normal.items())]
 
 
-def _written(value: Any, kind: Kind | None, speed_unit: str | None = None) -> Any:
+def _written(value: Any, kind: QuantityKind | None, speed_unit: str | None = None) -> Any:
     if isinstance(value, tuple):
         return [_written(v, kind, speed_unit) for v in value]
     return value if kind is None else written(value, kind, speed_unit if kind is SPEED else None)

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from trunnion.driveline.clutches import MOST_SLIDERS, READ_SLIDERS, Clutch, Slider
 from trunnion.driveline.elements import positive
 from trunnion.driveline.parts import Heavy, Numbers, Part, Sprung
-from trunnion.driveline.quantities import Inertia, Tables, optional
+from trunnion.driveline.quantities import Inertia, TableList, optional
 from trunnion.errors import InputError
 
 
@@ -48,7 +48,7 @@ class DualMassFlywheel(Clutch):
 
     primary_inertia: Inertia = Field(description="in front of the springs")
     secondary_inertia: Inertia = Field(description="behind the springs")
-    friction: Annotated[Tables[Slider], BeforeValidator(_some_sliders)] = optional(
+    friction: Annotated[TableList[Slider], BeforeValidator(_some_sliders)] = optional(
         default=(), description="sliders in parallel with the springs; none by default"
     )
 

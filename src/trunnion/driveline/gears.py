@@ -20,7 +20,7 @@ from trunnion.driveline.quantities import (
     Maybe,
     MeshDamping,
     MeshStiffness,
-    Tables,
+    TableList,
     optional,
 )
 from trunnion.driveline.record import Record, listed, one_of
@@ -136,11 +136,11 @@ class GearPair(Element):
     stiffness_ratio: Dimensionless = optional(
         default=0.0, description="slope inside the backlash over that outside; 0: free play, as by default"
     )
-    transmission_error: Annotated[Tables[TransmissionError], BeforeValidator(listed(TransmissionError, "harmonic"))] = (
-        optional(default=(), description="harmonics of the transmission error in the mesh phase")
-    )
+    transmission_error: Annotated[
+        TableList[TransmissionError], BeforeValidator(listed(TransmissionError, "harmonic"))
+    ] = optional(default=(), description="harmonics of the transmission error in the mesh phase")
     stiffness_variation: Annotated[
-        Tables[StiffnessVariation], BeforeValidator(listed(StiffnessVariation, "harmonic"))
+        TableList[StiffnessVariation], BeforeValidator(listed(StiffnessVariation, "harmonic"))
     ] = optional(default=(), description="harmonics of the mesh stiffness over its mean")
 
     @model_validator(mode="after")

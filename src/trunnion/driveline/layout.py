@@ -25,7 +25,7 @@ from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.joints import HookeJoint
-from trunnion.driveline.quantities import ANGLE, DEGREE, LENGTH, Kind, parse
+from trunnion.driveline.quantities import ANGLE, DEGREE, LENGTH, QuantityKind, parse
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
 
@@ -176,7 +176,7 @@ def layout(
 
 
 def _planes(axes: Array, cross: Array, straight: Flags) -> Array:
-    """Angle of each joint's normal from that of the last bent joint, about the shaft in front of it."""
+    """Angle of each joint's normal from that of the last angled joint, about the shaft in front of it."""
     planes = np.zeros(len(cross))
     normal = None
     for j, product in enumerate(cross):
@@ -230,7 +230,7 @@ def _direction(axis: Any, key: str) -> Array:
     return vector / size
 
 
-def _coordinate(value: Any, kind: Kind, key: str) -> float:
+def _coordinate(value: Any, kind: QuantityKind, key: str) -> float:
     try:
         return parse(value, kind)
     except InputError as error:

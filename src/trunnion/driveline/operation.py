@@ -14,9 +14,9 @@ from trunnion.driveline.quantities import (
     SPEED,
     TORQUE,
     Angle,
-    Kind,
     Maybe,
     MaybeRange,
+    QuantityKind,
     Speed,
     Torque,
     json_schema_of,
@@ -32,7 +32,7 @@ from trunnion.errors import InputError
 SPEED_UNITS = ("rpm", "Hz", "rad/s")
 
 
-def _range_of(kind: Kind, example: str) -> tuple[BeforeValidator, WithJsonSchema]:
+def _range_of(kind: QuantityKind, example: str) -> tuple[BeforeValidator, WithJsonSchema]:
     def read(value: Any) -> tuple[float, float]:
         remedy = f"write two values, the lower first, such as {example}"
         if not isinstance(value, list | tuple) or len(value) != 2:

@@ -38,7 +38,7 @@ _SPELLINGS = {"·": "*", "⋅": "*", "×": "*", ".": "*", "²": "^2", "³": "^3"
 
 
 @dataclass(frozen=True)
-class Kind:
+class QuantityKind:
     """A physical kind of quantity.
 
     Attributes
@@ -63,29 +63,29 @@ DEGREE = math.pi / 180
 RPM = 2 * math.pi / 60
 HERTZ = 2 * math.pi
 
-ANGLE = Kind("angle", "rad", "12 deg", (("deg", DEGREE, 0.0),))
-SPEED = Kind("speed", "rad/s", "1500 rpm", (("rpm", RPM, 0.0),))
-FREQUENCY = Kind("frequency", "rad/s", "50 Hz", (("Hz", HERTZ, 0.0),))
-STIFFNESS = Kind(
+ANGLE = QuantityKind("angle", "rad", "12 deg", (("deg", DEGREE, 0.0),))
+SPEED = QuantityKind("speed", "rad/s", "1500 rpm", (("rpm", RPM, 0.0),))
+FREQUENCY = QuantityKind("frequency", "rad/s", "50 Hz", (("Hz", HERTZ, 0.0),))
+STIFFNESS = QuantityKind(
     "stiffness",
     "N*m/rad",
     "12 kN*m/rad",
     (("MN*m/rad", 1e6, 1e6), ("kN*m/rad", 1e3, 1e3), ("N*m/rad", 1.0, 0.0)),
 )
-DAMPING = Kind("damping", "N*m*s/rad", "3 N*m*s/rad")
-QUADRATIC = Kind("quadratic load", "N*m*s^2/rad^2", "0.02 N*m*s^2/rad^2")
-MESH_STIFFNESS = Kind("mesh stiffness", "N/m", "2e8 N/m")
-MESH_DAMPING = Kind("mesh damping", "N*s/m", "500 N*s/m")
-IMPACT_DAMPING = Kind("impact damping", "N*s/m^2", "2e7 N*s/m^2")
-INERTIA = Kind("inertia", "kg*m^2", "0.4 kg*m^2")
-TORQUE = Kind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
-LENGTH = Kind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
-PRESSURE = Kind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0.0)))
-DENSITY = Kind("density", "kg/m^3", "7850 kg/m^3")
-MASS = Kind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
-POWER = Kind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
-ACCELERATION = Kind("angular acceleration", "rad/s^2", "300 rad/s^2")
-RATIO = Kind("ratio", "1", "0.02")
+DAMPING = QuantityKind("damping", "N*m*s/rad", "3 N*m*s/rad")
+QUADRATIC = QuantityKind("quadratic load", "N*m*s^2/rad^2", "0.02 N*m*s^2/rad^2")
+MESH_STIFFNESS = QuantityKind("mesh stiffness", "N/m", "2e8 N/m")
+MESH_DAMPING = QuantityKind("mesh damping", "N*s/m", "500 N*s/m")
+IMPACT_DAMPING = QuantityKind("impact damping", "N*s/m^2", "2e7 N*s/m^2")
+INERTIA = QuantityKind("inertia", "kg*m^2", "0.4 kg*m^2")
+TORQUE = QuantityKind("torque", "N*m", "250 N*m", (("kN*m", 1e3, 1e4), ("N*m", 1.0, 0.0)))
+LENGTH = QuantityKind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0)))
+PRESSURE = QuantityKind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0.0)))
+DENSITY = QuantityKind("density", "kg/m^3", "7850 kg/m^3")
+MASS = QuantityKind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
+POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
+ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
+RATIO = QuantityKind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
     SPEED,
@@ -108,7 +108,7 @@ KINDS = (
 )
 
 
-def kind_of(unit: str) -> Kind | None:
+def kind_of(unit: str) -> QuantityKind | None:
     """The first of ``KINDS`` with this SI unit ("rad/s": a speed); None where there is none."""
     return next((kind for kind in KINDS if kind.unit == unit), None)
 
@@ -138,7 +138,7 @@ OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, IMPACT_DAMPING, TORQUE
 """Kinds that computations leave as good as zero, and that nothing is divided by."""
 
 
-def parse(value: object, kind: Kind) -> float:
+def parse(value: object, kind: QuantityKind) -> float:
     """Return `value` as a finite float in the SI unit of `kind`.
 
     Parameters
@@ -164,7 +164,7 @@ def parse(value: object, kind: Kind) -> float:
     return _finite(number, value, kind)
 
 
-def _parse_text(text: str, kind: Kind) -> float:
+def _parse_text(text: str, kind: QuantityKind) -> float:
     if len(text) > LONGEST_TEXT:
         raise InputError(f"has {len(text)} characters", value=text, remedy=_advice(kind))
     written = text.strip()
@@ -197,13 +197,13 @@ def _registry() -> Any:
 
 
 @cache
-def _factor(unit: str, kind: Kind) -> float:
+def _factor(unit: str, kind: QuantityKind) -> float:
     """Size of `unit` in the SI unit of `kind`; raises InputError (uncached) when there is none."""
     usual = USUAL.get(kind.unit, {}).get(unit)
     return size_by_pint(unit, kind) if usual is None else usual
 
 
-def size_by_pint(unit: str, kind: Kind) -> float:
+def size_by_pint(unit: str, kind: QuantityKind) -> float:
     """The same for any unit that ``units.txt`` defines."""
     registry = _registry()
     needed = registry.parse_units("" if kind is RATIO else kind.unit)
@@ -240,7 +240,7 @@ def _scaled(number: str, factor: float) -> float:
     return float(number) * factor
 
 
-def _finite(number: float, value: object, kind: Kind) -> float:
+def _finite(number: float, value: object, kind: QuantityKind) -> float:
     if not math.isfinite(number):
         raise InputError("must be finite", value=value, remedy=_advice(kind))
     tiny = 0 < abs(number) < SMALLEST and kind not in OFTEN_NOTHING
@@ -251,7 +251,7 @@ def _finite(number: float, value: object, kind: Kind) -> float:
     return number
 
 
-def _advice(kind: Kind) -> str:
+def _advice(kind: QuantityKind) -> str:
     if kind is RATIO:
         return f"write a plain number such as {kind.example}"
     return f'write {_article(kind.name)} such as "{kind.example}"'
@@ -261,7 +261,7 @@ def _article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
-def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
+def written(value: float, kind: QuantityKind, unit: str | None = None) -> float | str:
     """How a file states `value`: with an engineering unit where that reads back exactly, else the SI number.
 
     `unit` prefers one of the units of `kind` over the usual choice.
@@ -275,13 +275,13 @@ def written(value: float, kind: Kind, unit: str | None = None) -> float | str:
     return value
 
 
-def shown(value: float, kind: Kind, unit: str | None = None, digits: int = 6) -> str:
+def shown(value: float, kind: QuantityKind, unit: str | None = None, digits: int = 6) -> str:
     """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
     symbol, size = eye_unit(value, kind, unit)
     return _plain(value / size, digits) + ("" if kind is RATIO else f" {symbol}")
 
 
-def against(value: float, limit: float, kind: Kind, digits: int = 4) -> str:
+def against(value: float, limit: float, kind: QuantityKind, digits: int = 4) -> str:
     """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
     small = min(abs(value), abs(limit))
     symbol, size = eye_unit(small if small > SAME_UNIT * abs(limit) else limit, kind)
@@ -299,7 +299,7 @@ SAME_UNIT = 1e-3
 """Share of a limit from which a value is shown in the unit that suits it, and the limit with it."""
 
 
-def eye_unit(value: float, kind: Kind, unit: str | None = None) -> tuple[str, float]:
+def eye_unit(value: float, kind: QuantityKind, unit: str | None = None) -> tuple[str, float]:
     """The unit that suits ``value``, or ``unit``, and its size in SI."""
     for symbol, size, smallest in (*kind.shown, *(SPEED.shown + FREQUENCY.shown if unit else ())):
         if symbol == unit or (unit is None and abs(value) >= smallest):
@@ -311,7 +311,7 @@ def eye_unit(value: float, kind: Kind, unit: str | None = None) -> tuple[str, fl
 class Quantity:
     """Marks a pydantic field as a quantity: validated by :func:`parse`, with its unit in the JSON Schema."""
 
-    kind: Kind
+    kind: QuantityKind
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> core_schema.CoreSchema:
         return core_schema.no_info_plain_validator_function(partial(parse, kind=self.kind))
@@ -320,7 +320,7 @@ class Quantity:
         return json_schema_of(self.kind)
 
 
-def json_schema_of(kind: Kind) -> dict[str, Any]:
+def json_schema_of(kind: QuantityKind) -> dict[str, Any]:
     """A number in SI units or a string with a unit, as a JSON Schema that carries the SI unit."""
     text = {"type": "string", "pattern": rf"^\s*{NUMBER_PATTERN}\s*\S", "examples": [kind.example]}
     if kind is RATIO:
@@ -377,7 +377,7 @@ if TYPE_CHECKING:
     class MaybeRange(Stated[tuple[float, float] | None, Sequence[float | str] | None], Generic[Of]):
         """The lower and the upper end, or None."""
 
-    class Tables(Stated[tuple[Of, ...], Iterable[Of | Mapping[str, Any]]], Generic[Of]):
+    class TableList(Stated[tuple[Of, ...], Iterable[Of | Mapping[str, Any]]], Generic[Of]):
         """What is stated in a list of tables, each made or as in a file."""
 
 else:
@@ -407,7 +407,7 @@ else:
             return tuple[member, ...]
 
     Maybe = MaybeRange = Optional
-    Several = Tables = _Row
+    Several = TableList = _Row
 
 
 def deg(angle: Number) -> Number:

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from trunnion.driveline.quantities import Kind, Quantity
+from trunnion.driveline.quantities import Quantity, QuantityKind
 from trunnion.driveline.refusals import nearest, numbered, refuse
 from trunnion.errors import InputError, all_made
 
@@ -68,12 +68,12 @@ class Record(BaseModel):
         return type(self)(**{key: value for key, value in fields.items() if value is not None})
 
     @classmethod
-    def quantity_of(cls, key: str) -> Kind | None:
+    def quantity_of(cls, key: str) -> QuantityKind | None:
         """The physical kind of field `key`, or of the members of its list; None where it is no quantity."""
         return _kind_in(cls.model_fields[key])
 
 
-def _kind_in(part: Any) -> Kind | None:
+def _kind_in(part: Any) -> QuantityKind | None:
     """The kind that a field, or what its annotation is made of, is marked with."""
     inner = (part.annotation,) if isinstance(part, FieldInfo) else get_args(part)
     for mark in (*getattr(part, "metadata", ()), *getattr(part, "__metadata__", ())):

@@ -9,18 +9,18 @@ from collections import Counter
 from collections.abc import Iterator
 from math import inf, isfinite
 
-from trunnion.driveline.chain import Chain
+from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import ConstantSpeed, Disk
 from trunnion.driveline.parts import Dragged, Sprung
-from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.driveline.shafts import Shaft, SpringElement
 
-HELD, SERIES = "excitation of a held disk", "unlike damping in series"
+HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
 DRAGGED = "damper without a spring"
 ALIKE = 1e-9
 """Relative difference of two c/k that counts as none."""
 
 
-def held_excitations(line: Chain) -> tuple[str, ...]:
+def prescribed_excitations(line: ElementChain) -> tuple[str, ...]:
     """Disks with an excitation whose rotation a ConstantSpeed holds: no shaft stands between."""
     group = _groups(line)
     fixed = {g for g, element in zip(group, line.elements, strict=True) if isinstance(element, ConstantSpeed)}
@@ -31,7 +31,7 @@ def held_excitations(line: Chain) -> tuple[str, ...]:
     )
 
 
-def unlike_in_series(line: Chain) -> tuple[tuple[tuple[str, ...], float], ...]:
+def unlike_in_series(line: ElementChain) -> tuple[tuple[tuple[str, ...], float], ...]:
     """Springs in series without inertia between them whose c/k or loss factors differ.
 
     Names, and the lowest k/c [rad/s] (infinite without c) of each row.
@@ -41,8 +41,8 @@ def unlike_in_series(line: Chain) -> tuple[tuple[tuple[str, ...], float], ...]:
     if line.damping_ratio is not None:
         return ()
     group = _groups(line)
-    springs = [i for i, element in enumerate(line.elements) if isinstance(element, Spring)]
-    heavy = {g for g, element in zip(group, line.elements, strict=True) if not isinstance(element, Spring)}
+    springs = [i for i, element in enumerate(line.elements) if isinstance(element, SpringElement)]
+    heavy = {g for g, element in zip(group, line.elements, strict=True) if not isinstance(element, SpringElement)}
     for i in springs:
         element = line.elements[i]
         if isinstance(element, Shaft) and element.density:
@@ -62,9 +62,9 @@ def unlike_in_series(line: Chain) -> tuple[tuple[tuple[str, ...], float], ...]:
     return tuple(found)
 
 
-def remarks(line: Chain) -> Iterator[tuple[str, str]]:
+def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
     """The feature (see ``trunnion.driveline.features``) and one sentence with its remedy."""
-    for name in held_excitations(line):
+    for name in prescribed_excitations(line):
         yield (
             HELD,
             f"{name}.excitation: does nothing, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
@@ -79,7 +79,7 @@ def remarks(line: Chain) -> Iterator[tuple[str, str]]:
         )
 
 
-def _groups(line: Chain) -> list[int]:
+def _groups(line: ElementChain) -> list[int]:
     """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
     group: list[int] = []
     for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
@@ -88,16 +88,16 @@ def _groups(line: Chain) -> list[int]:
     return group
 
 
-def _near(line: Chain, group: list[int], spring: int) -> int:
+def _near(line: ElementChain, group: list[int], spring: int) -> int:
     """The group in front of a spring; -1, which holds nothing, where the line begins with the spring."""
     parent = line.parents[spring]
     return -1 if parent is None else group[parent]
 
 
-def _damping(line: Chain, spring: int) -> tuple[float, float]:
+def _damping(line: ElementChain, spring: int) -> tuple[float, float]:
     """c/k [s], and the loss factor that holds at all frequencies; one of them is 0."""
     element = line.elements[spring]
-    assert isinstance(element, Spring)
+    assert isinstance(element, SpringElement)
     if element.loss is not None and element.loss_factor_frequency is None:
         return 0.0, element.loss
     return element.damping_coefficient / element.torsional_stiffness, 0.0

@@ -23,7 +23,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field
 
-from trunnion.driveline.quantities import Tables
+from trunnion.driveline.quantities import TableList
 from trunnion.driveline.record import Record, listed, one_of
 from trunnion.errors import InputError
 
@@ -172,7 +172,7 @@ class SwitchedOff(Record):
 
 _AS_A_LIST = f"write switched_off = [{{ {SwitchedOff.example.replace(' and ', ', ')} }}]"
 SwitchedOffRules = Annotated[
-    Tables[SwitchedOff], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, _AS_A_LIST, owner="rule"))
+    TableList[SwitchedOff], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, _AS_A_LIST, owner="rule"))
 ]
 Application = Annotated[
     str, BeforeValidator(one_of(APPLICATIONS, "is not an application", f"known: {', '.join(APPLICATIONS)}"))

@@ -24,7 +24,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from trunnion.driveline.quantities import ANGLE, LENGTH, SPEED, TORQUE, Kind, json_schema_of, parse
+from trunnion.driveline.quantities import ANGLE, LENGTH, SPEED, TORQUE, QuantityKind, json_schema_of, parse
 from trunnion.driveline.record import Name, Named, by_name
 from trunnion.errors import InputError
 
@@ -34,14 +34,14 @@ KEYS = {"angles": "angle", "loads": "load_torque"}
 """Which number of an element follows."""
 
 
-def _list_of(kind: Kind, value: object) -> tuple[float, ...]:
+def _list_of(kind: QuantityKind, value: object) -> tuple[float, ...]:
     remedy = f'write two values or more, as ["{kind.example}", …]'
     if not isinstance(value, list | tuple) or len(value) < 2:
         raise InputError("is no list of values", value=value, remedy=remedy)
     return tuple(parse(one, kind) for one in value)
 
 
-def _rising(kind: Kind) -> tuple[BeforeValidator, WithJsonSchema]:
+def _rising(kind: QuantityKind) -> tuple[BeforeValidator, WithJsonSchema]:
     def read(value: Any) -> tuple[float, ...] | None:
         if value is None:
             return None
@@ -53,7 +53,7 @@ def _rising(kind: Kind) -> tuple[BeforeValidator, WithJsonSchema]:
     return BeforeValidator(read), WithJsonSchema({"type": "array", "items": json_schema_of(kind), "minItems": 2})
 
 
-def _columns(kind: Kind, key: str, owner: str) -> tuple[BeforeValidator, WithJsonSchema]:
+def _columns(kind: QuantityKind, key: str, owner: str) -> tuple[BeforeValidator, WithJsonSchema]:
     example = f'write {key} = {{ "{owner}" = ["{kind.example}", …] }}'
 
     items = {"type": "array", "items": json_schema_of(kind), "minItems": 2}

@@ -14,7 +14,7 @@ from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
-from trunnion.driveline.quantities import FREQUENCY, RATIO, Kind, json_schema_of
+from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
@@ -142,7 +142,7 @@ def json_schema() -> dict[str, Any]:
 def _tolerance() -> dict[str, Any]:
     """One key a number that can scatter."""
 
-    def forms(kind: Kind) -> dict[str, Any]:
+    def forms(kind: QuantityKind) -> dict[str, Any]:
         size = {"anyOf": [json_schema_of(RATIO), json_schema_of(kind)]}
         ends = {"type": "array", "items": json_schema_of(kind), "minItems": 2, "maxItems": 2}
         normal = {"type": "object", "properties": {"deviation": size}, "required": ["deviation"]}

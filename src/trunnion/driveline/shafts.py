@@ -58,7 +58,7 @@ class Elastic(Element):
         return float(self.damping_of(lambda key: getattr(self, key)))
 
 
-class Spring(Elastic):
+class SpringElement(Elastic):
     """What a shaft and a coupling share: one stiffness, and damping as a coefficient or as a loss factor."""
 
     stiffness: Maybe[Stiffness] = optional(default=None, description="torsional stiffness")
@@ -116,7 +116,7 @@ class Spring(Elastic):
             )
 
 
-class Shaft(Spring):
+class Shaft(SpringElement):
     """A torsional spring and damper, optionally a tube with its own inertia (lumped half to each end).
 
     Parameters
@@ -193,7 +193,7 @@ class Shaft(Spring):
         return tube_inertia(self.outer_diameter, self.inner_diameter, self.length, self.density)
 
 
-class Coupling(Spring):
+class Coupling(SpringElement):
     """An elastic coupling as its maker lists it: dynamic stiffness, relative damping, ratings; no inertia of its own.
 
     Parameters

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from trunnion.driveline.chain import Chain
+from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
 from trunnion.driveline.shafts import Shaft
 
 
-def summary(line: Chain) -> str:
+def summary(line: ElementChain) -> str:
     """Title line, then name and numbers of each element."""
     width = max(len(name) for name in line.names)
     title = f"Driveline{f' {line.name!r}' if line.name else ''} of {len(line.elements)} elements"

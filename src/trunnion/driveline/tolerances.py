@@ -27,7 +27,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.elements import Element
 from trunnion.driveline.packed_numbers import UNITS
-from trunnion.driveline.quantities import RATIO, Kind, kind_of, parse, written
+from trunnion.driveline.quantities import RATIO, QuantityKind, kind_of, parse, written
 from trunnion.driveline.record import listed
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError, InputRemark
@@ -35,7 +35,7 @@ from trunnion.errors import InputError, InputRemark
 FARTHEST = 3.0
 """Standard deviations that stand for the ends of a normal distribution, which has none."""
 LINES_OWN = ("speed", "damping_ratio", "damping_ratio_frequency")
-SCATTERING: dict[str, Kind] = {
+SCATTERING: dict[str, QuantityKind] = {
     key: kind for key, unit in UNITS.items() if key not in LINES_OWN and (kind := kind_of(unit))
 }
 """Numbers of elements that can scatter, and their physical kinds."""
@@ -176,7 +176,7 @@ def _scatter(key: str, value: object) -> Scatter:
     return Scatter(key=key, form=form, numbers=(size,))
 
 
-def _size(value: object, kind: Kind) -> tuple[Literal["share", "within"], float]:
+def _size(value: object, kind: QuantityKind) -> tuple[Literal["share", "within"], float]:
     """How far to either side: a share, or in SI."""
     text = value.strip().removeprefix("±").strip() if isinstance(value, str) else ""
     absolute = bool(text) and not text.endswith("%") and kind is not RATIO

@@ -15,14 +15,14 @@ from trunnion.driveline.elements import Disk
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import sliders
 from trunnion.equations.stage_laws import stage_law
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import has_joint_angles
 from trunnion.errors import InputError
 
 ROUNDING = 1e-9
 """Share of its capacity by which a load may exceed it by rounding."""
 
 
-class Bounded(NamedTuple):
+class CapacityLimitedClutch(NamedTuple):
     """A clutch whose torque is bounded: place of its compliance, name, torque of its friction [N m], the load that it
     carries on average (its size), and what its spring takes of that at most."""
 
@@ -38,12 +38,12 @@ class Bounded(NamedTuple):
         return self.friction + self.spring
 
 
-def bounded_clutches(assembly: Assembly, speed: float) -> tuple[Bounded, ...]:
+def bounded_clutches(assembly: Assembly, speed: float) -> tuple[CapacityLimitedClutch, ...]:
     """The clutches that no spring holds in the direction of their load at an input ``speed`` [rad/s]; those without a
     load, that none holds in either direction."""
     topo, packed, table = assembly.topology, assembly.packed, assembly.table(1, speed)
     static = assembly.static_torque(table)[0]
-    rubbing = sliders(packed, topo, table[0])
+    sliders_ = sliders(packed, topo, table[0])
     found = []
     for e, compliance in enumerate(topo.compliances):
         place = compliance.shafts[0]
@@ -55,8 +55,10 @@ def bounded_clutches(assembly: Assembly, speed: float) -> tuple[Bounded, ...]:
         side = int(static[e] > 0)
         if rising[side] if static[e] else rising.any():
             continue
-        holds = sum(slider.torque for slider in rubbing if slider.compliance == e)
-        found.append(Bounded(e, assembly.line.names[place], holds, abs(float(static[e])), abs(float(forces[side]))))
+        holds = sum(slider.torque for slider in sliders_ if slider.compliance == e)
+        found.append(
+            CapacityLimitedClutch(e, assembly.line.names[place], holds, abs(float(static[e])), abs(float(forces[side])))
+        )
     return tuple(found)
 
 
@@ -87,6 +89,6 @@ def carries_static_torque(assembly: Assembly) -> bool:
     disks = [element for element in assembly.line.elements if isinstance(element, Disk)]
     return not (
         assembly.topology.free
-        or bent(assembly)
+        or has_joint_angles(assembly)
         or any(disk.quadratic_load or any(one.order for one in disk.excitation) for disk in disks)
     )

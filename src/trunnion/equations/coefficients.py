@@ -21,7 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
-from trunnion.driveline.shafts import Elastic, Spring
+from trunnion.driveline.shafts import Elastic, SpringElement
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
@@ -199,7 +199,7 @@ def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
 def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> tuple[Array, Array]:
     """Damping [N m s/rad] of one shaft or mesh, and ηk [N m/rad] of a loss factor that holds at all frequencies."""
     column, none, one = assembly.packed.column, np.zeros(len(table)), assembly.line.elements[element]
-    if isinstance(one, Elastic) and not isinstance(one, Spring):
+    if isinstance(one, Elastic) and not isinstance(one, SpringElement):
         return np.asarray(one.damping_of(lambda key: table[:, column(element, key)])), none
     if assembly.line.damping_ratio is not None:
         return assembly.common_damping(table, stiffness), none
@@ -215,7 +215,7 @@ def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness:
 
 def _refuse_any_frequency(line: Driveline) -> None:
     for element, name in zip(line.elements, line.names, strict=True):
-        if isinstance(element, Spring) and element.loss and element.loss_factor_frequency is None:
+        if isinstance(element, SpringElement) and element.loss and element.loss_factor_frequency is None:
             raise InputError(
                 "holds at all frequencies, which equations in time do not have",
                 element=name,

@@ -24,13 +24,13 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.topology import Link, Topology
+from trunnion.equations.topology import LinkKind, Topology
 from trunnion.laws.joint import JointLaw, through
 
 Jet = Sequence[Array]
 
 
-class Place(NamedTuple):
+class StationKinematics(NamedTuple):
     """How a station follows the one ``before`` it.
 
     ``shift`` [rad]: the first coefficients of the jet that is added; then the joint's ``law``; then the division by
@@ -58,7 +58,7 @@ class Rotations:
         return np.stack(self.angle[station])
 
 
-def walk(places: Iterable[Place], drive: Jet, stood: Array | None = None) -> Rotations:
+def walk(places: Iterable[StationKinematics], drive: Jet, stood: Array | None = None) -> Rotations:
     """Rotation of all stations, of which the first has the jet ``drive``, at most of order 4.
 
     Parameters
@@ -110,10 +110,10 @@ def base_motion(
     """
     stations, laws = topo.stations[1:], iter(coefficients.joints)
     places = [
-        Place(
+        StationKinematics(
             station.before,
-            [shift[:, None]] if station.link in (Link.SHAFT, Link.JOINT) else (),
-            next(laws) if station.link is Link.JOINT else None,
+            [shift[:, None]] if station.link in (LinkKind.SHAFT, LinkKind.JOINT) else (),
+            next(laws) if station.link is LinkKind.JOINT else None,
             ratio,
             [(one, float(share)) for one, share in station.of],
         )
@@ -127,13 +127,13 @@ def base_motion(
     w[..., 0], r[..., 0] = 1.0, 1.0
     for s, (station, place) in enumerate(zip(stations, places, strict=True), start=1):
         b = place.before
-        if station.link is Link.SUM:
+        if station.link is LinkKind.SUM:
             for quantity in (w, w1):
                 quantity[..., s] = sum(share * quantity[..., one] for one, share in place.of)
             r[..., s] = 1.0
-        elif station.link in (Link.SHAFT, Link.LOOSE):
+        elif station.link in (LinkKind.SHAFT, LinkKind.LOOSE):
             w[..., s], w1[..., s], r[..., s] = w[..., b], w1[..., b], 1.0
-        elif station.link is Link.JOINT:
+        elif station.link is LinkKind.JOINT:
             _, eta, slope, curvature = turning.passed[s]
             rb, rb1, rb2, wb, wb1 = r[..., b], r1[..., b], r2[..., b], w[..., b], w1[..., b]
             w[..., s], w1[..., s] = eta * wb, slope * wb**2 + eta * wb1

@@ -248,10 +248,10 @@ def _parts(assembly: Assembly) -> list[_Part]:
         for s in springs.values()
         if s.stages > 1
     ]
-    rubbing = sliders(assembly.packed, assembly.topology, row)
+    friction_sliders = sliders(assembly.packed, assembly.topology, row)
     first, words = len(found), ("slips back", "sticks", "slips on")
-    for slider, stride in zip(rubbing, slider_strides(springs, len(rubbing)), strict=True):
+    for slider, stride in zip(friction_sliders, slider_strides(springs, len(friction_sliders)), strict=True):
         # All that slip on one twist stick together: it turns for them at the same instant.
-        along = tuple(first + j for j, other in enumerate(rubbing) if other.compliance == slider.compliance)
+        along = tuple(first + j for j, other in enumerate(friction_sliders) if other.compliance == slider.compliance)
         found.append(_Part(slider.name, stride, slider.stages, words, along))
     return found

@@ -40,7 +40,7 @@ ANGLE_SCALE = 0.01
 
 
 @dataclass(frozen=True)
-class Course:
+class SpeedRamp:
     """Input speed Ω(t) = speed + acceleration (t − since), the input's angle being ``angle`` at t = since."""
 
     speed: float
@@ -66,7 +66,7 @@ class LineSystem(Portable):
     subtracted), "rate of …" and, of clutches with dry friction, "deflection of … slider …"; its parameters are the
     line's numbers by their paths, and the speed.
 
-    Meshes run with the input where it is prescribed, and with the mean speed given where the line starts free: that is
+    Meshes run with the input where it is prescribed, and with the mean speed given where the line is free–free: that is
     the speed of a periodic motion. ``leaves``: the line may leave that speed, as in a motion in time, and its meshes
     run with the mean rotation that it has.
     """
@@ -109,21 +109,21 @@ class LineSystem(Portable):
         """The line as a system, its parameters being those of the description."""
         packed = self.assembly.packed
         values = dict(zip(packed.labels, map(float, packed.values), strict=True)) | {SPEED: self.speed}
-        n, rubbing = self.assembly.topology.size, self.sliders
-        reach = [slider.reach for slider in rubbing]
+        n, friction_sliders = self.assembly.topology.size, self.sliders
+        reach = [slider.reach for slider in friction_sliders]
         return System(
             name=self.assembly.line.name or "driveline",
             states=(
                 *(f"rotation of {name}" for name in self.names),
                 *(f"rate of {name}" for name in self.names),
-                *(f"deflection of {slider.name}" for slider in rubbing),
+                *(f"deflection of {slider.name}" for slider in friction_sliders),
             ),
-            units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(rubbing),
+            units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(friction_sliders),
             rate=from_kernel(kernel, "line"),
             parameters=values,
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
-            start=np.zeros(2 * n + len(rubbing)),
+            start=np.zeros(2 * n + len(friction_sliders)),
             scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
             numbers_of=self._numbers,
             regimes=line_regimes(self.assembly),
@@ -165,7 +165,7 @@ class LineSystem(Portable):
     def numbers(
         self,
         row: Array,
-        course: Course | None = None,
+        course: SpeedRamp | None = None,
         drive: float = 0.0,
         known: LineCoefficients | None = None,
         case: int = 0,
@@ -177,8 +177,8 @@ class LineSystem(Portable):
         number ``case``, where they are at hand.
         """
         topo, core = self.assembly.topology, kernel()
-        co, on = known or self.untwisted(row[None]), course or Course(float(row[0]))
-        sense, rubbing, laws = (
+        co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
+        sense, friction_sliders, laws = (
             np.sign(topo.mean_speeds),
             sliders(self.assembly.packed, topo, row),
             staged_springs(self.assembly, row),
@@ -192,11 +192,13 @@ class LineSystem(Portable):
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
         harmonics = [self._harmonic(one, on, row) for one in self.torques]
-        strides = slider_strides(laws, len(rubbing))
-        friction = [[s.compliance, s.stiffness, s.reach, step] for s, step in zip(rubbing, strides, strict=True)]
+        strides = slider_strides(laws, len(friction_sliders))
+        friction = [
+            [s.compliance, s.stiffness, s.reach, step] for s, step in zip(friction_sliders, strides, strict=True)
+        ]
         # Behind them the laws of springs with stages and of joints that are Fourier series.
         begin = core.HEAD + stations.size + compliances.size
-        begin += len(harmonics) * core.PER_HARMONIC + len(rubbing) * core.PER_SLIDER
+        begin += len(harmonics) * core.PER_HARMONIC + len(friction_sliders) * core.PER_SLIDER
         behind = []
         compliances[:, core.STIFFNESS], compliances[:, core.DAMPING] = co.stiffness[case], co.damping[case]
         for e, law in laws.items():
@@ -210,7 +212,7 @@ class LineSystem(Portable):
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
-        head += [on.acceleration, on.since, sum(part.size for part in behind), len(rubbing)]
+        head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
@@ -222,7 +224,7 @@ class LineSystem(Portable):
         return np.asarray(felt * turning / (felt @ turning**2))
 
     def _loads(
-        self, row: Array, course: Course | None, drive: float, load: Array, inertia: Array
+        self, row: Array, course: SpeedRamp | None, drive: float, load: Array, inertia: Array
     ) -> tuple[Array | float, ...]:
         """Loads (station,) against the mean sense of rotation: constant, and by the input's speed and its square."""
         topo, column = self.assembly.topology, self.assembly.packed.column
@@ -234,7 +236,7 @@ class LineSystem(Portable):
             load = load + drive_torques(topo, drive_places(topo, column, row[None]), np.array([drive]))[0]
         return load, by_speed, by_square
 
-    def _harmonic(self, one: DiskTorque, course: Course, row: Array) -> list[float]:
+    def _harmonic(self, one: DiskTorque, course: SpeedRamp, row: Array) -> list[float]:
         """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course."""
         if course.acceleration:
             one.refuse_change()
@@ -311,18 +313,18 @@ class LineSystem(Portable):
 
     def rest(self) -> Array:
         """The state without twist: every disk where rigid shafts would hold it at t = 0."""
-        return self._held(self.untwisted(self.assembly.table(1, self.speed)))
+        return self._static_state(self.untwisted(self.assembly.table(1, self.speed)))
 
     def twisted(self) -> Array:
         """State of the line with rigid shafts, each twisted by the torque it carries on average; sliders at rest."""
-        return self._held(self.assembly.coefficients(self.assembly.table(1, self.speed), free_play=True))
+        return self._static_state(self.assembly.coefficients(self.assembly.table(1, self.speed), free_play=True))
 
-    def _held(self, coefficients: LineCoefficients) -> Array:
+    def _static_state(self, coefficients: LineCoefficients) -> Array:
         """State at t = 0 of the line with rigid shafts, twisted as the coefficients say."""
         topo = self.assembly.topology
         plain = self.untwisted(self.assembly.table(1, self.speed)).straight
-        held, straight = (base_motion(topo, co, np.zeros(1)) for co in (coefficients, plain))
-        d, v = (held.angle - straight.angle)[0, 0, topo.firsts], (held.speed - straight.speed)[0, 0, topo.firsts]
+        loaded, straight = (base_motion(topo, co, np.zeros(1)) for co in (coefficients, plain))
+        d, v = (loaded.angle - straight.angle)[0, 0, topo.firsts], (loaded.speed - straight.speed)[0, 0, topo.firsts]
         return np.concatenate([d, v * self.speed, np.zeros(len(self.sliders))])
 
 

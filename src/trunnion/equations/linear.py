@@ -9,12 +9,12 @@ to the shaft's near end, and T̄ the static torque (positive with the twist),
 (untwisted, T̄ and the mean of M leave the left side: no torque acts in that base state),
 where J(a) = Σ J_s r_s² is the inertia of a group (it depends on the angle when a joint lies inside the
 group), J′ and J″ its derivatives by the angle of the group, M = M₀ + c₁v + c₂v|v| the load torques at the
-station's own speed v = rw, behind a bent joint a periodic one, M′ = c₁ + 2c₂|v| their slope, and q̇_e the
+station's own speed v = rw, behind an angled joint a periodic one, M′ = c₁ + 2c₂|v| their slope, and q̇_e the
 full derivative with ṙ. Each group inherits w, w′ from ``kinematics``.
 
 The stiffness of a gear mesh varies with its phase: with w(τ) its factor over the mean, k stands for wk and T̄ for wT̄,
 which is what the mesh carries in its static twist. A line without joints moves exactly so while each mesh keeps its
-stage. Behind a bent joint the vibration that this base leaves out moves multipliers at least as much as another T̄
+stage. Behind an angled joint the vibration that this base leaves out moves multipliers at least as much as another T̄
 would.
 """
 
@@ -30,7 +30,7 @@ from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_mat
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base
+from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
@@ -157,10 +157,10 @@ def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: in
 
     Raises
     ------
-    InputError : bent joints, or meshes whose stiffness varies.
+    InputError : angled joints, or meshes whose stiffness varies.
     """
-    varying = "bent joints" if any(law.uneven for law in coefficients.joints) else "meshes of varying stiffness"
-    if varying == "bent joints" or coefficients.waves:
+    varying = "angled joints" if any(law.nonuniform for law in coefficients.joints) else "meshes of varying stiffness"
+    if varying == "angled joints" or coefficients.waves:
         raise InputError(
             f"has {varying} beside a differential or a loop: what they do there is not followed", element="driveline",
             remedy="take them without, at angle 0, or both legs or ways round as one shaft",
@@ -196,7 +196,7 @@ def periodic_linear_system(
     """
     topo = assembly.topology
     require_steady_base(assembly, table)
-    refuse_own_motion(assembly, "put a ConstantSpeed in front")
+    refuse_periodic_base(assembly, "put a ConstantSpeed in front")
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     speed = float(coefficients.speed[0])
     period = 2 * np.pi * float(require_period(assembly.line, topo))
@@ -215,8 +215,8 @@ def rigid_motions(topo: Topology, coefficients: LineCoefficients) -> Array:
     """States (x, dx/dτ) as columns (2n, k) that a line keeps for ever: multipliers exactly 1.
 
     A turn of a free line as a whole always, and of the legs of a differential against each other; a change of such a
-    speed where no load depends on the speed: without bent joints only. And a turn of what only oil drags along, joints
-    bent or not. k is 0 for a driven line without any of these.
+    speed where no load depends on the speed: without angled joints only. And a turn of what only oil drags along,
+    joints bent or not. k is 0 for a driven line without any of these.
     """
     n, constant = topo.size, not (coefficients.viscous.any() or coefficients.quadratic.any())
     turns, speeds = topo.loose, topo.rigid if constant else topo.rigid[:, :0]

@@ -28,14 +28,16 @@ def with_mean_clutches(assembly: Assembly, speed: float) -> Driveline:
     InputError : a line with a common damping ratio, which leaves no room for the loss of the clutch.
     """
     line = assembly.line
-    rubbing = [name for name, element in zip(line.names, line.elements, strict=True) if states_a_motion(element)]
-    if not rubbing:
+    friction_elements = [
+        name for name, element in zip(line.names, line.elements, strict=True) if states_a_motion(element)
+    ]
+    if not friction_elements:
         return line
     if line.damping_ratio is not None:
         raise InputError(
-            "has a loss of its own beside the line's damping_ratio, which the own motion of a free bent line does not "
-            "tell apart",
-            element=rubbing[0],
+            "has a loss of its own beside the line's damping_ratio, which the periodic steady state of a free–free "
+            "line with joint angles does not tell apart",
+            element=friction_elements[0],
             key="friction",
             remedy="give the shafts damping instead",
         )

@@ -1,7 +1,7 @@
 """Outer torques of a line, and how drives balance them where no speed is prescribed.
 
 A station of speed ratio R carries the torque M(ω) = M₀ + c₁ω + c₂ω|ω| against its mean sense of rotation. At the
-mean input speed Ω of a line that starts free the powers M_s(|R_s|Ω)|R_s|Ω must add up to nothing; where disks have
+mean input speed Ω of a free–free line the powers M_s(|R_s|Ω)|R_s|Ω must add up to nothing; where disks have
 a ``drive_share``, each carries its share of what is left as a constant torque.
 """
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.equations.line_system import Course
+from trunnion.equations.line_system import SpeedRamp
 from trunnion.errors import InputError
 
 
@@ -37,7 +37,7 @@ class SpeedProfile:
         object.__setattr__(self, "time", tuple(map(float, t)))
         object.__setattr__(self, "speed", tuple(map(float, w)))
 
-    def courses(self, duration: float) -> tuple[tuple[float, Course], ...]:
+    def courses(self, duration: float) -> tuple[tuple[float, SpeedRamp], ...]:
         """The pieces up to ``duration`` as (end, course), each with the input's angle where it begins."""
         pieces, angle = [], 0.0
         ends = (*self.time[1:], np.inf)
@@ -46,7 +46,7 @@ class SpeedProfile:
                 break
             last = i + 1 == len(self.time)
             slope = 0.0 if last else (self.speed[i + 1] - self.speed[i]) / (end - start)
-            pieces.append((min(end, duration), Course(self.speed[i], slope, start, angle)))
+            pieces.append((min(end, duration), SpeedRamp(self.speed[i], slope, start, angle)))
             if not last:
                 angle += (self.speed[i] + self.speed[i + 1]) / 2 * (end - start)
         return tuple(pieces)

@@ -1,11 +1,11 @@
 """A driveline whose springs are linear stage by stage as a flow that is exact within every stage.
 
-Without bent joints the inertias M are constant, and the twists q = E y + e(t) of the springs, y the deviations of the
+Without angled joints the inertias M are constant, and the twists q = E y + e(t) of the springs, y the deviations of the
 inertias from uniform rotation and e the transmission errors of the meshes, follow from each other alone:
 
     q″ = −E M⁻¹ Eᵀ f(q, q′) − E M⁻¹ V E⁻¹ (q′ − e′) + E M⁻¹ T(t) + e″,
 
-V the viscous loads and T the outer torques. In a line that starts free the rotation of the first inertia does not
+V the viscous loads and T the outer torques. In a free–free line the rotation of the first inertia does not
 matter to the twists unless a viscous load resists it; then it is one more unknown, a spring without torque.
 
 A slider of a clutch is one more row between the two, on the twist of its clutch: the deflection of its spring.
@@ -38,7 +38,7 @@ from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, periods_in_common, 
 from trunnion.laws.stages import HELD, Stages
 from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow
 
-Clock = Literal["speed", "frequency", "both", "none"]
+IndependentVariable = Literal["speed", "frequency", "both", "none"]
 MOST_ORDER = 200
 """Highest harmonic of the common frequency of all torques and errors."""
 CLOSE = 1e-9
@@ -113,7 +113,7 @@ class StagedLine:
 
     def speed_at(self, value: float) -> float:
         """Mean input speed [rad/s] at a value of the clock; NaN where nothing depends on it."""
-        return value if self.clock == "speed" else np.nan if self.speed is None else self.speed
+        return value if self.independent_variable == "speed" else np.nan if self.speed is None else self.speed
 
     def within_limits(self, state: Array) -> Array:
         """A state (2m,), deflections of sliders beyond what they hold brought back to it."""
@@ -141,7 +141,7 @@ class StagedLine:
         return np.asarray(np.where(watched, np.abs(self.guards[..., 2]) / by_twist, 0.0).max(axis=(1, 2)))
 
     @cached_property
-    def clock(self) -> Clock:
+    def independent_variable(self) -> IndependentVariable:
         """What turns the excitation: the speed of the line, frequencies in time, both or nothing."""
         if not self.harmonics:
             return "none"
@@ -170,7 +170,7 @@ class StagedLine:
     @property
     def value(self) -> float:
         """The clock's own value: the speed, or the common frequency [rad/s]."""
-        return float(self.speed or 0.0) if self.clock == "speed" else self.base
+        return float(self.speed or 0.0) if self.independent_variable == "speed" else self.base
 
     def period(self, value: float | None = None) -> float:
         """Common period [s] of all excitation, at another value of the clock perhaps.
@@ -194,11 +194,11 @@ class StagedLine:
     def standstill(self) -> float:
         """Value of the clock at which all excitation that goes with it stands still; 0 but for orders that have a
         frequency beside them."""
-        return self.harmonics[0].standstill if self.clock == "speed" else 0.0
+        return self.harmonics[0].standstill if self.independent_variable == "speed" else 0.0
 
     def period_slope(self, value: float) -> float:
         """Derivative of the period by the value of the clock, over the period."""
-        return -1 / (value - self.standstill) if self.clock in ("speed", "frequency") else 0.0
+        return -1 / (value - self.standstill) if self.independent_variable in ("speed", "frequency") else 0.0
 
     def _frequencies(self, speed: float) -> Array:
         """Of all harmonics [rad/s], of either sign."""
@@ -206,13 +206,13 @@ class StagedLine:
 
     def flow(self, value: float | None = None) -> StagedFlow:
         """The flow, at another value of the clock perhaps, with its derivative by that value."""
-        m, speed, stretch, by_speed = self.size, self.speed or 0.0, 1.0, self.clock == "speed"
+        m, speed, stretch, by_speed = self.size, self.speed or 0.0, 1.0, self.independent_variable == "speed"
         if value is not None:
             speed, stretch = (value, 1.0) if by_speed else (speed, value / self.value)
         orders = np.array([float(one.order) for one in self.harmonics])
         in_time = np.array([one.frequency for one in self.harmonics])
         omega = turning(orders, in_time * stretch, speed)
-        rate = orders if by_speed or self.clock in ("both", "none") else in_time / self.value
+        rate = orders if by_speed or self.independent_variable in ("both", "none") else in_time / self.value
         error, dragged, w = self.error, self.error @ self.drag.T, omega[:, None]
         return StagedFlow(
             inverse=self.inverse,
@@ -293,12 +293,12 @@ def refuse_lost_speed(line: StagedLine) -> None:
     InputError : so.
     """
     assembly = line.assembly
-    if line.speed is None or line.clock not in ("speed", "both"):
+    if line.speed is None or line.independent_variable not in ("speed", "both"):
         return
     table = assembly.table(1, line.speed)
     if imbalance(assembly, table)[0]:
         raise InputError(
-            "starts free and its torques do not balance, so that it leaves the speed that its excitation turns with: "
+            "is free–free and its torques do not balance, so that it leaves the speed that its excitation turns with: "
             f"{torques_in_words(assembly, table[0])}",
             element="driveline", key="load_torque",
             remedy="give the driving disk drive_share = 1, or use tn.simulate, which lets the line turn by itself",
@@ -317,11 +317,11 @@ def _refuse_inexact(assembly: Assembly) -> None:
     elsewhere = "use tn.simulate, tn.periodic_response or tn.periodic_branch, which locate changes of stage"
     line, topo = assembly.line, assembly.topology
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
-    uneven = {line.names[topo.stations[j].element] for j, law in laws if law.uneven}
+    nonuniform = {line.names[topo.stations[j].element] for j, law in laws if law.nonuniform}
     refuse_dragged(assembly)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
-        if name in uneven:
+        if name in nonuniform:
             found = "angle", "bends the line, so that no stage is linear with constant coefficients"
         elif isinstance(element, GearPair) and element.stiffness_variation:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"

@@ -31,14 +31,16 @@ def require_steady_base(assembly: Assembly, table: Array) -> None:
     require_balance(assembly, table)
 
 
-def refuse_own_motion(assembly: Assembly, remedy: str, *, bends: bool = False) -> None:
-    """Refuse a free line with bent joints (or one that an axis ``bends``) linearised about the motion of rigid shafts.
+def refuse_periodic_base(assembly: Assembly, remedy: str, *, bends: bool = False) -> None:
+    """Refuse a free line with angled joints (or one that an axis ``bends``) linearised about the motion of rigid
+    shafts.
 
-    About that motion its rigid-body pair grows, which its own motion does not.
+    About that motion its rigid-body pair grows, which its periodic steady state does not.
     """
-    if assembly.topology.free and (bent(assembly) or bends):
+    if assembly.topology.free and (has_joint_angles(assembly) or bends):
         raise InputError(
-            "starts free and is bent: it is judged about its own periodic motion, which is found speed by speed",
+            "is free–free and has joint angles: it is judged about its own periodic motion, "
+            "which is found speed by speed",
             element="driveline",
             remedy=remedy,
         )
@@ -62,15 +64,15 @@ def refuse_dragged(assembly: Assembly) -> None:
         )
 
 
-def bent(assembly: Assembly, table: Array | None = None) -> bool:
+def has_joint_angles(assembly: Assembly, table: Array | None = None) -> bool:
     """Whether any joint is bent, so that the line turns unevenly: as described, or at any row of ``table``."""
-    return any(law.uneven for law in joint_laws(assembly, assembly.table(1) if table is None else table))
+    return any(law.nonuniform for law in joint_laws(assembly, assembly.table(1) if table is None else table))
 
 
-def moves_by_itself(assembly: Assembly, table: Array | None = None) -> bool:
-    """Whether the line starts free and is bent, so that it has a periodic motion of its own: as described, or at any
-    row of ``table``."""
-    return assembly.topology.free and bent(assembly, table)
+def has_periodic_base(assembly: Assembly, table: Array | None = None) -> bool:
+    """Whether the line is free–free and has joint angles, so that it has a periodic motion of its own: as described, or
+    at any row of ``table``."""
+    return assembly.topology.free and has_joint_angles(assembly, table)
 
 
 def require_balance(assembly: Assembly, table: Array) -> None:
@@ -81,7 +83,7 @@ def require_balance(assembly: Assembly, table: Array) -> None:
     worst = int(np.argmax(np.abs(left)))
     if left[worst]:
         raise InputError(
-            f"starts free and its torques do not balance: {torques_in_words(assembly, table[worst])}",
+            f"is free–free and its torques do not balance: {torques_in_words(assembly, table[worst])}",
             element="driveline",
             key="load_torque",
             remedy=_remedy(assembly, table[worst], float(left[worst])),
@@ -125,7 +127,7 @@ def require_share(assembly: Assembly) -> None:
     if topo.free and not given_shares(topo, assembly.packed.column, table).any():
         _, element = _driving(assembly, table)
         raise InputError(
-            "starts free, and no disk has a share in what accelerates it",
+            "is free–free, and no disk has a share in what accelerates it",
             element="driveline",
             key="drive_share",
             remedy=f'give the driving disk, "{assembly.line.names[element]}" say, drive_share = 1, in place of '

@@ -27,13 +27,13 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
-from trunnion.driveline.shafts import Spring
+from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
 
 
-class Link(IntEnum):
+class LinkKind(IntEnum):
     """How a station hangs on the one before it."""
 
     ROOT = 0
@@ -48,7 +48,7 @@ Plane = tuple[tuple[int, float], ...]
 """Constant-velocity joints behind the last bend, with the speeds of their shafts over that behind the last of them."""
 RANK = 1e-12
 """Singular values below this share of the largest count as none."""
-TIED = (Link.JOINT, Link.RATIO)
+TIED = (LinkKind.JOINT, LinkKind.RATIO)
 """Links that tie a station rigidly to the one in front of it."""
 
 
@@ -62,7 +62,7 @@ class Station:
     """
 
     before: int
-    link: Link
+    link: LinkKind
     element: int
     group: int
     orders: tuple[int, ...] = ()
@@ -167,7 +167,7 @@ class Topology:
     @cached_property
     def sums(self) -> tuple[int, ...]:
         """Stations that turn by the sum of others; a line without them is a tree."""
-        return tuple(s for s, station in enumerate(self.stations) if station.link is Link.SUM)
+        return tuple(s for s, station in enumerate(self.stations) if station.link is LinkKind.SUM)
 
     @cached_property
     def graph(self) -> bool:
@@ -186,7 +186,7 @@ class Topology:
         found = np.zeros((len(self.stations), self.size))
         for s, station in enumerate(self.stations):
             place = self.coordinate[station.group]
-            if station.link is Link.SUM:
+            if station.link is LinkKind.SUM:
                 found[s] = sum(float(share) * found[one] for one, share in station.of)
             elif s != self.reference[station.group]:
                 found[s] = found[station.before] * float(self.speed_ratio[s] / self.speed_ratio[station.before])
@@ -214,7 +214,7 @@ class Topology:
     @cached_property
     def joints(self) -> tuple[int, ...]:
         """Stations behind a joint that does not pass rotation unchanged, in order."""
-        return tuple(i for i, s in enumerate(self.stations) if s.link is Link.JOINT)
+        return tuple(i for i, s in enumerate(self.stations) if s.link is LinkKind.JOINT)
 
     @cached_property
     def ends(self) -> tuple[tuple[int, int], ...]:
@@ -258,7 +258,7 @@ class Topology:
         """Input speed over output speed at each station that hangs on a Ratio (station,); 1 elsewhere."""
         return _fixed(
             [
-                float(self.speed_ratio[station.before] / self.speed_ratio[s]) if station.link is Link.RATIO else 1.0
+                float(self.speed_ratio[station.before] / self.speed_ratio[s]) if station.link is LinkKind.RATIO else 1.0
                 for s, station in enumerate(self.stations)
             ]
         )
@@ -271,7 +271,7 @@ class Topology:
     @cached_property
     def behind(self) -> dict[int, int]:
         """The station behind every shaft, by its element."""
-        return {one.element: s for s, one in enumerate(self.stations) if one.link is Link.SHAFT}
+        return {one.element: s for s, one in enumerate(self.stations) if one.link is LinkKind.SHAFT}
 
     @cached_property
     def stations_behind(self) -> tuple[Places, ...]:
@@ -371,7 +371,7 @@ def _ratios(element: Element) -> list[Fraction]:
 def behind_joint(stations: Sequence[Station], station: int) -> bool:
     """Whether a joint stands between a station and the first one of its group."""
     one = stations[station]
-    return one.link in TIED and (one.link is Link.JOINT or behind_joint(stations, one.before))
+    return one.link in TIED and (one.link is LinkKind.JOINT or behind_joint(stations, one.before))
 
 
 def _fixed(numbers: ArrayLike) -> Array:
@@ -398,7 +398,7 @@ class LineStations:
     inertias: list[tuple[int, int, int]] = field(default_factory=list)
     called: list[str] = field(default_factory=list)
 
-    def add(self, before: int, link: Link, element: int, ratio: Fraction, **joint: Any) -> int:
+    def add(self, before: int, link: LinkKind, element: int, ratio: Fraction, **joint: Any) -> int:
         if link not in TIED:
             group = len(self.reference)
             self.reference.append(len(self.stations))
@@ -424,7 +424,7 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
         parent = line.parents[i]
         # Of every coordinate of the element: its station, and the joints that turn the plane behind it.
         if parent is None:
-            here, plane = found.add(-1, Link.ROOT, i, Fraction(1)), Plane()
+            here, plane = found.add(-1, LinkKind.ROOT, i, Fraction(1)), Plane()
         else:
             here, plane = coordinates[parent][line.hangs_on[i]]
         own, turned, heavy = [here], [plane], 0
@@ -440,12 +440,12 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     heavy += 1
                     continue
                 case Geared(ratio, to):
-                    here = found.add(own[to], Link.RATIO, i, found.speed_ratio[own[to]] / ratio)
+                    here = found.add(own[to], LinkKind.RATIO, i, found.speed_ratio[own[to]] / ratio)
                     plane = tuple((joint, by * float(ratio)) for joint, by in turned[to])
                 case Jointed(orders, to):
                     here, plane = own[to], turned[to]
                     if orders or even:
-                        here = found.add(here, Link.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
+                        here = found.add(here, LinkKind.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = Plane() if orders else (*plane, (i, 1.0))
                 case Sprung(to, closes) if closes is not None:
                     end = line.index(closes)
@@ -453,15 +453,15 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
                     _require_closed(line, found, i, own[to], here)
                 case Sprung(to) | Dragged(to):
-                    here, plane = found.add(own[to], Link.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
+                    here, plane = found.add(own[to], LinkKind.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
                     drags, group = isinstance(part, Dragged), found.stations[here].group
                     found.compliances.append(Compliance(own[to], group, (i,), drags=drags))
                 case Loose(to, speed):
-                    here, plane = found.add(own[to], Link.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()
+                    here, plane = found.add(own[to], LinkKind.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()
                 case Tied(of):
                     parts = tuple((own[to], share) for to, share in of)
                     speed = sum((share * found.speed_ratio[s] for s, share in parts), Fraction(0))
-                    here, plane = found.add(parts[0][0], Link.SUM, i, speed, of=parts), Plane()
+                    here, plane = found.add(parts[0][0], LinkKind.SUM, i, speed, of=parts), Plane()
             own.append(here)
             turned.append(plane)
         found.behind.append(own[element.onward])
@@ -474,7 +474,7 @@ def _require_closed(line: Driveline, found: LineStations, element: int, near: in
     apart = found.speed_ratio[far] - found.speed_ratio[near]
     if apart:
         spring = line.elements[element]
-        assert isinstance(spring, Spring)
+        assert isinstance(spring, SpringElement)
         turns = [float(found.speed_ratio[s]) for s in (near, far)]
         raise InputError(
             f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
@@ -491,7 +491,7 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
     if not any(not draft.prescribed[g] for g in heavy):
         raise InputError("has no inertia that can vibrate", element="driveline", remedy="add a Disk")
     compliances = list(draft.compliances)
-    summed = {station.group for station in draft.stations if station.link is Link.SUM}
+    summed = {station.group for station in draft.stations if station.link is LinkKind.SUM}
     for g in summed - heavy:
         if all(draft.stations[c.near].group != g for c in compliances):
             raise _bare_leg(line, draft, g)
@@ -502,7 +502,7 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
         out = [c for c in compliances if draft.stations[c.near].group == g]
         plain = sum(s.group == g for s in draft.stations) == 1
         if not (plain and len(into) == 1 and len(out) == 1 and into[0].far is None):
-            loose = draft.stations[draft.reference[g]].link is Link.LOOSE
+            loose = draft.stations[draft.reference[g]].link is LinkKind.LOOSE
             raise _bare_leg(line, draft, g) if loose else _bare(line, draft, g)
         _refuse_bare_law(line, (*into[0].shafts, *out[0].shafts))
         compliances.remove(into[0])
@@ -576,7 +576,7 @@ def _bare_leg(line: Driveline, draft: LineStations, group: int) -> InputError:
     """What refuses a shaft of a differential or a planetary set that nothing resists."""
     station = draft.reference[group]
     element = draft.stations[station].element
-    number = 1 + sum(one.element == element and one.link is not Link.ROOT for one in draft.stations[:station])
+    number = 1 + sum(one.element == element and one.link is not LinkKind.ROOT for one in draft.stations[:station])
     name, legs = line.names[element], {number: leg for leg, number in line.elements[element].ports.items()}
     leg = legs.get(number, "output")
     return InputError(

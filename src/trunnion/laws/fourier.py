@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.laws.joint import Passed
+from trunnion.laws.joint import TransmittedRotation
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class FourierLaw:
         return (*self.amplitude, *self.phase)
 
     @property
-    def uneven(self) -> bool:
+    def nonuniform(self) -> bool:
         """See ``JointLaw``."""
         return any(bool(np.any(a)) for a in self.amplitude)
 
@@ -40,7 +40,7 @@ class FourierLaw:
         ripple = [float(np.max(np.abs(m * a))) / 2 for m, a in zip(self.orders, self.amplitude, strict=True)]
         return min(0.5, sum(ripple))
 
-    def at(self, chi: Array) -> Passed:
+    def at(self, chi: Array) -> TransmittedRotation:
         """See ``JointLaw``."""
         chi = np.asarray(chi, dtype=float)
         output, ratio, slope, curvature = chi, np.ones_like(chi), np.zeros_like(chi), np.zeros_like(chi)
@@ -48,7 +48,7 @@ class FourierLaw:
             sine, cosine = a * np.sin(m * chi + phase), a * np.cos(m * chi + phase)
             output, ratio = output + sine, ratio + m * cosine
             slope, curvature = slope - m**2 * sine, curvature - m**3 * cosine
-        return Passed(output, ratio, slope, curvature)
+        return TransmittedRotation(output, ratio, slope, curvature)
 
     def third(self, chi: Array) -> Array:
         """See ``JointLaw``."""

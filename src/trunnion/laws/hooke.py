@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.laws.joint import Passed
+from trunnion.laws.joint import TransmittedRotation
 
 QUARTER_TURN = np.pi / 2
 
@@ -45,7 +45,7 @@ class CrossLaw:
         return (self.t,)
 
     @property
-    def uneven(self) -> bool:
+    def nonuniform(self) -> bool:
         """See ``JointLaw``."""
         return bool(np.any(self.t))
 
@@ -54,7 +54,7 @@ class CrossLaw:
         """See ``JointLaw``: harmonics fall off as t^h."""
         return float(np.max(np.abs(self.t)))
 
-    def at(self, chi: Array) -> Passed:
+    def at(self, chi: Array) -> TransmittedRotation:
         """See ``JointLaw``."""
         t, chi = self.t, np.asarray(chi, dtype=float)
         cosine, sine = np.cos(2 * chi), np.sin(2 * chi)
@@ -62,7 +62,7 @@ class CrossLaw:
         ratio = (1 - t**2) * over
         slope = -4 * t * sine * ratio * over
         curvature = -8 * t * ratio * over * (cosine - 4 * t * sine**2 * over)
-        return Passed(chi + np.arctan2(t * sine, 1 - t * cosine), ratio, slope, curvature)
+        return TransmittedRotation(chi + np.arctan2(t * sine, 1 - t * cosine), ratio, slope, curvature)
 
     def third(self, chi: Array) -> Array:
         """See ``JointLaw``."""

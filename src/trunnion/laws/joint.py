@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol
 from trunnion.arrays import Array
 
 
-class Passed(NamedTuple):
+class TransmittedRotation(NamedTuple):
     """ψ [rad], η = dψ/dχ, dη/dχ [1/rad] and d²η/dχ² [1/rad²] at some χ."""
 
     output: Array
@@ -38,14 +38,14 @@ class JointLaw(Protocol):
         """All numbers that the law depends on."""
 
     @property
-    def uneven(self) -> bool:
+    def nonuniform(self) -> bool:
         """Whether the output turns other than the input in any case."""
 
     @property
     def spread(self) -> float:
         """How fast the harmonics of a response fall off at least: the largest ratio of one to the one before."""
 
-    def at(self, chi: Array) -> Passed:
+    def at(self, chi: Array) -> TransmittedRotation:
         """Rotation passed on at input angles ``chi`` [rad]."""
 
     def third(self, chi: Array) -> Array:

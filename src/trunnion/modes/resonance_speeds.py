@@ -131,7 +131,7 @@ class ResonanceSpeeds(Result):
 
     def _lines(self) -> Iterator[str]:
         if not self.resonances:
-            yield "no parametric resonance speeds: the line has no bent joint or varying mesh, or no elastic mode"
+            yield "no parametric resonance speeds: the line has no angled joint or varying mesh, or no elastic mode"
             return
         yield f"{len(self)} resonance speeds up to order {self.orders}"
         for one in self:

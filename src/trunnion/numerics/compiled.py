@@ -17,7 +17,7 @@ import scipy
 
 from trunnion.errors import TrunnionError
 from trunnion.numerics.cache_folder import cache_folder, without_a_cache
-from trunnion.numerics.jit import Kept, NotKept, caches_of
+from trunnion.numerics.jit import CodeCache, NoCodeCache, caches_of
 from trunnion.numerics.kept_code import remove
 from trunnion.numerics.linked import link_inner_ones
 from trunnion.numerics.sources import VERSIONS
@@ -53,7 +53,7 @@ def _module(name: str, source: str, digest: str) -> ModuleType:
             without_a_cache(error)
     module = ModuleType(full)
     sys.modules[full] = module
-    with caches_of(NotKept):
+    with caches_of(NoCodeCache):
         exec(compile(source, f"<{name}>", "exec"), vars(module))
     link_inner_ones(module)
     return module
@@ -68,7 +68,7 @@ def _kept(path: Path, source: str, full: str) -> ModuleType:
     module = ModuleType(full)
     module.__file__ = str(path)
     sys.modules[full] = module
-    with caches_of(Kept):
+    with caches_of(CodeCache):
         exec(compile(source, str(path), "exec"), vars(module))
     link_inner_ones(module)
     return module

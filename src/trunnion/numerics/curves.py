@@ -234,7 +234,7 @@ def _spreading(frequency: Array) -> Array:
     return np.asarray(turns @ (_SMOOTH_WEIGHTS * _kernel(_SMOOTH)) * (WIDTH / 2))
 
 
-def meetings(values: Array, level: float) -> Array:
+def places_at(values: Array, level: float) -> Array:
     """Where a polyline through ``values`` (points,) meets a level, in order, as places among its points: 2.25 is a
     quarter of the way from the third to the fourth. NaN parts stretches."""
     side = values - level

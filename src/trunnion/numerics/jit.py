@@ -61,17 +61,17 @@ def njit(
     return decorate
 
 
-def at_hand(*functions: Any) -> bool:
+def is_compiled(*functions: Any) -> bool:
     """Whether there is machine code of all these functions already, in memory, kept or come along."""
     return all(function.overloads or function._cache.filled() for function in functions)
 
 
 def _kept_in(folder: Path | None, function: Callable[..., Any]) -> Any:
     """The cache of a function: in ``folder``, or for this process alone."""
-    return NotKept(function) if folder is None or _source(function) is None else Kept(function, folder)
+    return NoCodeCache(function) if folder is None or _source(function) is None else CodeCache(function, folder)
 
 
-class NotKept(NO_CACHE):
+class NoCodeCache(NO_CACHE):
     """No cache of one function but what came with the installation."""
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -86,7 +86,7 @@ class NotKept(NO_CACHE):
         return shipped.in_use()
 
 
-class Kept(NotKept):
+class CodeCache(NoCodeCache):
     """The machine code of one function, a file a signature in ``folder``, by default that of the function's source.
 
     It looks also at what came with the installation, lets one process compile while others wait, and makes of a failure
@@ -185,7 +185,7 @@ def _lasts(signature: Any) -> bool:
     return " at 0x" not in str(signature)
 
 
-class _Failures(event.Listener):  # type: ignore[misc]
+class _FailedCompilations(event.Listener):  # type: ignore[misc]
     """What is not compiled is not saved either, which would let the next process in: without this it would wait for
     the end of a process whose user's function no compiler takes, or that was interrupted."""
 
@@ -198,11 +198,11 @@ class _Failures(event.Listener):  # type: ignore[misc]
             release_all()
 
 
-event.register("numba:compile", _Failures())  # type: ignore[no-untyped-call]
+event.register("numba:compile", _FailedCompilations())  # type: ignore[no-untyped-call]
 
 
 @contextmanager
-def caches_of(kind: type[Kept] | type[NotKept]) -> Iterator[None]:
+def caches_of(kind: type[CodeCache] | type[NoCodeCache]) -> Iterator[None]:
     """Within it numba's own decorators with ``cache=True`` give their functions caches of this kind."""
     before = [module.FunctionCache for module in DECORATORS]
     for module in DECORATORS:

@@ -96,7 +96,7 @@ def remove(path: Path) -> None:
 
 
 @dataclass(frozen=True)
-class Found:
+class CachedFile:
     """One file of machine code in a cache: its size [bytes], and what it holds, None where it is damaged."""
 
     path: Path
@@ -104,10 +104,10 @@ class Found:
     code: Code | None
 
 
-def found_below(folder: Path) -> Iterator[Found]:
+def found_below(folder: Path) -> Iterator[CachedFile]:
     """Every file of machine code below ``folder``, whole or not; nothing is changed."""
     for path in sorted(folder.rglob(f"*{ENDING}")):
         raw = b""
         with suppress(OSError):
             raw = _content(path)
-        yield Found(path, len(raw), unpacked(raw))
+        yield CachedFile(path, len(raw), unpacked(raw))

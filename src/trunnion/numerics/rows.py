@@ -22,17 +22,17 @@ from numba import types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-from trunnion.numerics.lanes import LANES
+from trunnion.numerics.batch import BATCH
 
 _DOUBLE = ir.DoubleType()
-_VECTOR = ir.VectorType(_DOUBLE, LANES)
+_VECTOR = ir.VectorType(_DOUBLE, BATCH)
 
 
 class RowType(types.Type):
-    """Type of a row of ``LANES`` numbers."""
+    """Type of a row of ``BATCH`` numbers."""
 
     def __init__(self) -> None:
-        super().__init__(name=f"Row({LANES})")
+        super().__init__(name=f"Row({BATCH})")
 
 
 row_type = RowType()
@@ -47,7 +47,7 @@ class _RowModel(models.PrimitiveModel):
 def _spread(builder, number):
     """A number in every lane."""
     one = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), BATCH), [0] * BATCH)
     return builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), zeros)
 
 

@@ -24,7 +24,7 @@ AT_ONCE = 500_000
 
 
 @dataclass(frozen=True)
-class Block:
+class TreeBlock:
     """An entry that joins harmonics: ``values`` (case, pair) at harmonics ``far`` and ``near`` (pair,), by rising
     ``far``."""
 
@@ -35,10 +35,10 @@ class Block:
     values: Complex
 
     @cached_property
-    def transposed(self) -> Block:
+    def transposed(self) -> TreeBlock:
         """Rows and columns exchanged."""
         order = np.argsort(self.near, kind="stable")
-        return Block(self.column, self.row, self.near[order], self.far[order], self.values[:, order])
+        return TreeBlock(self.column, self.row, self.near[order], self.far[order], self.values[:, order])
 
     def add_times(self, x: Complex, out: Complex) -> None:
         """Add the product with x (n, case, h) to ``out``."""
@@ -64,7 +64,7 @@ class TreeMatrix:
     """Matrices of some cases: ``own`` and ``coupling`` (n, case, h), to the place ``parent`` (n,) in front, of what
     joins no harmonics and is symmetric, and the ``blocks`` of what does, at places that the plan keeps."""
 
-    def __init__(self, plan: Plan, parent: Integers, own: Complex, coupling: Complex, blocks: list[Block]) -> None:
+    def __init__(self, plan: Plan, parent: Integers, own: Complex, coupling: Complex, blocks: list[TreeBlock]) -> None:
         self.plan, self.parent, self.own, self.coupling, self.blocks = plan, parent, own, coupling, blocks
         self._tied = np.flatnonzero(parent >= 0)
 
@@ -178,8 +178,8 @@ class TreeMatrix:
     def _parts(self) -> Iterator[slice]:
         """The cases, so many together that what is left of them fits into memory."""
         _, cases, count = self.own.shape
-        at_once = max(1, AT_ONCE // max(1, 3 * len(self.plan.left) * count**2))
-        yield from (slice(begin, begin + at_once) for begin in range(0, cases, at_once))
+        batch_size = max(1, AT_ONCE // max(1, 3 * len(self.plan.left) * count**2))
+        yield from (slice(begin, begin + batch_size) for begin in range(0, cases, batch_size))
 
     def _of(self, cases: Flags) -> TreeMatrix:
         return self if self.own.shape[1] == 1 or cases.all() else self.of(cases)

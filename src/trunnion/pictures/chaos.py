@@ -20,12 +20,12 @@ from trunnion.pictures.picture import (
     Axis,
     Band,
     Cells,
+    ColouredGrid,
     Colours,
     Item,
     Key,
     Level,
     Line,
-    Mesh,
     Panel,
     Picture,
     Points,
@@ -124,7 +124,7 @@ def lyapunov_map(result: LyapunovMap) -> Picture:
     across, up = (axis_of_parameter(result.system, name) for name in result.parameters)
     x, y = result.x * across.factor, result.y * up.factor
     colours = Colours("largest exponent [1/s]", "signed", low, high, "zero")
-    items: list[Item] = [Mesh(x, y, result.exponent, colours)]
+    items: list[Item] = [ColouredGrid(x, y, result.exponent, colours)]
     if np.isnan(result.exponent).any():
         items.append(Cells(x, y, np.isnan(result.exponent), "not found", "not found"))
     return single(axis_of(across), axis_of(up), items, 7.0, 4.8, grid="")

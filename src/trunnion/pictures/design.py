@@ -11,8 +11,8 @@ from trunnion.design.assessment.result import Assessment
 from trunnion.design.comparison.result import Comparison, Difference
 from trunnion.design.envelope import Envelope
 from trunnion.design.optimisation.result import Optimum
-from trunnion.design.sensitivity.result import Quantity, Sensitivities, share_of, smaller, too_large
-from trunnion.design.tolerance.study import ToleranceStudy
+from trunnion.design.sensitivity.result import Sensitivities, SensitivityQuantity, share_of, smaller, too_large
+from trunnion.design.tolerance.tolerance_study import ToleranceStudy
 from trunnion.errors import InputError
 from trunnion.floquet.tolerance.certify import StabilityCertificate
 from trunnion.pictures.picture import (
@@ -171,7 +171,7 @@ def sensitivities(found: Sensitivities, quantity: str | None = None, *, most: in
     return _in_rows(Axis(f"change{label}"), names, items, f"{chosen.name}: {printed(found.shown(chosen))}")
 
 
-def _chosen(found: Sensitivities) -> Quantity:
+def _chosen(found: Sensitivities) -> SensitivityQuantity:
     """The first that follows several parameters; an angle, which only follows itself, needs no picture."""
     for several in (2, 1):
         for kind in FIRST:

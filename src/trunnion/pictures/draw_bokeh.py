@@ -232,7 +232,7 @@ class Drawn:
             own.update(start=ends[0], end=ends[1], reset_start=ends[0], reset_end=ends[1])
 
     def _colours(self, panel: Panel) -> None:
-        meshes = [item for item in panel.items if isinstance(item, described.Mesh)]
+        meshes = [item for item in panel.items if isinstance(item, described.ColouredGrid)]
         _update(self.bar, visible=bool(meshes))
         for colours in (mesh.colours for mesh in meshes):
             _update(self.mapper, low=colours.low, high=colours.high, palette=palette(colours))
@@ -319,7 +319,7 @@ def extent(axis: Axis, low: float, high: float) -> tuple[float, float]:
 
 def _logarithmic(panel: Panel) -> bool:
     """Whether colours stand for powers of ten."""
-    return any(isinstance(item, described.Mesh) and item.colours.scale == "log" for item in panel.items)
+    return any(isinstance(item, described.ColouredGrid) and item.colours.scale == "log" for item in panel.items)
 
 
 def _mapper(panel: Panel) -> Any:
@@ -371,7 +371,7 @@ def _values(item: Any, name: str) -> list[Any]:
             return [item.x] if name == "x" else [item.low, item.high]
         case described.Shapes():
             return [outline[:, "xy".index(name)] for outline in item.outlines]
-        case described.Mesh() | described.Cells():
+        case described.ColouredGrid() | described.Cells():
             return [edges(np.asarray(getattr(item, name), dtype=float))]
         case described.Bars():
             at = np.asarray(item.at, dtype=float)
@@ -580,7 +580,7 @@ def _even(axis: Axis, points: Any) -> tuple[Any, float, float]:
     return places, float(cut[0]), float(cut[-1] - cut[0])
 
 
-def _mesh(item: described.Mesh, panel: Panel) -> list[tuple[str, tuple[Any, ...]]]:
+def _mesh(item: described.ColouredGrid, panel: Panel) -> list[tuple[str, tuple[Any, ...]]]:
     """An image, and lines at the levels of its colours that have some."""
     (across, x, width), (up, y, height) = _even(panel.x, item.x), _even(panel.y, item.y)
     shown = [
@@ -612,7 +612,7 @@ _ROWS: dict[type, Any] = {
     described.Band: _band,
     described.Shapes: _shapes,
     described.Bars: _bars,
-    described.Mesh: _mesh,
+    described.ColouredGrid: _mesh,
     described.Cells: _cells,
     described.Texts: _words,
     described.EdgeNames: _edge_names,

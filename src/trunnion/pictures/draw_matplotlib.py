@@ -161,7 +161,7 @@ def _panel(axes: Axes, panel: Panel, width: float) -> None:
     else:
         if panel.grid:
             axes.grid(which="major", axis=panel.grid, color=GRID, lw=0.6)  # type: ignore[arg-type]
-        meshed = any(isinstance(item, described.Mesh | described.Cells) for item in panel.items)
+        meshed = any(isinstance(item, described.ColouredGrid | described.Cells) for item in panel.items)
         axes.set_axisbelow(not meshed)
     if panel.even:
         axes.set_aspect("equal", adjustable="datalim" if panel.frame else "box")
@@ -300,7 +300,7 @@ def _legend(axes: Axes, panel: Panel, handles: Sequence[Artist], width: float) -
 def _aside(panel: Panel) -> float:
     """Room that numbers and names at the left take, and colours at the right [inches]."""
     longest = max((len(line) for name in panel.y.names for line in name.split("\n")), default=0)
-    meshed = any(isinstance(item, described.Mesh) for item in panel.items)
+    meshed = any(isinstance(item, described.ColouredGrid) for item in panel.items)
     return 0.8 + longest * LETTER * SMALL / 72 + 1.2 * meshed
 
 
@@ -420,7 +420,7 @@ def _bars(axes: Axes, item: described.Bars, panel: Panel) -> list[Artist]:
     return _entry(item.role, item.name, "area")
 
 
-def _mesh(axes: Axes, item: described.Mesh, panel: Panel) -> list[Artist]:
+def _mesh(axes: Axes, item: described.ColouredGrid, panel: Panel) -> list[Artist]:
     colours = item.colours
     palette = LinearSegmentedColormap.from_list(colours.palette, PALETTES[colours.palette])
     values = np.ma.masked_invalid(np.asarray(item.values, dtype=float))
@@ -499,7 +499,7 @@ _ITEMS: dict[type, Callable[[Axes, Any, Panel], list[Artist]]] = {
     described.Band: _band,
     described.Shapes: _shapes,
     described.Bars: _bars,
-    described.Mesh: _mesh,
+    described.ColouredGrid: _mesh,
     described.Cells: _cells,
     described.Texts: _words,
     described.Arrows: _arrows,

@@ -24,7 +24,7 @@ from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import DEGREE
-from trunnion.driveline.shafts import Shaft, Spring
+from trunnion.driveline.shafts import Shaft, SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.pictures.draw_matplotlib import SMALL, new_figure, through
 from trunnion.pictures.looks import ACCENT, FAINT, INK
@@ -42,13 +42,13 @@ LENGTH = {
     "TunedDamper": 0.7, "Differential": 0.9,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
-SHAFTS = (Spring, PiecewiseShaft)
+SHAFTS = (SpringElement, PiecewiseShaft)
 GEARS = (Ratio, GearPair, Planetary, Belt, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
 
 
 @dataclass(frozen=True)
-class _Place:
+class _ElementPlace:
     """An element on the page: its two ends and its direction [rad]; ``row`` of the branch."""
 
     element: Element
@@ -69,7 +69,7 @@ class _Place:
         """Height of the lower end."""
         return float(min(self.start[1], self.end[1]))
 
-    def part(self, begin: float, end: float) -> _Place:
+    def part(self, begin: float, end: float) -> _ElementPlace:
         """What lies between two distances behind its middle."""
         along = _along(self.direction)
         return replace(self, start=self.middle + begin * along, end=self.middle + end * along)
@@ -104,15 +104,15 @@ def draw(line: Driveline) -> Figure:
     for place, parent in zip(places, line.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
-        if isinstance(place.element, Spring) and place.element.to is not None:
+        if isinstance(place.element, SpringElement) and place.element.to is not None:
             closed = places[line.index(place.element.to)]
             _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
 
-def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
+def _places(line: Driveline, letter: float = 0.0) -> list[_ElementPlace]:
     """Walk the line; a branch starts below its parent and the names, of that width of a letter, that reach over it."""
-    places: list[_Place] = []
+    places: list[_ElementPlace] = []
     down: dict[int, float] = {}
     rows = 0
     for i, (element, name, parent) in enumerate(zip(line.elements, line.names, line.parents, strict=True)):
@@ -140,7 +140,7 @@ def _places(line: Driveline, letter: float = 0.0) -> list[_Place]:
             behind = direction + side * min(angle, STEEPEST)
         half = LENGTH.get(element.kind, JOINT_LENGTH) / 2
         end = start + half * _along(direction) + half * _along(behind)
-        places.append(_Place(element, name, start, end, direction, behind, row))
+        places.append(_ElementPlace(element, name, start, end, direction, behind, row))
     return places
 
 
@@ -157,24 +157,24 @@ def _bar(axes: Axes, *points: Array, **look: Any) -> None:
     through(axes, *points, **{"color": INK, "lw": 2.0, "zorder": 2, **look})
 
 
-def _box(axes: Axes, place: _Place, half: float, **look: Any) -> None:
+def _box(axes: Axes, place: _ElementPlace, half: float, **look: Any) -> None:
     side = half * _across(place.direction)
     corners = [place.start - side, place.end - side, place.end + side, place.start + side]
     axes.add_patch(Polygon(corners, closed=True, **{"ec": INK, "lw": 1.1, "zorder": 3, **look}))
 
 
-def _drive(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _drive(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     _box(axes, place, 0.5, fc="white", hatch="////")
 
 
-def _shaft(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _shaft(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     shaft = place.element
     assert isinstance(shaft, Shaft)
     tube = shaft.outer_diameter is not None
     _box(axes, place, 0.17 if tube else 0.08, fc=TUBE if tube else SOLID)
 
 
-def _coupling(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _coupling(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two flanges with an elastic element between them."""
     _bar(axes, place.start, place.end)
     _box(axes, place.part(-0.14, 0.14), 0.3, fc="#d8c7a0", hatch="xxx")
@@ -182,7 +182,7 @@ def _coupling(axes: Axes, place: _Place, disks: list[float]) -> None:
     _box(axes, place.part(0.14, 0.24), 0.36, fc=SOLID)
 
 
-def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _stages(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """A shaft with a spring in a window, as a clutch disc has them."""
     _bar(axes, place.start, place.end)
     _box(axes, place.part(-0.4, 0.4), 0.26, fc="white")
@@ -191,14 +191,14 @@ def _stages(axes: Axes, place: _Place, disks: list[float]) -> None:
     _bar(axes, *turns, lw=1.1, zorder=4)
 
 
-def _dual_mass(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _dual_mass(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Springs between two flywheels."""
     _stages(axes, place, disks)
     for begin in (-0.55, 0.41):
         _box(axes, place.part(begin, begin + 0.14), 0.7, fc="#9db7c9")
 
 
-def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _disk(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Height by the logarithm of the inertia: drivelines span decades."""
     disk = place.element
     assert isinstance(disk, Disk)
@@ -208,7 +208,7 @@ def _disk(axes: Axes, place: _Place, disks: list[float]) -> None:
     _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
 
 
-def _damper(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _damper(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """A ring above and below in its housing, in oil or on a spring."""
     damper = place.element
     assert isinstance(damper, Damper)
@@ -221,7 +221,7 @@ def _damper(axes: Axes, place: _Place, disks: list[float]) -> None:
         _box(axes, middle.part(-0.15, 0.15), 0.16, fc="#8fa9b8")
 
 
-def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _ratio(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two wheels in mesh, sizes by the ratio."""
     element = place.element
     assert isinstance(element, Ratio | GearPair)
@@ -235,7 +235,7 @@ def _ratio(axes: Axes, place: _Place, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, angle=np.rad2deg(place.direction), **look))
 
 
-def _belt(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _belt(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two pulleys, sizes by the ratio, and a belt round them."""
     belt = place.element
     assert isinstance(belt, Belt)
@@ -251,7 +251,7 @@ def _belt(axes: Axes, place: _Place, disks: list[float]) -> None:
         _bar(axes, *ends, lw=1.4, zorder=4)
 
 
-def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _planetary(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """A ring above and below, planets on the sun; what is held is hatched."""
     element = place.element
     assert isinstance(element, Planetary)
@@ -269,7 +269,7 @@ def _planetary(axes: Axes, place: _Place, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(centre), 0.3, 2 * radius, fc=face, hatch=hatch, **look))
 
 
-def _differential(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _differential(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """A case with a crown wheel, and two side gears in it."""
     _bar(axes, place.start, place.end)
     _box(axes, place.part(-0.22, 0.22), 0.5, fc="#f7ead0")
@@ -280,7 +280,7 @@ def _differential(axes: Axes, place: _Place, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(gear), 0.22, 0.34, angle=np.rad2deg(place.direction), **look))
 
 
-def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
+def _joint(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
     centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
     for end, direction, sign in ((place.start, place.direction, 1), (place.end, place.behind, -1)):
@@ -295,7 +295,7 @@ def _joint(axes: Axes, place: _Place, disks: list[float]) -> None:
         _bar(axes, centre, straight, color=FAINT, lw=0.8, ls=(0, (4, 3)), zorder=1)
 
 
-_DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
+_DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "ConstantSpeed": _drive,
     "Shaft": _shaft,
     "Coupling": _coupling,
@@ -312,13 +312,13 @@ _DRAW: dict[str, Callable[[Axes, _Place, list[float]], None]] = {
 }
 
 
-def _floors(places: list[_Place]) -> dict[int, float]:
+def _floors(places: list[_ElementPlace]) -> dict[int, float]:
     """Height of the names of each row: below everything in it."""
     rows = {place.row for place in places}
     return {r: min(p.lowest for p in places if p.row == r) - 1.05 for r in rows}
 
 
-def _name(axes: Axes, place: _Place, number: int, size: float, floor: float) -> None:
+def _name(axes: Axes, place: _ElementPlace, number: int, size: float, floor: float) -> None:
     """Number and name, slanted below the row."""
     middle = place.middle
     axes.text(
@@ -346,7 +346,7 @@ def _between_joints(line: Driveline, place: int) -> bool:
     return reaches_joint(line.parents.__getitem__) and reaches_joint(first_behind.get)
 
 
-def _numbers(axes: Axes, place: _Place, size: float, between: bool) -> None:
+def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> None:
     """What the geometry of the line needs: angles, planes, fork offsets, ratios; above the element."""
     element = place.element
     text = ""

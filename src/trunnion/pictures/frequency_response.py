@@ -207,7 +207,7 @@ def line_sweeps(found: Sequence[LineSweep], *, spring: str = "", unit: str | Non
     items: list[Item] = []
     for one in found:
         items += _swept(one, one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name))
-    across = Axis("speed" if line.clock == "speed" else "frequency", unit)
+    across = Axis("speed" if line.independent_variable == "speed" else "frequency", unit)
     return _of_sweeps(items, across, Axis(f"torque of {name}, peak to peak", "N·m", 0.0), f"contact of {name}, sweep")
 
 

@@ -23,7 +23,7 @@ from trunnion.errors import InputError
 from trunnion.laws.hooke import QUARTER_TURN
 from trunnion.pictures.draw_matplotlib import SMALL, TEXT, head, new_figure, through
 from trunnion.pictures.looks import COLOURS, FAINT, INK
-from trunnion.response.kinetostatics.chain import Chain, chain
+from trunnion.response.kinetostatics.chain import KinematicChain, chain
 from trunnion.response.kinetostatics.frames import member_frames, turned_about_axis
 from trunnion.response.kinetostatics.motion import drive_jet, walk
 
@@ -62,7 +62,7 @@ class _Label:
 
 
 @dataclass(frozen=True)
-class _Place:
+class _LabelPlace:
     """A label's box (x0, y0, x1, y1) and the points of its leader, in pixels."""
 
     box: Array
@@ -159,7 +159,9 @@ def _of_line(line: Driveline, input_angle: float, lengths: dict[str, float]) -> 
     return _Scene(drawn, list(zip(points[:-1], points[1:], strict=True)), names, guessed, sense, left_out)
 
 
-def _joints(train: Chain, joints: list[int], centres: list[Array], frames: Array, input_angle: float) -> list[_Joint]:
+def _joints(
+    train: KinematicChain, joints: list[int], centres: list[Array], frames: Array, input_angle: float
+) -> list[_Joint]:
     motion = walk(train, drive_jet(np.array([input_angle]), 1.0, 0.0, 0))
     drawn = []
     for j, centre in zip(joints, centres, strict=True):
@@ -241,7 +243,7 @@ def _write_labels(figure: Figure, axes: Any, scene: _Scene, size: float, labels:
     reach = _fork_pixels(axes, size)
     inside = figure.bbox.width, figure.bbox.height * TOP
     halo = [withStroke(linewidth=2.5, foreground="#ffffff")]
-    placed: list[_Place] = []
+    placed: list[_LabelPlace] = []
     for label in labels:
         text = figure.text(0, 0, label.text, color=label.colour, fontsize=SMALL, ha="center", va="center")
         text.set(linespacing=1.1, path_effects=halo, parse_math=False)  # measured before it is drawn
@@ -257,7 +259,7 @@ def _write_labels(figure: Figure, axes: Any, scene: _Scene, size: float, labels:
             figure.add_artist(Line2D(*ends.T, color=FAINT, linewidth=0.7))
 
 
-def _choices(anchor: Array, extent: Array, reach: float, side: float) -> list[_Place]:
+def _choices(anchor: Array, extent: Array, reach: float, side: float) -> list[_LabelPlace]:
     """Places of a box above and below its point, the nearest on the wanted side first."""
     found = []
     for row, turn, shift in product(range(14), (1.0, -1.0), (0.0, -0.4, 0.4, -0.8, 0.8)):
@@ -267,11 +269,11 @@ def _choices(anchor: Array, extent: Array, reach: float, side: float) -> list[_P
         near = np.array([np.clip(anchor[0], *(middle[0] + extent[0] / 2 * SIDES)), middle[1] - up * extent[1] / 2])
         leader = np.linspace(anchor + reach * _unit(near - anchor), near, 24)
         cost = row + 5 * (turn < 0) + 8 * abs(shift)
-        found.append((cost, _Place(np.concatenate([middle - extent / 2, middle + extent / 2]), leader)))
+        found.append((cost, _LabelPlace(np.concatenate([middle - extent / 2, middle + extent / 2]), leader)))
     return [place for _, place in sorted(found, key=lambda pair: pair[0])]
 
 
-def _conflicts(place: _Place, drawn: Array, placed: list[_Place], inside: tuple[float, float]) -> float:
+def _conflicts(place: _LabelPlace, drawn: Array, placed: list[_LabelPlace], inside: tuple[float, float]) -> float:
     """What a place runs into: points of the line, labels and their leaders, the picture's edge."""
     x0, y0, x1, y1 = place.box
     count = float(np.sum(_within(drawn, place.box, 4)))

@@ -16,11 +16,11 @@ from trunnion.pictures.picture import (
     Axis,
     Band,
     Bars,
+    ColouredGrid,
     Colours,
     Item,
     Level,
     Line,
-    Mesh,
     Picture,
     Points,
     points_at,
@@ -44,7 +44,7 @@ DECADES, MOST_BARS = 1e4, 40
 """Largest amplitude over the smallest that is drawn; groups of bars that can be told apart side by side."""
 MAP_DECADES = 3.0
 LEAST = 0.01
-"""Relative change of the speed over a run that makes it an axis: a line that starts free always drifts a bit."""
+"""Relative change of the speed over a run that makes it an axis: a free–free line always drifts a bit."""
 MOST_ORDERS = 16
 """Orders of a comparison drawn, the largest of them."""
 BAR = 0.38
@@ -124,7 +124,7 @@ def line_history(result: LineSimulation, *, shafts: tuple[str, ...] = (), unit: 
 
 
 def _input_speeds(result: LineSimulation, unit: str) -> str:
-    """The first and the last speed of the input: of a line that starts free, means of its first and last turn."""
+    """The first and the last speed of the input: of a free–free line, means of its first and last turn."""
     if not result.starts_free:
         low, high = result.profile.at(np.array([0.0, result.end]))
         return Words(unit).speed(low) if low == high else Words(unit).ends(low, high)
@@ -201,7 +201,7 @@ def map_of_orders(
     top = max(float(amplitude.max()), 1e-300)
     least, order = top / 10**MAP_DECADES, np.argsort(x)
     colours = Colours(f"torque amplitude of {found.shafts[i]} [N·m]", "amplitude", least, top, "log")
-    mesh = Mesh(x[order], found.order[1:], np.maximum(amplitude[order].T, least), colours)
+    mesh = ColouredGrid(x[order], found.order[1:], np.maximum(amplitude[order].T, least), colours)
     across = Axis("input speed", unit) if varies else Axis("time", "s")
     return single(across, ORDER, [mesh], height=4.6, grid="")
 

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.design.assessment.course import Course
+from trunnion.design.assessment.response_curve import ResponseCurve
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TORQUE, eye_unit, shown
-from trunnion.floquet.stability.along import StabilityAlong
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
 from trunnion.pictures.looks import curve
 from trunnion.pictures.picture import Axis, Band, Item, Level, Line, Picture, single
 from trunnion.pictures.shared import over_speed, place_of, printed, stretches
@@ -92,7 +92,7 @@ def torque_by_order(
     return over_speed(x, unit, up, items, operating, title=result.springs[column])
 
 
-def course(found: Course, *, unit: str, operating: Operation | None = None) -> Picture:
+def course(found: ResponseCurve, *, unit: str, operating: Operation | None = None) -> Picture:
     """The value of a check on a logarithmic axis, its largest orders and its limits, over speed in ``unit``."""
     x = found.speed * speed_factor(unit)
     value = np.where(np.isfinite(found.value), found.value, np.nan)
@@ -137,7 +137,7 @@ def speed_sweep(sweep: SpeedSweep, *, unit: str = "", operating: Operation | Non
     return over_speed(x, unit, up, items, operating)
 
 
-def growth_over_speed(found: StabilityAlong, *, unit: str, operating: Operation | None = None) -> Picture:
+def growth_over_speed(found: StabilityOverSpeed, *, unit: str, operating: Operation | None = None) -> Picture:
     """Growth rate [1/s] of the slowest disturbance over speed in ``unit``; above zero the line is unstable."""
     x, rate = found.speed * speed_factor(unit), found.growth_rate
     items: list[Item] = [
@@ -151,7 +151,7 @@ def growth_over_speed(found: StabilityAlong, *, unit: str, operating: Operation 
 
 
 def _order_curves(
-    x: Array, whole: Array, size: Array, of: OrderResponse | Course, words: str
+    x: Array, whole: Array, size: Array, of: OrderResponse | ResponseCurve, words: str
 ) -> tuple[list[Item], float, float]:
     """``whole`` (speed,) over its largest orders ``size`` (speed, order), and between which values they lie."""
     peaks = np.nan_to_num(size).max(axis=0, initial=0.0)

@@ -164,7 +164,7 @@ class Colours:
 
 
 @dataclass(frozen=True)
-class Mesh:
+class ColouredGrid:
     """Values (y, x) at points of a grid as coloured cells, NaN for none; or, between ``colours.levels``, as contours.
 
     ``says`` are values (y, x) for the pointer where others are coloured than are known.
@@ -235,7 +235,9 @@ class Key:
     kind: str = "line"
 
 
-Item: TypeAlias = Line | Points | Level | Spans | Band | Shapes | Bars | Mesh | Cells | Texts | EdgeNames | Arrows | Key
+Item: TypeAlias = (
+    Line | Points | Level | Spans | Band | Shapes | Bars | ColouredGrid | Cells | Texts | EdgeNames | Arrows | Key
+)
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,13 @@ from trunnion.modes.resonance_speeds import Resonance, resonance_speeds
 from trunnion.pictures.picture import (
     Axis,
     Cells,
+    ColouredGrid,
     Colours,
     EdgeNames,
     Item,
     Key,
     Level,
     Line,
-    Mesh,
     Panel,
     Picture,
     Points,
@@ -116,12 +116,12 @@ def _verdicts(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
     if everywhere:
         words = "stable at every point (yellow: slowest decay)"
         decay = Colours("decay of the slowest disturbance per turn [%]", "decay", *_steps(-growth))
-        items += [Mesh(x, y, -growth, decay, growth), Key("stable everywhere", words, "area")]
+        items += [ColouredGrid(x, y, -growth, decay, growth), Key("stable everywhere", words, "area")]
     else:
         items += [Key("stable", "stable", "area")] if stable else []
         if bad.any():
             colours = Colours(GROWTH, "growth", 0.0, float(growth[bad].max()))
-            items.append(Mesh(x, y, np.where(bad, growth, np.nan), colours, growth))
+            items.append(ColouredGrid(x, y, np.where(bad, growth, np.nan), colours, growth))
             items.append(Key("unstable", "unstable (darker: faster)", "area"))
     for verdict, (role, words) in OTHERS.items():
         if chart.count(verdict):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.design.assessment.assessment_input import LoadCaseResponse
 from trunnion.design.assessment.check import Check
 from trunnion.design.assessment.measures import spring_of
 from trunnion.design.assessment.parametric import NAME as PARAMETRIC
-from trunnion.design.assessment.subject import Case
-from trunnion.reporting.answer import capital
 from trunnion.reporting.overview import Overview
+from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.response.orders.result import OrderResponse
 
@@ -54,7 +54,7 @@ def binding_picture(seen: Overview) -> ReportPicture | None:
     return picture(drawn, "Decay of the slowest disturbance over speed", said)
 
 
-def _case(seen: Overview, check: Check | None) -> Case:
+def _case(seen: Overview, check: Check | None) -> LoadCaseResponse:
     cases = seen.subject.cases
     return next((case for case in cases if check is not None and case.name == check.load_case), cases[0])
 
@@ -63,7 +63,9 @@ def _of_torque(check: Check) -> bool:
     return check.name.startswith(tuple(OF_TORQUE))
 
 
-def _spring(seen: Overview, case: Case, check: Check | None, response: OrderResponse) -> tuple[str, dict[str, float]]:
+def _spring(
+    seen: Overview, case: LoadCaseResponse, check: Check | None, response: OrderResponse
+) -> tuple[str, dict[str, float]]:
     """The spring that the binding check is about, else the most loaded one, and its limits of torque [N m]."""
     stated = [one for one in seen.line.limits_by_element if one.key in OF_TORQUE.values()]
     if check is not None and _of_torque(check):

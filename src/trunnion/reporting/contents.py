@@ -18,8 +18,8 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.modes.bending import BendingSpeed, bending_speeds
 from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
-from trunnion.reporting.answer import NEARLY
 from trunnion.reporting.overview import Overview
+from trunnion.reporting.overview_assessment import NEARLY
 from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_motions
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.response.kinetostatics import kinetostatics

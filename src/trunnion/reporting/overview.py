@@ -11,15 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.design.assessment.subject import lossy
+from trunnion.design.assessment.assessment_input import lossy
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.floquet.charts.stability_chart import chart_of_report
-from trunnion.floquet.stability.along import stability_along
 from trunnion.floquet.stability.stability import Stability, stability
-from trunnion.reporting.answer import Answer, answer, asked, judged
+from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, judged
 from trunnion.reporting.overview_findings import chart_findings
 from trunnion.reporting.ranges import angle_range
 from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
@@ -37,13 +37,13 @@ TOLERANCE = 1e-7
 
 
 @dataclass(frozen=True)
-class Overview(Answer):
+class Overview(OverviewAssessment):
     """A driveline at a glance: the answer, and further findings.
 
     angle_range [rad]: of the description, or guessed from the line; turn:
     the joints over a turn at the operating speed (1 rad/s without one), None where the output is prescribed; stability:
     at the operating speed, None without one and where all frequencies are damped alike; chart: over the range and one
-    angle of all joints, None for a line without Hooke's joints, for one that starts free or damps all frequencies
+    angle of all joints, None for a line without Hooke's joints, for one that is free–free or damps all frequencies
     alike, and until it is computed.
     """
 
@@ -89,7 +89,7 @@ def overview(
     return charted(at_speed(answer(judged(asked(line, speed=speed, unit=unit)))), points, progress)
 
 
-def at_speed(given: Answer) -> Overview:
+def at_speed(given: OverviewAssessment) -> Overview:
     """An answer with what belongs to the operating speed, without the chart."""
     judged = given.speed is not None and not lossy(given.assembly)  # which the findings say
     here: Stability | None = None

@@ -13,9 +13,9 @@ from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
 from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import unexcited
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import has_joint_angles
 from trunnion.errors import ComputationError, InputError
-from trunnion.floquet.stability.along import StabilityAlong
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
 from trunnion.modes.resonance_speeds import ResonanceSpeeds
 from trunnion.response.speed_sweep import speed_sweep
 from trunnion.results.finding import Finding, Gravity
@@ -59,16 +59,16 @@ def line_findings(line: Driveline, speed: float | None) -> Iterator[Finding]:
                 Gravity.CAUTION, f"{name} is bent by {angle:.3g}°, more than most Hooke's joints allow (45°)."
             )
     if not any(isinstance(element, HookeJoint) for element in line.elements):
-        uneven = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Joint) and e.orders]
+        nonuniform = [n for n, e in zip(line.names, line.elements, strict=True) if isinstance(e, Joint) and e.orders]
         why = (
-            f"no chart is drawn; ask trunnion chart for one over the angle of {uneven[0]}"
-            if uneven
+            f"no chart is drawn; ask trunnion chart for one over the angle of {nonuniform[0]}"
+            if nonuniform
             else "so no joint excites it parametrically; no chart is drawn"
         )
         yield Finding(Gravity.NOTE, f"The line has no Hooke's joint, {why}.")
 
 
-def along_findings(assembly: Assembly, found: StabilityAlong, words: Words) -> Iterator[Finding]:
+def along_findings(assembly: Assembly, found: StabilityOverSpeed, words: Words) -> Iterator[Finding]:
     """Stability over the range at the design angles: each unstable band with the resonance it belongs to."""
     whole = f"from {words.span(found.speed[0], found.speed[-1])}"
     checked = f"{len(found.speed)} speeds, the named resonance speeds among them"
@@ -134,7 +134,7 @@ def response_findings(
     low, high = limits
     forced = [r for r in named if r.kind == "harmonic" and r.order == 1]
     forced = [r for r in forced if (1 - BEYOND) * low <= r.speed <= (1 + BEYOND) * high]
-    if not forced or not bent(assembly) or low <= 0:
+    if not forced or not has_joint_angles(assembly) or low <= 0:
         return
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
@@ -162,13 +162,13 @@ def response_findings(
     yield Finding(Gravity.CAUTION, said)
 
 
-def free_findings(assembly: Assembly, along: StabilityAlong | None, words: Words) -> Iterator[Finding]:
-    """Why a bent line that starts free has no chart."""
-    if bent(assembly):
+def free_findings(assembly: Assembly, along: StabilityOverSpeed | None, words: Words) -> Iterator[Finding]:
+    """Why a free–free line with joint angles has no chart."""
+    if has_joint_angles(assembly):
         how = "" if along else ", found speed by speed"
         yield Finding(
             Gravity.NOTE,
-            f"The line starts free: each speed is judged about its own periodic motion{how}, and no chart is drawn.",
+            f"The line is free–free: each speed is judged about its own periodic motion{how}, and no chart is drawn.",
         )
 
 

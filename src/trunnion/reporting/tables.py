@@ -12,7 +12,7 @@ from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
-from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, Kind, shown
+from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
@@ -93,7 +93,7 @@ def _numbers(element: Element) -> list[str]:
     return parts
 
 
-def _listed(values: tuple[object, ...], kind: Kind | None) -> str:
+def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
     """Quantities one after the other, or how many harmonics there are."""
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
@@ -139,10 +139,10 @@ def irregularity(contents: Contents) -> Table | None:
     if turn is None:
         return None
     from trunnion.response.kinetostatics.measures import equivalent_angle
-    from trunnion.response.kinetostatics.measures import irregularity as uneven
+    from trunnion.response.kinetostatics.measures import irregularity as nonuniform
 
     of_shafts = zip(turn.shafts, turn.speed, turn.shaft_ratio, strict=True)
-    found = {name: uneven(speed, turn.input_speed * float(ratio)) for name, speed, ratio in of_shafts}
+    found = {name: nonuniform(speed, turn.input_speed * float(ratio)) for name, speed, ratio in of_shafts}
     found["output of the line"] = turn.irregularity
     return Table.of(
         {

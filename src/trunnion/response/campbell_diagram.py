@@ -2,9 +2,9 @@
 
 Modes are those of the aligned line with the slopes of its speed-dependent loads and the stages that its loads hold
 springs in at each speed, followed by their shape. Orders are those of the disks' excitations (but for orders that the
-firing of cylinders cancels), of transmission errors and varying meshes, and 2R and 4R of every bent joint, R the speed
-of its input over the line's. A crossing has the amplification 1/(2ζ) of its mode; where a spring changes its stage a
-mode jumps, and an order in the gap meets it nowhere.
+firing of cylinders cancels), of transmission errors and varying meshes, and 2R and 4R of every angled joint, R the
+speed of its input over the line's. A crossing has the amplification 1/(2ζ) of its mode; where a spring changes its
+stage a mode jumps, and an order in the gap meets it nowhere.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.harmonics import DiskTorque, line_harmonics
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import has_joint_angles
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.laws.harmonic import forward, turning
@@ -250,7 +250,7 @@ def campbell_diagram(
         speed=speed, mode=mode, frequency=frequency, damping_ratio=ratio, rotations=assembly.topology.names,
         springs=shaft_names(assembly), kinetic=kinetic, potential=potential, lines=lines,
         crossings=tuple(sorted(met, key=lambda c: c.speed)), margin=margin,
-        jumps=tuple(sorted(jumps, key=lambda jump: jump[0])), bent=bent(assembly),
+        jumps=tuple(sorted(jumps, key=lambda jump: jump[0])), bent=has_joint_angles(assembly),
         remarks=left_out("campbell_diagram", assembly.line), unit=speed_unit(assembly.line),
     )  # fmt: skip
 
@@ -270,7 +270,7 @@ def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine,
         if isinstance(one, DiskTorque):
             torques[key] = torques.get(key, 0.0) + largest
     for j, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
-        if law.uneven:
+        if law.nonuniform:
             for cycles in (m * float(rate) for rate in topo.joint_rates(j) for m in MULTIPLES):
                 found.setdefault((cycles, 0.0), {})[names[topo.stations[j].element]] = None
     for mesh in topo.meshes:

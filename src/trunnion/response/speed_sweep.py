@@ -18,7 +18,7 @@ from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.stability.where_unstable import where_unstable
 from trunnion.numerics.memory import require_memory
 from trunnion.response.orders.response import has_rating, order_response, response_about
-from trunnion.response.ranges.largest import Quantity, first_speeds, search
+from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
@@ -142,14 +142,14 @@ def _between(speeds: Array, part: Array) -> Array:
     return speeds[(speeds > part[0]) & (speeds < part[-1])]
 
 
-def _torques(assembly: Assembly) -> list[Quantity]:
+def _torques(assembly: Assembly) -> list[SearchedQuantity]:
     """What is largest somewhere: torques of all springs, with their means and without."""
 
-    def of(c: int, word: str) -> Quantity:
-        return Quantity(lambda found: getattr(found, word)[:, c], lambda found: found.torque[:, :, c])
+    def of(c: int, word: str) -> SearchedQuantity:
+        return SearchedQuantity(lambda found: getattr(found, word)[:, c], lambda found: found.torque[:, :, c])
 
-    def rated(c: int) -> Quantity:
-        return Quantity(
+    def rated(c: int) -> SearchedQuantity:
+        return SearchedQuantity(
             lambda found: found.rated_torque[:, c], lambda found: found.torque[:, :, c] * found.frequency_factor
         )
 

@@ -14,15 +14,15 @@ from trunnion.results.variables import Attribute, Coordinate, Variable
 if TYPE_CHECKING:
     from trunnion.systems.system import System
 
-Held = Variable | Attribute
+DatasetItem = Variable | Attribute
 
 
-def axis(name: str, values: Any, unit: str = "", about: str = "") -> Held:
+def data_coordinate(name: str, values: Any, unit: str = "", about: str = "") -> DatasetItem:
     """The values along an axis: numbers with a unit, or names."""
     return Coordinate(name, values, name, unit, about)
 
 
-def over(axes: str, name: str, values: Any, unit: str = "", about: str = "", **more: Any) -> Held:
+def data_variable(axes: str, name: str, values: Any, unit: str = "", about: str = "", **more: Any) -> DatasetItem:
     """Values over ``axes`` (names with blanks between; "" for one number); complex ones as two parts.
 
     ``more`` are further attributes of the variable, such as flag meanings.
@@ -30,39 +30,39 @@ def over(axes: str, name: str, values: Any, unit: str = "", about: str = "", **m
     return Variable(name, values, axes, unit, about, more)
 
 
-def fields_over(axes: str, result: object, **units: str) -> Iterator[Held]:
+def data_variables(axes: str, result: object, **units: str) -> Iterator[DatasetItem]:
     """Attributes of a result over ``axes``, under their own names, each with its unit ("" for none)."""
     for name, unit in units.items():
-        yield over(axes, name, getattr(result, name), unit)
+        yield data_variable(axes, name, getattr(result, name), unit)
 
 
-def remark(name: str, value: object) -> Held:
+def data_attribute(name: str, value: object) -> DatasetItem:
     """Something about the whole: an attribute of the dataset."""
     return Attribute(name, value)
 
 
-def remarks(**values: object) -> Iterator[Held]:
+def data_attributes(**values: object) -> Iterator[DatasetItem]:
     """Several remarks by name."""
     for name, value in values.items():
-        yield remark(name, value)
+        yield data_attribute(name, value)
 
 
-def ending(outcome: Outcome) -> Iterator[Held]:
+def ending(outcome: Outcome) -> Iterator[DatasetItem]:
     """How the computation ended."""
-    yield from remarks(outcome=outcome.kind, outcome_sentence=outcome.sentence)
+    yield from data_attributes(outcome=outcome.kind, outcome_sentence=outcome.sentence)
 
 
-def parameters_of(system: System) -> Iterator[Held]:
+def parameters_of(system: System) -> Iterator[DatasetItem]:
     """The parameters a system stood at."""
     for name, value in system.parameters.items():
-        yield remark(f"parameter {name}", value)
+        yield data_attribute(f"parameter {name}", value)
 
 
-def about(system: System, outcome: Outcome, **remarks: object) -> Iterator[Held]:
+def about(system: System, outcome: Outcome, **remarks: object) -> Iterator[DatasetItem]:
     """What a result on a system says of the whole: the system, ``remarks``, how it ended, the parameters."""
-    yield remark("system", system.name)
+    yield data_attribute("system", system.name)
     for name, value in remarks.items():
-        yield remark(name, value)
+        yield data_attribute(name, value)
     yield from ending(outcome)
     yield from parameters_of(system)
 
@@ -78,7 +78,7 @@ class Described(Result):
         return self.describe()
 
 
-class Judged(Described):
+class DescribedWithFindings(Described):
     """One whose findings name speeds too."""
 
     unit: str

@@ -33,7 +33,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True)
-class Label:
+class FieldLabel:
     """What a field or a computed value is: a ``kind`` of value, or of its ``members`` each; None for what only the
     package uses."""
 
@@ -65,22 +65,22 @@ class Label:
 
 def coordinate(axis: str, unit: str = "", words: str = "", *, name: str = "", **given: Any) -> Any:
     """A field that labels an axis, under the name of the axis or another ``name``; ``given`` as of ``field``."""
-    return _field(Label(Coordinate, axis, unit, words, name or axis), given)
+    return _field(FieldLabel(Coordinate, axis, unit, words, name or axis), given)
 
 
 def variable(axes: str = "", unit: str = "", words: str = "", *, name: str = "", more: Any = None, **given: Any) -> Any:
     """A field of values over axes; ``more`` as of ``Variable``."""
-    return _field(Label(Variable, axes, unit, words, name, more or {}), given)
+    return _field(FieldLabel(Variable, axes, unit, words, name, more or {}), given)
 
 
 def attribute(words: str = "", unit: str = "", *, name: str = "", **given: Any) -> Any:
     """A field that says something about the whole."""
-    return _field(Label(Attribute, "", unit, words, name), given)
+    return _field(FieldLabel(Attribute, "", unit, words, name), given)
 
 
 def internal(words: str = "", unit: str = "", axes: str = "", **given: Any) -> Any:
     """A field that is in no dataset: what else is computed from, or is said in the text alone."""
-    return _field(Label(None, axes, unit, words), given)
+    return _field(FieldLabel(None, axes, unit, words), given)
 
 
 def members(kind: type, axis: str, words: str = "", *, name: str = "", only: str = "", **given: Any) -> Any:
@@ -89,7 +89,7 @@ def members(kind: type, axis: str, words: str = "", *, name: str = "", only: str
     name : attribute that labels them along the axis, if there is one.
     only : attributes that are declared, in this order; by default all that are labelled.
     """
-    return _field(Label(Variable, axis, "", words, name, {}, kind, only), given)
+    return _field(FieldLabel(Variable, axis, "", words, name, {}, kind, only), given)
 
 
 def computed(stated: Any, after: str = "") -> Callable[[F], F]:
@@ -112,14 +112,14 @@ def labelled(kind: type[T]) -> type[T]:
     return cast(type[T], made)
 
 
-def labels(kind: type) -> Mapping[str, Label]:
+def labels(kind: type) -> Mapping[str, FieldLabel]:
     """Labels of a class by the name of the field or property, in the order in which they are declared."""
     return getattr(kind, "__labels__", {})
 
 
-def _in_order(kind: Any) -> dict[str, Label]:
+def _in_order(kind: Any) -> dict[str, FieldLabel]:
     """Fields in their order, then what is computed, but for what goes ``after`` another."""
-    found: dict[str, Label] = {one.name: one.metadata[LABEL] for one in fields(kind) if LABEL in one.metadata}
+    found: dict[str, FieldLabel] = {one.name: one.metadata[LABEL] for one in fields(kind) if LABEL in one.metadata}
     for base in reversed(kind.__mro__):
         for name, one in vars(base).items():
             function = getattr(one, "fget", None) or getattr(one, "func", None)
@@ -148,17 +148,17 @@ def declared(one: Any) -> Iterator[Variable | Attribute]:
     yield from attributes
 
 
-def _of_members(owner: object, label: Label, every: Iterable[object]) -> Iterator[Variable | Attribute]:
+def _of_members(owner: object, label: FieldLabel, every: Iterable[object]) -> Iterator[Variable | Attribute]:
     several, stated = list(every), labels(label.members) if label.members else {}
     if label.name:
         yield Coordinate(label.axes, as_stored([attrgetter(label.name)(one) for one in several]), label.axes)
     every_one = [name for name, one in stated.items() if one.kind is not None and name != label.name]
     for path in label.only.split() or every_one:
-        own = stated.get(path, Label(Variable))
+        own = stated.get(path, FieldLabel(Variable))
         values = as_stored([attrgetter(path)(one) for one in several])
         yield replace(own, axes=label.axes).of(owner, path.rpartition(".")[2], values)
 
 
-def _field(label: Label, given: dict[str, Any]) -> Any:
+def _field(label: FieldLabel, given: dict[str, Any]) -> Any:
     made: Field[Any] = field(metadata={LABEL: label}, **given)
     return made

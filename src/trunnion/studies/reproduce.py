@@ -62,18 +62,18 @@ def reproduce(
         raise InputError("must be a whole number, 50 or more", key="points", value=points)
     if name != ALL:
         return _one(name, points, progress)
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
     count = len(PAPERS)
 
     def part(done: int) -> Callable[[float], None]:
-        return lambda share: tell((done + share) / count)
+        return lambda share: report_progress((done + share) / count)
 
     return Reproductions(tuple(_one(paper, points, part(i)) for i, paper in enumerate(PAPERS)))
 
 
 def _one(name: str, points: int, progress: Callable[[float], None] | None) -> Reproduction:
     module, function = PAPERS[name].split(":")
-    tell = progress or (lambda share: None)
-    made: Reproduction = getattr(import_module(module), function)(points, tell)
-    tell(1.0)
+    report_progress = progress or (lambda share: None)
+    made: Reproduction = getattr(import_module(module), function)(points, report_progress)
+    report_progress(1.0)
     return made

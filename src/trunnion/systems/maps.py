@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Integers
 from trunnion.errors import InputError
 from trunnion.numerics.curves import extremes, fourier
-from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, End, Trajectory, integrate
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, IntegrationEnd, Trajectory, integrate
 from trunnion.numerics.integration.integration import kernel as compiled_core
 from trunnion.numerics.integration.tangents import Motion
 from trunnion.systems.events import Event, watch
@@ -42,7 +42,7 @@ LOOSER = (1.0, 10.0, 100.0)
 
 
 @dataclass(frozen=True)
-class Passage:
+class MapEvaluation:
     """One application of a map.
 
     state (n,): P(x); tangents (n, n): DP; by_values (n, k): derivatives by the values asked for; changes of regime on
@@ -80,13 +80,15 @@ class PeriodMap(Protocol):
     def at(self, *values: float) -> Self:
         """The same map at other values; a value that is none raises InputError, here or where the map is applied."""
 
-    def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
+    def __call__(
+        self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False
+    ) -> MapEvaluation:
         """P(x), its derivative, and the derivatives by some of the values; ``watch`` records what is observed."""
 
     def settle(self, x: Array, periods: int) -> Array | None:
         """Where the motion is after some applications, as near as a start has to be; None where it ends before."""
 
-    def observe(self, x: Array, passage: Passage) -> Observed:
+    def observe(self, x: Array, passage: MapEvaluation) -> Observed:
         """What the closed motion from x does; NaN where it cannot be computed."""
 
 
@@ -107,7 +109,7 @@ class RubbingMap(PeriodMap, Protocol):
         """Places (slider,) of their deflections among the states."""
 
     @property
-    def held(self) -> tuple[int, ...]:
+    def fixed(self) -> tuple[int, ...]:
         """Numbers of those that are kept from slipping."""
 
     def holding(self, which: tuple[int, ...]) -> Self:
@@ -146,7 +148,7 @@ class IntegratedMap:
     tolerance: float = TOLERANCE
     most_steps: int = MOST_STEPS
     look: Callable[[System, Array, Array], Array] | None = None
-    held: tuple[int, ...] = ()
+    fixed: tuple[int, ...] = ()
 
     @classmethod
     def of(cls, system: System, *, phase: float = 0.0, periods: int = 1, tolerance: float = TOLERANCE) -> Self:
@@ -157,10 +159,10 @@ class IntegratedMap:
     def system(self) -> System:
         """The system at the values."""
         system = self.family(*self.values)
-        if not self.held:
+        if not self.fixed:
             return system
         assert system.regimes is not None
-        numbers = system.regimes.holding(np.array(self.held), system.numbers)
+        numbers = system.regimes.holding(np.array(self.fixed), system.numbers)
         return system.with_fields(numbers_of=lambda values: numbers)
 
     @property
@@ -200,13 +202,13 @@ class IntegratedMap:
         watch: bool = False,
         looser: float = 1.0,
         dense: bool = False,
-    ) -> Passage:
+    ) -> MapEvaluation:
         n = self.size
         run = self.run(np.vstack([x, np.eye(n)]) if tangents else x[None], dense=dense, looser=looser)
-        columns = [self.slope(x, run, place) for place in by] if run.end is End.REACHED else []
-        done = run.end is End.REACHED and all(np.isfinite(column).all() for column in columns)
+        columns = [self.slope(x, run, place) for place in by] if run.end is IntegrationEnd.REACHED else []
+        done = run.end is IntegrationEnd.REACHED and all(np.isfinite(column).all() for column in columns)
         by_values = np.stack(columns, axis=1) if columns else np.zeros((n, 0))
-        return Passage(run.final[0], run.final[1:].T, by_values, len(run.event_time), done, run)
+        return MapEvaluation(run.final[0], run.final[1:].T, by_values, len(run.event_time), done, run)
 
     def slope(self, x: Array, run: Trajectory, place: int) -> Array:
         """∂P by one of the values, by a central difference; NaN where a motion ends before."""
@@ -215,7 +217,7 @@ class IntegratedMap:
             moved = list(self.values)
             moved[place] += side * self.steps[place]
             beside = self.at(*moved).run(x[None])
-            ends.append(beside.final[0] if beside.end is End.REACHED else np.full(len(x), np.nan))
+            ends.append(beside.final[0] if beside.end is IntegrationEnd.REACHED else np.full(len(x), np.nan))
         return np.asarray((ends[1] - ends[0]) / (2 * self.steps[place]))
 
     def settle(self, x: Array, periods: int) -> Array | None:
@@ -224,9 +226,9 @@ class IntegratedMap:
             self.system.equations, self.phase, self.phase + periods * self.length, x,
             regime=self.system.regime_at(self.phase, x), tolerance=max(self.tolerance, SETTLED), dense=False,
         )  # fmt: skip
-        return run.final[0] if run.end is End.REACHED else None
+        return run.final[0] if run.end is IntegrationEnd.REACHED else None
 
-    def observe(self, x: Array, passage: Passage) -> Observed:
+    def observe(self, x: Array, passage: MapEvaluation) -> Observed:
         look = self.look or (lambda system, times, states: states)
         run = next((run for run in (self.run(x[None], dense=True, looser=by) for by in LOOSER) if _reached(run)), None)
         if run is None:
@@ -245,7 +247,7 @@ class IntegratedMap:
         return np.arange(self.size - self.sliders, self.size)
 
     def holding(self, which: tuple[int, ...]) -> Self:
-        return replace(self, held=which)
+        return replace(self, fixed=which)
 
     def idle(self, x: Array) -> tuple[int, ...]:
         passage, regimes, count = self(x, tangents=False, dense=True), self.system.regimes, self.sliders
@@ -295,17 +297,17 @@ class TimedMap(IntegratedMap):
 
 
 def _reached(run: Trajectory) -> bool:
-    return run.end is End.REACHED
+    return run.end is IntegrationEnd.REACHED
 
 
 class Image(NamedTuple):
     """What a map returns: the state (n,), the images of the tangent vectors (k, n), the time it took, how it
-    ended (``End.REACHED``, or what went wrong: the state is then NaN), and the trajectory behind it."""
+    ended (``IntegrationEnd.REACHED``, or what went wrong: the state is then NaN), and the trajectory behind it."""
 
     state: Array
     tangents: Array
     duration: float
-    end: End
+    end: IntegrationEnd
     trajectory: Trajectory
 
 
@@ -429,21 +431,22 @@ class SectionMap(_Applied):
     def apply(
         self, state: ArrayLike, tangents: ArrayLike | None = None, *, time: float = 0.0, dense: bool = False
     ) -> Image:
-        """The next crossing after ``time``, and DP·v for each row of ``tangents``; ``end`` is ``End.STOPPED``
-        where there is one and ``End.REACHED`` where there is none within ``longest``."""
+        """The next crossing after ``time``, and DP·v for each row of ``tangents``; ``end`` is
+        ``IntegrationEnd.STOPPED`` where there is one and ``IntegrationEnd.REACHED`` where there is none within
+        ``longest``."""
         block = _block(state, tangents)
         run = integrate(
             self.system.equations, time, time + self.limit, block, regime=self.system.regime_at(time, block[0]),
             tolerance=self.tolerance, most_steps=self.most_steps, watch=self._watch, dense=dense,
         )  # fmt: skip
-        if run.end is not End.STOPPED:
+        if run.end is not IntegrationEnd.STOPPED:
             return _image(run, np.full_like(run.final, np.nan), run.time - time, run.end)
         final = run.final.copy()
         rate = self.system.rate_at(run.time, final[0], run.final_regime)
         gradient, by_time = self._gradient(run)
         speed = gradient @ rate + by_time
         final[1:] -= np.outer(final[1:] @ gradient / speed, rate)
-        return Image(final[0], final[1:], run.time - time, End.REACHED, run)
+        return Image(final[0], final[1:], run.time - time, IntegrationEnd.REACHED, run)
 
     def crossings(self, state: Array, wanted: int) -> Crossings:
         """The next ``wanted`` crossings of the motion from ``state`` at time 0; looked for in pieces of a hundredth of
@@ -465,7 +468,7 @@ class SectionMap(_Applied):
             times.append(met[once])
             last, have = met[-1] if len(met) else last, have + int(once.sum())
             since = 0.0 if mine.any() else since + piece
-            if run.end is not End.REACHED or have >= wanted or since >= self.limit:
+            if run.end is not IntegrationEnd.REACHED or have >= wanted or since >= self.limit:
                 return Crossings(np.concatenate(points)[:wanted], np.concatenate(times)[:wanted], run)
             passed += piece
             time = 0.0 if period is None else (time + piece) % period
@@ -485,7 +488,7 @@ def _block(state: ArrayLike, tangents: ArrayLike | None) -> Array:
     return x[None] if tangents is None else np.vstack([x, np.atleast_2d(np.asarray(tangents, dtype=float))])
 
 
-def _image(run: Trajectory, final: Array, duration: float, end: End) -> Image:
-    if run.end is not End.REACHED:
+def _image(run: Trajectory, final: Array, duration: float, end: IntegrationEnd) -> Image:
+    if run.end is not IntegrationEnd.REACHED:
         final = np.full_like(final, np.nan)
     return Image(final[0], final[1:], duration, end, run)

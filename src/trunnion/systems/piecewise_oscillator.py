@@ -21,7 +21,7 @@ LAWS = ("always", "in contact", "never pulling")
 
 
 @dataclass(frozen=True)
-class Regimes:
+class OscillatorRegimes:
     """What the exact motion is computed from, all divided by the mass; see ``numerics/piecewise_kernel``.
 
     pieces (regimes, 3): damping, slope and offset; guards (regimes, most, 3): a, e, h of what falls through zero at the
@@ -234,9 +234,11 @@ class PiecewiseOscillator:
         )  # fmt: skip
 
     @cached_property
-    def regimes(self) -> Regimes:
+    def regimes(self) -> OscillatorRegimes:
         """The linear regimes and what leads from one to another."""
         found = stages_of(self.spring, self.damping, self.damping_law)
         used = (found.then >= 0).any(axis=0)
         falling = np.ascontiguousarray((-found.guards[..., 3:] * found.guards[..., :3])[:, used])
-        return Regimes(found.pieces / self.inertia, falling, np.ascontiguousarray(found.then[:, used]), found.side)
+        return OscillatorRegimes(
+            found.pieces / self.inertia, falling, np.ascontiguousarray(found.then[:, used]), found.side
+        )

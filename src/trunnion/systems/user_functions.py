@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
-from trunnion.portable import carried
+from trunnion.portable import pickled
 
 RAISED, WRONG_SHAPE = 1, 2
 STEP = 1e-3
@@ -67,7 +67,7 @@ class CFunction:
     def __reduce__(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         if self.maker is None:
             return CFunction, (0,)
-        made = carried(self.maker)
+        made = pickled(self.maker)
         _MADE.setdefault(made, self)
         return _made_again, (made,)
 
@@ -144,7 +144,7 @@ def parameter_tuple(names: tuple[str, ...]) -> Callable[..., Any]:
     return namedtuple("Parameters", names, rename=True)
 
 
-class Mode(NamedTuple):
+class CompilationMode(NamedTuple):
     """How C functions are made: of machine code, or of what the interpreter calls.
 
     jit : compiles a function, or leaves it as it is.
@@ -171,7 +171,7 @@ def remade(make: Callable[..., CFunction]) -> Callable[..., CFunction]:
 
 
 def wrap(
-    build: Callable[[Mode], Any], kind: Any, size: int, names: tuple[str, ...], *, compiled: bool = True
+    build: Callable[[CompilationMode], Any], kind: Any, size: int, names: tuple[str, ...], *, compiled: bool = True
 ) -> CFunction:
     """What ``build`` makes as a C function of the signature ``kind``: of machine code where numba can."""
     make, count = parameter_tuple(names), len(names)
@@ -183,7 +183,7 @@ def wrap(
             return _uniform(machine or function, make, count, size, regimes, as_tuple and not arrays)
 
         try:
-            code = cfunc(kind)(build(Mode(INNER, uniform, carray, INNER(lambda: RAISED))))
+            code = cfunc(kind)(build(CompilationMode(INNER, uniform, carray, INNER(lambda: RAISED))))
         except NumbaError:
             continue
         except Exception:  # numba fails on odd functions in odd ways; the interpreter can still call them
@@ -204,7 +204,7 @@ def wrap(
         return plain
 
     signature = ctypes.CFUNCTYPE(*map(to_ctypes, (kind.return_type, *kind.args)))
-    owner = signature(build(Mode(lambda function: function, called, np.ctypeslib.as_array, caught)))
+    owner = signature(build(CompilationMode(lambda function: function, called, np.ctypeslib.as_array, caught)))
     return CFunction(ctypes.cast(owner, ctypes.c_void_p).value or 0, owner, False, raised)
 
 
@@ -243,7 +243,7 @@ def _uniform(function: Callable[..., Any], make: Any, count: int, size: int, reg
     return uniform
 
 
-def _slope_along(mode: Mode, uniform: Any, size: int, rows: int, scale: ArrayLike) -> Any:
+def _slope_along(mode: CompilationMode, uniform: Any, size: int, rows: int, scale: ArrayLike) -> Any:
     """Of a function of ``rows`` numbers its slope along v, and ``late`` in time, by fourth-order differences in units
     of ``scale``: (t, x, p, which, v, late, out) → 0, or what went wrong."""
     weight = np.array(scale, dtype=float)
@@ -289,7 +289,7 @@ def rate_function(
     sloped_by_regime = jacobian is not None and takes(jacobian, (3, 4), "jacobian") == 4
     count = len(names)
 
-    def with_jacobian(mode: Mode) -> Any:
+    def with_jacobian(mode: CompilationMode) -> Any:
         def rows(*arguments: Any) -> Array:
             return np.asarray(jacobian(*arguments), dtype=np.float64)
 
@@ -308,7 +308,7 @@ def rate_function(
 
         return tangents
 
-    def differenced(mode: Mode, uniform: Any) -> Any:
+    def differenced(mode: CompilationMode, uniform: Any) -> Any:
         along = _slope_along(mode, uniform, size, size, scale)
 
         @mode.jit
@@ -320,7 +320,7 @@ def rate_function(
 
         return tangents
 
-    def build(mode: Mode) -> Any:
+    def build(mode: CompilationMode) -> Any:
         uniform, array, caught = mode.uniform(function, regimes), mode.array, mode.caught
         tangents = differenced(mode, uniform) if jacobian is None else with_jacobian(mode)
 
@@ -365,7 +365,7 @@ def guard_function(
     def flat(*arguments: Any) -> Any:
         return np.atleast_1d(function(*arguments))
 
-    def build(mode: Mode) -> Any:
+    def build(mode: CompilationMode) -> Any:
         uniform, array, caught = mode.uniform(flat, regimes, machine or function), mode.array, mode.caught
         along = _slope_along(mode, uniform, size, guards, scale)
 
@@ -407,7 +407,7 @@ def jump_function(
     takes(function, (4,), "jump")
     count = len(names)
 
-    def build(mode: Mode) -> Any:
+    def build(mode: CompilationMode) -> Any:
         uniform, array, caught = mode.uniform(function, True), mode.array, mode.caught
         along = _slope_along(mode, uniform, size, size, scale)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.parts.pieces import column
+from trunnion.app.parts.widgets import column
 from trunnion.pictures.draw_bokeh import PIXELS, Drawn, height_of
 from trunnion.pictures.picture import Item, Picture
 

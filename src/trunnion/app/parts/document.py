@@ -25,7 +25,7 @@ from trunnion.app.parts.form import (
     LOADS,
     SCHEDULE,
     SWITCHED_OFF,
-    Group,
+    FieldGroup,
     Path,
     disks_of,
     form,
@@ -35,7 +35,7 @@ from trunnion.app.parts.form import (
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.kinds import KINDS
-from trunnion.driveline.quantities import Kind, eye_unit, parse
+from trunnion.driveline.quantities import QuantityKind, eye_unit, parse
 from trunnion.driveline.rules import RULES
 from trunnion.errors import InputError, InputRemark
 
@@ -49,7 +49,7 @@ _WORDS = ("name", "description", "after", "of", "speed_unit", "application", "ru
 
 
 @dataclass(frozen=True)
-class _State:
+class _DocumentState:
     """The content of the file, and a key for each of its listed tables by list, which it keeps wherever it moves."""
 
     data: dict[str, Any]
@@ -63,7 +63,7 @@ class Document:
         self.line: Driveline = loads(text)
         data = tomllib.loads(text)
         self._fresh = count(1)
-        self._history = [_State(data, self._new_keys(data))]
+        self._history = [_DocumentState(data, self._new_keys(data))]
         self._now = 0
         self.toml = text
         self.problems: tuple[InputError, ...] = ()
@@ -74,7 +74,7 @@ class Document:
         """The content of the file, as it is typed."""
         return self._history[self._now].data
 
-    def groups(self) -> tuple[Group, ...]:
+    def groups(self) -> tuple[FieldGroup, ...]:
         """Everything that can be edited, problems beside the fields they concern."""
         keys, made = self._history[self._now].keys, []
         for group in form(self.data, self.problems):
@@ -125,7 +125,7 @@ class Document:
             raise InputError("holds what is refused, so no number can be moved", element="driveline", remedy=remedy)
         data = _texts_kept(tomllib.loads(dumps(line)), self.data, line)
         if by and by == self._mover:
-            self._history[self._now] = _State(data, self._history[self._now].keys)
+            self._history[self._now] = _DocumentState(data, self._history[self._now].keys)
             self._judge()
             return
         self._take(data)
@@ -272,7 +272,7 @@ class Document:
             own = self._history[self._now].keys
             alike = all(len(_listed(data, section)) == len(one) for section, one in own.items())
             keys = own if alike else self._new_keys(data)
-        self._history = [*self._history[: self._now + 1][-MOST_STEPS:], _State(data, keys)]
+        self._history = [*self._history[: self._now + 1][-MOST_STEPS:], _DocumentState(data, keys)]
         self._now = len(self._history) - 1
         self._mover = ""
         self._judge()
@@ -366,7 +366,7 @@ def _texts_kept(data: dict[str, Any], before: dict[str, Any], line: Driveline) -
     return data
 
 
-def _kept(text: str | float, old: Any, kind: Kind) -> Any:
+def _kept(text: str | float, old: Any, kind: QuantityKind) -> Any:
     try:
         value = parse(text, kind)
         if isinstance(old, str | int | float) and not isinstance(old, bool) and parse(old, kind) == value:

@@ -9,7 +9,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from trunnion.app.parts.form import Field, Group
+from trunnion.app.parts.form import Field, FieldGroup
 from trunnion.driveline.kinds import KINDS
 
 _SCRIPT = """
@@ -181,7 +181,7 @@ class Editor(JSComponent):
         super().__init__(**params)
         self._on_edit = on_edit
 
-    def show(self, groups: tuple[Group, ...]) -> None:
+    def show(self, groups: tuple[FieldGroup, ...]) -> None:
         """Fields as they stand now."""
         self.groups = [asdict(g) | {"path": list(g.path), "fields": [_field(f) for f in g.fields]} for g in groups]
 

@@ -43,7 +43,7 @@ class Field:
 
 
 @dataclass(frozen=True)
-class Group:
+class FieldGroup:
     """Fields that belong together: the whole line, its operation, an element, a limit.
 
     key: what a listed table keeps while others come, go and move; its place in ``path`` changes.
@@ -58,7 +58,7 @@ class Group:
     key: int = 0
 
 
-class _Complaints:
+class _OpenErrors:
     """What is still to be said of a file; each is taken off by the field or the group that says it."""
 
     def __init__(self, problems: Iterable[InputError]) -> None:
@@ -84,9 +84,9 @@ class _Complaints:
         return mine
 
 
-def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Group, ...]:
+def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[FieldGroup, ...]:
     """Everything that can be edited; what concerns no group is said of the whole."""
-    left = _Complaints(problems)
+    left = _OpenErrors(problems)
     elements, operation = data.get("element", []), data.get("operation", {})
     names, disks = names_of(elements), disks_of(elements)
     groups = [_whole(data, left), _operation(operation, left)]
@@ -100,16 +100,16 @@ def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Group
     return tuple(groups)
 
 
-def _whole(data: Mapping[str, Any], left: _Complaints) -> Group:
+def _whole(data: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
     fields = [
         Field((key,), label_of(key), text_of(data[key], kind), message=left.said(("", "driveline"), key))
         for key, kind in _WHOLE.items()
         if key in data
     ]
-    return Group((), "line", "", tuple(fields), tuple(k for k in _WHOLE if k not in data))
+    return FieldGroup((), "line", "", tuple(fields), tuple(k for k in _WHOLE if k not in data))
 
 
-def _operation(table: Mapping[str, Any], left: _Complaints) -> Group:
+def _operation(table: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
     path = owners = ("operation",)
     unit = table.get("speed_unit", "rpm")
     example = _EXAMPLE_SPEEDS.get(unit, "157 rad/s")
@@ -129,10 +129,10 @@ def _operation(table: Mapping[str, Any], left: _Complaints) -> Group:
     application, known = str(table.get("application", "")), ("", *APPLICATIONS)
     said_application = left.said(owners, "application")
     fields.append(Field((*path, "application"), "application", application, "", said_application, known))
-    return Group(path, "operation", "", tuple(fields), (), left.rest(owners))
+    return FieldGroup(path, "operation", "", tuple(fields), (), left.rest(owners))
 
 
-def _switched_off(place: int, table: Any, left: _Complaints) -> Group:
+def _switched_off(place: int, table: Any, left: _OpenErrors) -> FieldGroup:
     path: Path = ("operation", SWITCHED_OFF, place)
     table = table if isinstance(table, dict) else {}
     rule = str(table.get("rule", ""))
@@ -143,10 +143,10 @@ def _switched_off(place: int, table: Any, left: _Complaints) -> Group:
         Field((*path, "rule"), "rule", rule, "", left.said(owners, "rule"), known),
         Field((*path, "reason"), "reason", reason, "why it does not fit", said),
     )
-    return Group(path, f"{OFF_KIND}: {rule}", OFF_KIND, fields, (), left.rest(owners))
+    return FieldGroup(path, f"{OFF_KIND}: {rule}", OFF_KIND, fields, (), left.rest(owners))
 
 
-def _load_case(place: int, table: Any, disks: Sequence[str], left: _Complaints) -> Group:
+def _load_case(place: int, table: Any, disks: Sequence[str], left: _OpenErrors) -> FieldGroup:
     """A field for every disk; an empty one leaves the disk its own torque."""
     path: Path = ("operation", LOAD_CASE, place)
     table = table if isinstance(table, dict) else {}
@@ -157,10 +157,10 @@ def _load_case(place: int, table: Any, disks: Sequence[str], left: _Complaints) 
     for disk in dict.fromkeys([*disks, *loads]):
         text = text_of(loads.get(disk, ""), TORQUE)
         fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", left.said(owners, disk)))
-    return Group(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
+    return FieldGroup(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
 
 
-def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], left: _Complaints) -> Group:
+def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], left: _OpenErrors) -> FieldGroup:
     """Its points, and what every joint and disk has there; an empty field leaves the element as it is.
 
     What it says of an element that is there no more keeps its field, where it can be taken away."""
@@ -186,7 +186,7 @@ def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], lef
             )
             text = text_of(values.get(one, ""), kind)
             fields.append(Field((*path, key, one), f"{word} {one}", text, "as it is", "; ".join(filter(None, said))))
-    return Group(path, f"schedule {name}", SCHEDULE, tuple(fields), (), left.rest(owners))
+    return FieldGroup(path, f"schedule {name}", SCHEDULE, tuple(fields), (), left.rest(owners))
 
 
 def kind_key(key: str) -> str:
@@ -194,7 +194,7 @@ def kind_key(key: str) -> str:
     return FOLLOWED[key]
 
 
-def _element(place: int, table: Mapping[str, Any], name: str, left: _Complaints) -> Group:
+def _element(place: int, table: Mapping[str, Any], name: str, left: _OpenErrors) -> FieldGroup:
     path: Path = ("element", place)
     kind = str(table.get("type", ""))
     owners = (name, f"element {place + 1}", ("element", place + 1))
@@ -213,10 +213,10 @@ def _element(place: int, table: Mapping[str, Any], name: str, left: _Complaints)
         after = str(table.get("after", ""))
         fields.append(Field((*path, "after"), "after", after, "", left.said(owners, "after")))
     addable = dict.fromkeys(k for k in (*known, "after") if k not in table and k != "name" and k not in shown)
-    return Group(path, name, kind, tuple(fields), tuple(addable), left.rest(owners))
+    return FieldGroup(path, name, kind, tuple(fields), tuple(addable), left.rest(owners))
 
 
-def _limit(place: int, table: Mapping[str, Any], left: _Complaints) -> Group:
+def _limit(place: int, table: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
     path: Path = ("limit", place)
     of = str(table.get("of", ""))
     owners = (f"limit of {of}", f"limit {place + 1}")
@@ -226,7 +226,7 @@ def _limit(place: int, table: Mapping[str, Any], left: _Complaints) -> Group:
         hint = kind.example if kind else ""
         fields.append(Field((*path, key), label_of(key), text_of(value, kind), hint, left.said(owners, key)))
     addable = tuple(k for k in Limit.model_fields if k not in table)
-    return Group(path, f"limit of {of}", "limit", tuple(fields), addable, left.rest(owners))
+    return FieldGroup(path, f"limit of {of}", "limit", tuple(fields), addable, left.rest(owners))
 
 
 def names_of(tables: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -36,7 +36,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Answer:
+class WorkerMessage:
     """From a worker: "progress" (a share), "done" (data), "refused", "failed" or "stopped" (a sentence)."""
 
     number: int
@@ -45,7 +45,7 @@ class Answer:
     remarks: tuple[str, ...] = ()
 
 
-def send(stream: IO[bytes], message: Request | Answer) -> None:
+def send(stream: IO[bytes], message: Request | WorkerMessage) -> None:
     """Write one message, whole or not at all where it cannot be pickled."""
     stream.write(pickle.dumps(message, protocol=pickle.HIGHEST_PROTOCOL))
     stream.flush()

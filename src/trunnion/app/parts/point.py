@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from trunnion.app.parts.canvas import Canvas
-from trunnion.app.parts.pieces import column, facts, pane
+from trunnion.app.parts.widgets import column, facts, pane
 from trunnion.results.units import with_error
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import panel as pn
 
-from trunnion.app.parts.pieces import Html, Quiet, Shown, column, joined, markup
+from trunnion.app.parts.widgets import Html, HtmlPane, ProgrammaticChange, column, joined, markup
 from trunnion.driveline.changes import changes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
@@ -55,13 +55,13 @@ class Sliders:
         self.line, self.moved, self.set = line, moved, set_
         self.size = 1.0
         self.asked: dict[str, str] = {}
-        self.quiet = Quiet()
+        self.programmatic = ProgrammaticChange()
         self.which = pn.widgets.Select(label="Parameter to move", options=[], sizing_mode="stretch_width")
         self.slider = pn.widgets.FloatSlider(label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
         self.value = pn.widgets.FloatInput(label="Value as a number", width=105)
         self.low = pn.widgets.FloatInput(label="Slider from", width=72)
         self.high = pn.widgets.FloatInput(label="to", width=72)
-        self.message = Shown("", css_classes=["refusal"])
+        self.message = HtmlPane("", css_classes=["refusal"])
         self.which.param.watch(lambda event: self._chosen(), "value")
         for number in (self.slider, self.value):
             number.param.watch(lambda event: self._moved(event.new), "value")
@@ -75,7 +75,7 @@ class Sliders:
         self.line = line
         paths = parameters(line)
         if self.which.options != paths:
-            with self.quiet:
+            with self.programmatic:
                 kept = self.asked.get("move", self.which.value)
                 self.which.options = paths
                 self.which.value = kept if kept in paths else _usual(paths)
@@ -110,11 +110,11 @@ class Sliders:
 
     def _chosen(self, keep: bool = False) -> None:
         path = self.which.value
-        if self.quiet or path is None:
+        if self.programmatic or path is None:
             return
         unit, self.size = shown_unit(self.line, path)
         shown = pack(self.line).value(path) / self.size
-        with self.quiet:
+        with self.programmatic:
             same = keep and self.slider.label.startswith(path) and self.slider.start <= shown <= self.slider.end
             if not same:
                 low, high = _ends(shown, unit)
@@ -130,23 +130,23 @@ class Sliders:
 
     def _bounds(self) -> None:
         low, high = self.low.value, self.high.value
-        if self.quiet or None in (low, high) or not low < high:
+        if self.programmatic or None in (low, high) or not low < high:
             return
-        with self.quiet:
+        with self.programmatic:
             value = min(max(self.slider.value, low), high)
             self.slider.param.update(start=low, end=high, step=(high - low) / STEPS, value=value)
         self.set()
 
     def _moved(self, value: float | None) -> None:
         path = self.which.value
-        if self.quiet or value is None or path is None or not math.isfinite(value):
+        if self.programmatic or value is None or path is None or not math.isfinite(value):
             return
         try:
             line = with_number(self.line, path, value * self.size)
         except InputError as error:
             self.message.object = str(error)
             return
-        with self.quiet:
+        with self.programmatic:
             self.message.object = ""
             self.value.value = value
             if self.slider.start <= value <= self.slider.end:

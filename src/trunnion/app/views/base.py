@@ -14,7 +14,7 @@ from trunnion.app.parts.calls import Call
 from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.document import Document
 from trunnion.app.parts.jobs import Job
-from trunnion.app.parts.pieces import Html, Quiet, faint, joined, markup, pane, wrapped
+from trunnion.app.parts.widgets import Html, ProgrammaticChange, faint, joined, markup, pane, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import speed_unit
@@ -36,7 +36,7 @@ MOST_POINTS = 400
 
 
 @dataclass(frozen=True)
-class Step:
+class ViewStep:
     """One computation of a view: its name, the call, what is shown of it, and what may be downloaded.
 
     files: endings of its data; picture: method that draws it ("" for none); drawing: its arguments; columns: variables
@@ -114,12 +114,12 @@ class Host(Protocol):
 V = TypeVar("V", bound="View")
 
 
-class Side(ABC, Generic[V]):
+class VariantPane(ABC, Generic[V]):
     """The picture of one variant, "now" or "kept": a method ``show_KIND`` for what each kind of step gives."""
 
     panel: Any
     parts: Mapping[tuple[str, ...], Sequence[Any]]
-    """Panels by the kinds of steps (``Step.show``) that draw in them."""
+    """Panels by the kinds of steps (``ViewStep.show``) that draw in them."""
 
     def __init__(self, view: V, variant: str) -> None:
         self.view, self.variant = view, variant
@@ -136,7 +136,7 @@ class Side(ABC, Generic[V]):
 
     # -- whose result it is ---------------------------------------------------------------------------------------
 
-    def expect(self, wanted: Sequence[tuple[Step, Job]], doubt: str) -> None:
+    def expect(self, wanted: Sequence[tuple[ViewStep, Job]], doubt: str) -> None:
         """From now on ``wanted`` is asked for: what is shown of other jobs, or all of it in ``doubt``, is stamped."""
         jobs: dict[str, list[Job]] = {}
         for step, job in wanted:
@@ -151,13 +151,13 @@ class Side(ABC, Generic[V]):
         self.doubt = doubt
         self.tell(ANEW)
 
-    def take(self, step: Step, job: Job, data: Any) -> None:
+    def take(self, step: ViewStep, job: Job, data: Any) -> None:
         """Show what a job gave."""
         self.show(step, data)
         self.shown[step.show] = job
         self.tell(ANEW)
 
-    def refuse(self, step: Step, job: Job, sentence: str) -> None:
+    def refuse(self, step: ViewStep, job: Job, sentence: str) -> None:
         """Show that a job gave nothing, and why."""
         self.refused(step, sentence)
         self.shown[step.show] = job
@@ -200,11 +200,11 @@ class Side(ABC, Generic[V]):
     def clear(self) -> None:
         """Show nothing."""
 
-    def show(self, step: Step, data: Any) -> None:
+    def show(self, step: ViewStep, data: Any) -> None:
         """Show what a step gave: by the method of the name of what made ``data`` in ``trunnion.app.shown``."""
         getattr(self, f"show_{step.show}")(step, data)
 
-    def refused(self, step: Step, sentence: str) -> None:
+    def refused(self, step: ViewStep, sentence: str) -> None:
         """Say why a step gave nothing; asked for of soft steps only."""
 
 
@@ -220,14 +220,14 @@ class View(ABC):
     """Of a view with several questions: the controls that each choice of the setting "what" has."""
     asked_by: Sequence[str] = ()
     """Settings that say which question it is."""
-    side: type[Side[Any]]
+    side: type[VariantPane[Any]]
 
     def __init__(self, session: Host) -> None:
         self.session = session
         self.settings: dict[str, Setting] = dict(self.defaults)
         self.widgets: dict[str, Any] = {}
-        self.sides: dict[str, Side[Any]] = {}
-        self.quiet = Quiet()
+        self.sides: dict[str, VariantPane[Any]] = {}
+        self.programmatic = ProgrammaticChange()
         self.downloads = pane()
         for key, make in self.fields.items():
             self._bind(key, make())
@@ -243,12 +243,12 @@ class View(ABC):
         """Choices that depend on the line."""
 
     @abstractmethod
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """What is computed, in order."""
 
     # -- what they share ------------------------------------------------------------------------------------------
 
-    def of(self, variant: str) -> Side[Any]:
+    def of(self, variant: str) -> VariantPane[Any]:
         """The picture of a variant, made when it is first needed."""
         if variant not in self.sides:
             side = self.sides[variant] = self.side(self, variant)
@@ -293,7 +293,7 @@ class View(ABC):
 
     def fill(self) -> None:
         """Show the settings in the controls."""
-        with self.quiet:
+        with self.programmatic:
             for key, widget in self.widgets.items():
                 value, choices = self.settings[key], getattr(widget, "options", None)
                 known = choices.values() if isinstance(choices, dict) else choices
@@ -315,7 +315,7 @@ class View(ABC):
 
     def _bind(self, key: str, widget: Any) -> None:
         def changed(event: Any) -> None:
-            if not (self.quiet or (event.new is None and self.defaults[key] is not None)):
+            if not (self.programmatic or (event.new is None and self.defaults[key] is not None)):
                 self.chosen(key, event.new)
 
         self.widgets[key] = widget
@@ -328,7 +328,7 @@ class View(ABC):
     def choose(self, key: str, choices: list[str]) -> None:
         """Give a widget its choices; a setting that is none of them becomes the first."""
         widget = self.widgets[key]
-        with self.quiet:
+        with self.programmatic:
             if choices and self.settings[key] not in choices:
                 self.settings[key] = choices[0]
             widget.options = choices

@@ -9,9 +9,9 @@ import panel as pn
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.document import LARGEST_FILE, Document
 from trunnion.app.parts.editor import Editor
-from trunnion.app.parts.pieces import column, pane, picture, pre, wrapped
 from trunnion.app.parts.upload import Upload
-from trunnion.app.views.base import Side, Step, View
+from trunnion.app.parts.widgets import column, pane, picture, pre, wrapped
+from trunnion.app.views.base import VariantPane, View, ViewStep
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
@@ -20,7 +20,7 @@ EMPTY = "empty"
 """To begin with nothing."""
 
 
-class _Side(Side["DrivelineView"]):
+class _DrivelinePane(VariantPane["DrivelineView"]):
     """The table with sketch and modes, or of a kept variant these alone."""
 
     def make(self) -> None:
@@ -30,11 +30,11 @@ class _Side(Side["DrivelineView"]):
         self.panel = column(self.sketch, *table, self.modes)
         self.parts = {("sketch",): [self.sketch], ("text",): [self.modes]}
 
-    def show_sketch(self, step: Step, svg: str) -> None:
+    def show_sketch(self, step: ViewStep, svg: str) -> None:
         """The line as a picture."""
         self.sketch.object = picture(svg, "sketch of the driveline, elements numbered as in the table", 1000)
 
-    def show_text(self, step: Step, text: str) -> None:
+    def show_text(self, step: ViewStep, text: str) -> None:
         """Its modes."""
         self.modes.object = pre(text)
 
@@ -44,7 +44,7 @@ class DrivelineView(View):
 
     name = "driveline"
     about = "Elements from the drive to the load. A quantity is a number with its unit; an empty field is left out."
-    side = _Side
+    side = _DrivelinePane
 
     def arrange(self) -> Any:
         """Where a line comes from, undo, and the whole file as text."""
@@ -106,11 +106,11 @@ class DrivelineView(View):
         self.editor.show(document.groups())
         self.undo.disabled, self.redo.disabled = not document.can_step(-1), not document.can_step(1)
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """The sketch, and where the natural frequencies are."""
         return [
-            Step("sketch", LINE, "sketch", picture="", files=()),
-            Step("modes", Call("tn.natural_frequencies", (LINE,)), "text", title="mode shapes"),
+            ViewStep("sketch", LINE, "sketch", picture="", files=()),
+            ViewStep("modes", Call("tn.natural_frequencies", (LINE,)), "text", title="mode shapes"),
         ]
 
 

@@ -11,12 +11,12 @@ import panel as pn
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.document import Document
-from trunnion.app.parts.pieces import Html, Shown, column, items, joined, lines, markup, pane, picture, small
+from trunnion.app.parts.widgets import Html, HtmlPane, column, items, joined, lines, markup, pane, picture, small
 from trunnion.app.views.base import (
     Setting,
-    Side,
-    Step,
+    VariantPane,
     View,
+    ViewStep,
     at_speed,
     label_speed,
     number,
@@ -35,7 +35,7 @@ HEIGHT = 3.8
 """Of a panel of curves over a turn [inches]."""
 
 
-class _Side(Side["JointsView"]):
+class _JointsPane(VariantPane["JointsView"]):
     """Curves over a turn and the forks."""
 
     def make(self) -> None:
@@ -46,20 +46,20 @@ class _Side(Side["JointsView"]):
         turned = [self.text, self.forks.panel, self.curves.panel]
         self.parts = {("turn",): turned, ("phasing",): [self.phasing], ("drawn",): [self.space]}
 
-    def show_phasing(self, step: Step, data: Any) -> None:
+    def show_phasing(self, step: ViewStep, data: Any) -> None:
         """The fork offsets that are best."""
         self.phasing.object = small(markup("<b>best fork offsets</b>: {}", lines(data["text"])))
 
-    def show_drawn(self, step: Step, svg: str) -> None:
+    def show_drawn(self, step: ViewStep, svg: str) -> None:
         """The forks in space."""
         self.space.object = picture(svg, "joints and forks in space", 760)
 
-    def refused(self, step: Step, sentence: str) -> None:
+    def refused(self, step: ViewStep, sentence: str) -> None:
         """A line without joints has no phasing."""
         where = self.phasing if step.name == "phasing" else self.space
         where.object = small(sentence)
 
-    def show_turn(self, step: Step, data: Any) -> None:
+    def show_turn(self, step: ViewStep, data: Any) -> None:
         """Curves, the largest of each, and the forks where the input is turned to."""
         panels = [replace(panel, key="below") for panel in data["picture"].panels]
         curves = replace(data["picture"], panels=panels, columns=1, height=HEIGHT * len(panels))
@@ -89,7 +89,7 @@ class JointsView(View):
         "Motion, torques and couples over one turn of the input with rigid shafts; the forks as seen along the line, "
         "turned by sliders; the angle of a joint from its angles in side and top view."
     )
-    side = _Side
+    side = _JointsPane
     defaults = {"speed": None, "torque": 100.0, "turn": 0.0, "shaft": "", "joint": "", "side": 0.0, "top": 0.0}
 
     fields = {
@@ -110,7 +110,7 @@ class JointsView(View):
         best.on_click(lambda event: self.session.beside(self._phase()))
         use = pn.widgets.Button(label="Use this angle", width=130, align="end")
         use.on_click(lambda event: self.session.edit(self._use))
-        self.compound = Shown("", margin=(18, 8))
+        self.compound = HtmlPane("", margin=(18, 8))
         forks, angles = self.row("shaft"), self.row("side", "top", "joint")
         forks.extend([self.offset, best])
         angles.extend([use, self.compound])
@@ -135,11 +135,11 @@ class JointsView(View):
         if name not in line.names:
             return
         offset = float(getattr(line.elements[line.index(str(name))], "fork_offset", 0.0) or 0.0) * DEGREES
-        with self.quiet:
+        with self.programmatic:
             self.offset.value = min(max(offset, -90.0), 90.0)
 
     def _turned(self, event: Any) -> None:
-        if self.quiet:
+        if self.programmatic:
             return
         name = str(self.settings["shaft"])
         line = self.session.document.line.replace(name, fork_offset=f"{event.new:g} deg")
@@ -161,7 +161,7 @@ class JointsView(View):
     def _use(self, document: Document) -> None:
         document.set_numbers(document.line.replace(str(self.settings["joint"]), angle=self.compound_angle()[0]))
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """A turn, the best phasing, the forks in space."""
         angle, plane = self.compound_angle()
         self.compound.object = f"compound angle {angle * DEGREES:.5g}°, plane {plane * DEGREES:.5g}° from the vertical"
@@ -170,7 +170,7 @@ class JointsView(View):
         drawing = {"unit": unit_of(line)[0]}
         space = Call("tn.sketch", (LINE,), {"input_angle": self.value("turn") / DEGREES})
         return [
-            Step("turn", turn, "turn", {**drawing, "at": self.value("turn")}, drawing=drawing, title="one turn"),
-            Step("phasing", Call("tn.phase_forks", (LINE,)), "phasing", picture="", files=(), soft=True),
-            Step("space", space, "drawn", picture="", files=(), title="forks in space", soft=True),
+            ViewStep("turn", turn, "turn", {**drawing, "at": self.value("turn")}, drawing=drawing, title="one turn"),
+            ViewStep("phasing", Call("tn.phase_forks", (LINE,)), "phasing", picture="", files=(), soft=True),
+            ViewStep("space", space, "drawn", picture="", files=(), title="forks in space", soft=True),
         ]

@@ -9,14 +9,14 @@ import panel as pn
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.parameter_range import ParameterRange
-from trunnion.app.parts.pieces import column, pane, pre, wrapped
 from trunnion.app.parts.variants import parameters, shown_unit, with_number
+from trunnion.app.parts.widgets import column, pane, pre, wrapped
 from trunnion.app.views.base import (
     MOST_POINTS,
     Setting,
-    Side,
-    Step,
+    VariantPane,
     View,
+    ViewStep,
     at_speed,
     bounded,
     count,
@@ -63,7 +63,7 @@ SAMPLES = 4096
 """Lines of such a study: the probability to within 1.5 % in the middle, and better at its ends."""
 
 
-class _Side(Side["LimitsView"]):
+class _LimitsPane(VariantPane["LimitsView"]):
     """A picture and a text."""
 
     def make(self) -> None:
@@ -78,13 +78,13 @@ class _Side(Side["LimitsView"]):
         self.picture.clear()
         self.text.object = ""
 
-    def show_best(self, step: Step, data: Any) -> None:
+    def show_best(self, step: ViewStep, data: Any) -> None:
         """The best value in words, and for the button."""
         self.text.object = pre(data["text"])
         if self.variant == "now":
             self.view.found(step.options["path"], data["value"])
 
-    def _show(self, step: Step, data: Any) -> None:
+    def _show(self, step: ViewStep, data: Any) -> None:
         self.text.object = pre(data["text"])
         if data["picture"] is None:
             self.picture.clear()
@@ -99,7 +99,7 @@ class LimitsView(View):
 
     name = "limits"
     about = "How far a number may go, how sure that is, and which numbers matter most."
-    side = _Side
+    side = _LimitsPane
     asks, asked_by = ASKS, ("what",)
     defaults = {
         "what": STABLE, "parameter": "", "low": None, "high": None, "speeds": 31, "error": 1.0, "tolerance": 5.0,
@@ -170,15 +170,15 @@ class LimitsView(View):
             return ParameterRange(path, -90 * DEGREE, 90 * DEGREE, unit, size)
         return ParameterRange(path, 0.0, 4 * now if now > 0 else size, unit, size)
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """The one that is asked for."""
         what = self.settings["what"]
         if what == RANKED:
             call = Call("tn.remedies", (LINE,), {"most": 1})
-            return [Step("ranked", call, "ranked", picture="", files=("csv", "nc"), columns=("sensitivity",))]
+            return [ViewStep("ranked", call, "ranked", picture="", files=("csv", "nc"), columns=("sensitivity",))]
         if what == ASSEMBLY:
             call = Call("tn.assembly_sensitivity", (LINE, self.value("error") * DEGREE))
-            return [Step("assembly", call, "assembly", picture="", files=())]
+            return [ViewStep("assembly", call, "assembly", picture="", files=())]
         if what == TOLERANCES:
             return [self._tolerances(line)]
         axis = self.axis(line).typed(self.typed("low"), self.typed("high"))
@@ -188,19 +188,19 @@ class LimitsView(View):
         if what == BEST:
             free = {path: (low, high)}
             call = Call("tn.optimise", (LINE, free, str(self.settings["aim"])), {"designs": DESIGNS})
-            return [Step("best", call, "best", {"path": path}, picture="", files=("csv", "nc"),
+            return [ViewStep("best", call, "best", {"path": path}, picture="", files=("csv", "nc"),
                          columns=("low", "high", "before", "value"), title="best value")]  # fmt: skip
         if what == WINDOWS:
             call = Call("tn.stable_windows", (LINE, path, low, high, speed_range(line)))
-            return [Step("windows", call, "windows", unit | now, drawing=unit, title="stable windows")]
+            return [ViewStep("windows", call, "windows", unit | now, drawing=unit, title="stable windows")]
         speeds = Call("np.linspace", (*speed_range(line), bounded(self.settings["speeds"], 2)))
         call = Call("tn.stable_limit", (LINE, path, speeds), {"low": low, "high": high, "margin": 0.0})
         columns = ("limit", "kind", "intervals", "usable", "binding", "reached")
-        return [Step("limit", call, "limit", unit | now, drawing=unit, title="stable limit", columns=columns)]
+        return [ViewStep("limit", call, "limit", unit | now, drawing=unit, title="stable limit", columns=columns)]
 
-    def _tolerances(self, line: Driveline) -> Step:
+    def _tolerances(self, line: Driveline) -> ViewStep:
         """Uniform tolerances of everything that is not zero."""
         packed, share = pack(line), min(max(self.value("tolerance"), 0.01), 90.0) / 100
         scatter = {p: share for p in parameters(line) if p.endswith(SCATTER) and packed.value(p)}
         call = Call("tn.tolerance_study", (LINE, scatter, at_speed(line, None)), {"samples": SAMPLES})
-        return Step("tolerances", call, "tolerances", title="tolerances")
+        return ViewStep("tolerances", call, "tolerances", title="tolerances")

@@ -6,11 +6,11 @@ from typing import Any
 
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
-from trunnion.app.parts.pieces import column, joined, pane, pre
+from trunnion.app.parts.widgets import column, joined, pane, pre
 from trunnion.app.views.base import (
-    Side,
-    Step,
+    VariantPane,
     View,
+    ViewStep,
     at_speed,
     bounded,
     count,
@@ -59,7 +59,7 @@ METHODS = ("exact", "shooting", "harmonic balance")
 SWEEPS = {"up": "sweep up", "down": "sweep down"}
 
 
-class _Side(Side["MotionView"]):
+class _MotionPane(VariantPane["MotionView"]):
     """The picture of the result, and its text."""
 
     def make(self) -> None:
@@ -75,21 +75,21 @@ class _Side(Side["MotionView"]):
         self.picture.clear()
         self.text.object = ""
 
-    def show_plotted(self, step: Step, data: Any) -> None:
+    def show_plotted(self, step: ViewStep, data: Any) -> None:
         """The picture of the result, and how it prints."""
         self.picture.show(data["picture"])
         self.text.object = pre(data["text"])
 
     show_run_up = show_plotted
 
-    def refused(self, step: Step, sentence: str) -> None:
+    def refused(self, step: ViewStep, sentence: str) -> None:
         """Why a soft step gave nothing."""
         if step.name == "run_up":
             self.text.object += pre(f"no steady motions beside it: {sentence}")
         else:
             self._rattle(step, {"items": [], "text": sentence})
 
-    def _rattle(self, step: Step, data: Any) -> None:
+    def _rattle(self, step: ViewStep, data: Any) -> None:
         """All methods on one picture; what each said below."""
         asked = {one.name: one.title for one in self.view.steps(self.line)}
         if step.name == next(iter(asked)):
@@ -112,7 +112,7 @@ class MotionView(View):
         "Motions of the line with everything that linear theory leaves out. Long computations can be cancelled; what "
         "is found by then stays."
     )
-    side = _Side
+    side = _MotionPane
     asks, asked_by = ASKS, ("what", "of")
     defaults = {
         "what": "periodic",
@@ -146,7 +146,7 @@ class MotionView(View):
         of = self.widgets["of"]
         self.widgets["speed"].visible &= not of.visible or of.value == OF_LINE
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """The motion that is asked for."""
         speed = at_speed(line, self.typed("speed"))
         subject, at = self._subject(speed)
@@ -160,46 +160,46 @@ class MotionView(View):
                 of = str(self.settings["of"])
                 section = {"section": SECTIONS[of]} if of in SECTIONS else {}
                 call = Call("tn.poincare_map", (subject, returns), {**at, **section})
-                return [Step("map", call, "plotted", title=POINCARE)]
+                return [ViewStep("map", call, "plotted", title=POINCARE)]
             case "exponents":
                 call = Call("tn.lyapunov_spectrum", (subject,), at)
-                return [Step("exponents", call, "plotted", title=EXPONENTS)]
+                return [ViewStep("exponents", call, "plotted", title=EXPONENTS)]
             case "chaos":
                 call = Call("tn.certify_chaos", (subject,), {**at, "sweep": False})
-                return [Step("certificate", call, "plotted", title="verdict on chaos", files=("nc",))]
+                return [ViewStep("certificate", call, "plotted", title="verdict on chaos", files=("nc",))]
         unit = {"unit": unit_of(line)[0]}
         call = Call("tn.periodic_response", (LINE, speed))
-        return [Step("periodic", call, "plotted", unit, drawing=unit, title=PERIODIC)]
+        return [ViewStep("periodic", call, "plotted", unit, drawing=unit, title=PERIODIC)]
 
     def _subject(self, speed: float) -> tuple[Any, dict[str, float]]:
         """What moves, and the speed for it: equations have a frequency of their own."""
         system = SYSTEMS.get(str(self.settings["of"]))
         return (LINE, {"speed": speed}) if system is None else (system, {})
 
-    def _run_up(self, line: Driveline) -> list[Step]:
+    def _run_up(self, line: Driveline) -> list[ViewStep]:
         """The run-up alone at first, since the steady motions beside it may take long."""
         ends, rate = speed_range(line), {"acceleration": self.value("rate")}
         alone = Call("tn.run_up", (LINE, *ends), {**rate, "steady": 0})
         whole = Call("tn.run_up", (LINE, *ends), rate)
         shown = {"unit": unit_of(line)[0], "shaft": str(self.settings["spring"])}
         return [
-            Step("alone", alone, "run_up", shown, picture="", files=()),
-            Step("run_up", whole, "run_up", shown, drawing=shown, title=RUN_UP, soft=True),
+            ViewStep("alone", alone, "run_up", shown, picture="", files=()),
+            ViewStep("run_up", whole, "run_up", shown, drawing=shown, title=RUN_UP, soft=True),
         ]
 
-    def _rattle(self, line: Driveline) -> list[Step]:
+    def _rattle(self, line: Driveline) -> list[ViewStep]:
         """Sweeps up and down, and the response followed by every method that there is for the line."""
         (low, high), spring = speed_range(line), str(self.settings["spring"])
         points = bounded(self.settings["points"], 2)
         ends = {"up": (low, high), "down": (high, low)}
         steps = [
-            Step(f"sweep_{way}", Call("tn.sweep", (LINE, Call("np.linspace", (*ends[way], points)))), "swept",
+            ViewStep(f"sweep_{way}", Call("tn.sweep", (LINE, Call("np.linspace", (*ends[way], points)))), "swept",
                  {"spring": spring, "name": name, "unit": unit_of(line)[0]}, title=name, soft=True)
             for way, name in SWEEPS.items()
         ]  # fmt: skip
         known = [m for m in METHODS if m in methods_of(line)]
         return steps + [
-            Step(method.replace(" ", "_"),
+            ViewStep(method.replace(" ", "_"),
                  Call("tn.frequency_response", (LINE, low, high), {"method": method, "curve": spring}), "followed",
                  {"name": method, "unit": unit_of(line)[0]}, title=f"response: {method}", soft=True)
             for method in known

@@ -9,12 +9,12 @@ from bokeh.events import Tap
 
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
-from trunnion.app.parts.mover import Mover
-from trunnion.app.parts.pieces import column, items, pane
+from trunnion.app.parts.mode_animation import Mover
+from trunnion.app.parts.widgets import column, items, pane
 from trunnion.app.views.base import (
-    Side,
-    Step,
+    VariantPane,
     View,
+    ViewStep,
     at_speed,
     label_speed,
     load_cases,
@@ -31,7 +31,7 @@ AS_STATED = "as stated"
 CAMPBELL_POINTS = 81
 
 
-class _Side(Side["OrdersView"]):
+class _OrdersPane(VariantPane["OrdersView"]):
     """Four pictures."""
 
     def make(self) -> None:
@@ -51,23 +51,23 @@ class _Side(Side["OrdersView"]):
         """A line at the speed looked at."""
         return Level(at_speed(self.line, self.view.typed("speed")) * unit_of(self.line)[1], "cursor", on="x")
 
-    def show_torque(self, step: Step, picture: Picture) -> None:
+    def show_torque(self, step: ViewStep, picture: Picture) -> None:
         """Torque of the shaft by order, in sum, and its limits."""
         self.orders.show(picture, self._cursor())
 
-    def show_wave(self, step: Step, picture: Picture) -> None:
+    def show_wave(self, step: ViewStep, picture: Picture) -> None:
         """Torque of the shaft over a period."""
         self.wave.show(picture)
 
-    def show_campbell(self, step: Step, data: Any) -> None:
+    def show_campbell(self, step: ViewStep, data: Any) -> None:
         """Modes, what excites them, and where the two meet."""
         self.campbell.show(data["picture"], self._cursor())
 
-    def show_modes(self, step: Step, picture: Picture) -> None:
+    def show_modes(self, step: ViewStep, picture: Picture) -> None:
         """The mode that is asked for."""
         self.mode.show(picture)
 
-    def show_findings(self, step: Step, data: Any) -> None:
+    def show_findings(self, step: ViewStep, data: Any) -> None:
         """What is to be known of the orders, and where the line is unstable."""
         self.orders.show(data["picture"], self._cursor())
         self.said.object = items(data["said"])
@@ -81,7 +81,7 @@ class OrdersView(View):
         "Vibratory torque by order over the speed, what excites which mode, how modes move, and the torque over time. "
         "Click a speed in a picture, or type it."
     )
-    side = _Side
+    side = _OrdersPane
     defaults = {"spring": "", "load": AS_STATED, "speed": None, "mode": 1}
 
     fields = {
@@ -97,7 +97,7 @@ class OrdersView(View):
         self.choose("load", [AS_STATED, *load_cases(line)])
         label_speed(self.widgets["speed"], line)
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """Orders, wave form, Campbell diagram, modes, what is to be known of the orders."""
         case = self.load()
         low, high = speed_range(line)
@@ -110,7 +110,7 @@ class OrdersView(View):
         wave = Call("tn.order_response", (LINE, (speed,)), case)
         campbell = Call("tn.campbell_diagram", (LINE, Call("np.linspace", (low, high, CAMPBELL_POINTS))), case)
         return [
-            Step(
+            ViewStep(
                 "orders",
                 orders,
                 "torque",
@@ -120,8 +120,8 @@ class OrdersView(View):
                 title="torque by order",
                 lasting=True,
             ),
-            Step("wave", wave, "wave", shown, picture="", files=("nc",), title="orders at the speed"),
-            Step(
+            ViewStep("wave", wave, "wave", shown, picture="", files=("nc",), title="orders at the speed"),
+            ViewStep(
                 "campbell",
                 campbell,
                 "campbell",
@@ -131,7 +131,7 @@ class OrdersView(View):
                 title="Campbell diagram",
                 lasting=True,
             ),
-            Step(
+            ViewStep(
                 "modes",
                 Call("tn.natural_frequencies", (LINE,)),
                 "modes",
@@ -140,7 +140,7 @@ class OrdersView(View):
                 lasting=True,
             ),
             # Last, since it judges the stability at every speed.
-            Step("said", orders, "findings", shown, picture="", files=(), lasting=True),
+            ViewStep("said", orders, "findings", shown, picture="", files=(), lasting=True),
         ]
 
     def clicked(self, speed: float) -> None:

@@ -13,15 +13,15 @@ from bokeh.events import RangesUpdate, Tap
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.parameter_range import ParameterRange
-from trunnion.app.parts.pieces import column, lines, pane, small
 from trunnion.app.parts.point import Point
 from trunnion.app.parts.variants import parameters, shown_unit, with_number
+from trunnion.app.parts.widgets import column, lines, pane, small
 from trunnion.app.views.base import (
     MOST_POINTS,
     Setting,
-    Side,
-    Step,
+    VariantPane,
     View,
+    ViewStep,
     at_speed,
     bounded,
     count,
@@ -37,7 +37,7 @@ from trunnion.driveline.parameters import SPEED, pack
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.pictures.looks import curve
-from trunnion.pictures.picture import Axis, Cells, Item, Line, Mesh, Panel, Picture, points_at, single
+from trunnion.pictures.picture import Axis, Cells, ColouredGrid, Item, Line, Panel, Picture, points_at, single
 from trunnion.reporting.ranges import angle_range
 
 COARSE = (16, 12)
@@ -65,7 +65,7 @@ def _now(line: Driveline, axis: ParameterRange) -> float:
     return min(max(value, axis.low), axis.high)
 
 
-class _Side(Side["StabilityView"]):
+class _StabilityPane(VariantPane["StabilityView"]):
     """Chart, multipliers, mode, motion."""
 
     def make(self) -> None:
@@ -94,14 +94,14 @@ class _Side(Side["StabilityView"]):
         self.point.circle.narrow(narrow)
         self.point.mode.narrow(narrow)
 
-    def show_nothing(self, step: Step, data: None) -> None:
+    def show_nothing(self, step: ViewStep, data: None) -> None:
         """Names of resonances, which stand in the chart and are here to be saved."""
 
-    def show_point(self, step: Step, data: Any) -> None:
+    def show_point(self, step: ViewStep, data: Any) -> None:
         """Multipliers and mode at the point looked at."""
         self.point.set(data, unit_of(self.line))
 
-    def show_motion(self, step: Step, data: Any) -> None:
+    def show_motion(self, step: ViewStep, data: Any) -> None:
         """What a disturbance becomes: the motion with it less the one without, which holds the forced vibration."""
         if step.name == UNDISTURBED:
             self.undisturbed = data
@@ -116,7 +116,7 @@ class _Side(Side["StabilityView"]):
             across, up = Axis("turns of the input"), Axis("change of the twist", "°")
             self.motion.show(single(across, up, lines, height=3.6, title=title))
 
-    def refused(self, step: Step, sentence: str) -> None:
+    def refused(self, step: ViewStep, sentence: str) -> None:
         """A line that has no chart may have multipliers and a motion at each point."""
         if step.name in (UNDISTURBED, DISTURBED):
             self.undisturbed = None
@@ -130,7 +130,7 @@ class _Side(Side["StabilityView"]):
         self.picture.clear()
         self.said.object = small(f"no chart: {sentence}", class_="refusal")
 
-    def show_chart(self, step: Step, data: Any) -> None:
+    def show_chart(self, step: ViewStep, data: Any) -> None:
         """The chart, coarse or full, with the point and the operating range."""
         axes = self.view.axes(self.line)
         fresh = data is not self.whole  # else only the point has moved, and the picture may be zoomed
@@ -154,7 +154,7 @@ class _Side(Side["StabilityView"]):
         text = data["text"] if full else "coarse, the full chart follows"
         self.said.object = small(lines(text), data_chart=step.name, data_count=self.count)
 
-    def show_tongues(self, step: Step, data: Any) -> None:
+    def show_tongues(self, step: ViewStep, data: Any) -> None:
         """Outlines over the chart, however narrow."""
         x, y = self.view.axes(self.line)
         self.edges = data["edges"]
@@ -231,7 +231,7 @@ class _Side(Side["StabilityView"]):
 
 def _is_mesh(item: Item) -> bool:
     """Whether an item is coloured point by point."""
-    return isinstance(item, Mesh | Cells)
+    return isinstance(item, ColouredGrid | Cells)
 
 
 class StabilityView(View):
@@ -242,7 +242,7 @@ class StabilityView(View):
         "Where a small disturbance grows, over any two parameters. Click a point, or type it, for its multipliers, the "
         "growing mode and what becomes of a small disturbance. Zooming in shows more points of the same chart."
     )
-    side = _Side
+    side = _StabilityPane
     defaults = {
         "x": SPEED, "x_low": None, "x_high": None, "y": "", "y_low": None, "y_high": None, "across": 60, "up": 60,
         "at_x": 0.0, "at_y": 0.0, "look": False,
@@ -280,14 +280,14 @@ class StabilityView(View):
         for key, end in (("x", "at_x"), ("y", "at_y")):
             axis = self.axis(line, key)
             self.widgets[end].label = f"Look at {axis.label}"
-            for own, value in zip((f"{key}_low", f"{key}_high"), self.own_axis(line, key).ends, strict=True):
+            for own, value in zip((f"{key}_low", f"{key}_high"), self.parameter_axis(line, key).ends, strict=True):
                 self.widgets[own].label = f"{_ENDS[own]} [{axis.unit}]"
                 tell_default(self.widgets[own], value)
             if not self.settings["look"]:
                 self.settings[end] = float(f"{_now(line, axis) / axis.size:.6g}")
         self.fill()
 
-    def own_axis(self, line: Driveline, key: str) -> ParameterRange:
+    def parameter_axis(self, line: Driveline, key: str) -> ParameterRange:
         """The axis with ends by themselves, about the value of the line."""
         path = str(self.settings[key])
         if path == SPEED:
@@ -301,7 +301,7 @@ class StabilityView(View):
 
     def axis(self, line: Driveline, key: str) -> ParameterRange:
         """The axis with the ends as typed, or by themselves."""
-        return self.own_axis(line, key).typed(self.typed(f"{key}_low"), self.typed(f"{key}_high"))
+        return self.parameter_axis(line, key).typed(self.typed(f"{key}_low"), self.typed(f"{key}_high"))
 
     def axes(self, line: Driveline) -> tuple[ParameterRange, ParameterRange]:
         """Both."""
@@ -320,7 +320,7 @@ class StabilityView(View):
             return self.value("at_x") * x.size, self.value("at_y") * y.size
         return tuple(_now(line, axis) for axis in (x, y))  # type: ignore[return-value]
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """A coarse chart, the point, the full chart, the motion, the names of what opens, the regions themselves.
 
         The regions are searched for beside the chart, since they may be narrower than its points lie apart."""
@@ -330,19 +330,19 @@ class StabilityView(View):
         steps, unit = [], {"unit": unit_of(line)[0]}
         if across > COARSE[0] and up > COARSE[1]:
             coarse = Call("tn.stability_chart", (LINE, x.request(COARSE[0]), y.request(COARSE[1])), fixed)
-            steps.append(Step("coarse", coarse, "chart", unit, picture="", files=(), soft=True, preview_of="chart"))
+            steps.append(ViewStep("coarse", coarse, "chart", unit, picture="", files=(), soft=True, preview_of="chart"))
         chart = Call("tn.stability_chart", (LINE, x.request(across), y.request(up)), fixed)
-        full = Step("chart", chart, "chart", unit, drawing=unit, title="stability chart", soft=True, lasting=True)
-        names = Step("names", Call("tn.resonance_speeds", (LINE,)), "nothing", picture="", files=("csv",),
+        full = ViewStep("chart", chart, "chart", unit, drawing=unit, title="stability chart", soft=True, lasting=True)
+        names = ViewStep("names", Call("tn.resonance_speeds", (LINE,)), "nothing", picture="", files=("csv",),
                      title="resonance speeds", lasting=True)  # fmt: skip
         point, *motions = self._at(line, x, y)
         ranges = (axis.request(0)[:3] for axis in (x, y))
         pixel = {"pixel": (x.high - x.low) / (across - 1)}
-        regions = Step("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", unit | pixel, drawing=unit,
+        regions = ViewStep("tongues", Call("tn.tongues", (LINE, *ranges), fixed), "tongues", unit | pixel, drawing=unit,
                        files=("nc",), title="regions of instability", soft=True, lasting=True, rest=REST)  # fmt: skip
         return [*steps, point, full, *motions, *([names] if x.path == SPEED else []), regions]
 
-    def _at(self, line: Driveline, x: ParameterRange, y: ParameterRange) -> tuple[Step, ...]:
+    def _at(self, line: Driveline, x: ParameterRange, y: ParameterRange) -> tuple[ViewStep, ...]:
         """Multipliers at the point looked at, and the motion there without a disturbance and with one."""
         at = dict(zip((x.path, y.path), self.point(line), strict=True))
         speed = at.pop(SPEED, None) or at_speed(line, None)
@@ -355,14 +355,14 @@ class StabilityView(View):
         start = Call("np.add", (begin, Call("disturbance", (DISTURBANCE,), of=multipliers)))
         shown = {"speed": speed}
         return (
-            Step(
+            ViewStep(
                 "point", multipliers, "point", picture="", files=("nc",), title="multipliers at the point", line=there
             ),
-            Step(
+            ViewStep(
                 UNDISTURBED, Call("tn.simulate", (LINE,), run), "motion", shown,
                 title="motion from untwisted shafts", files=("nc",), line=there, soft=True,
             ),
-            Step(
+            ViewStep(
                 DISTURBED, Call("tn.simulate", (LINE,), {**run, "start": start}), "motion", shown,
                 title="the same with a small disturbance", files=("nc",), line=there, soft=True,
             ),

@@ -6,30 +6,30 @@ from typing import Any
 
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
-from trunnion.app.parts.pieces import Html, column, items, joined, markup, pane
-from trunnion.app.views.base import Side, Step, View, load_cases, select, speed_range, unit_of
-from trunnion.app.views.helping import Help
-from trunnion.design.assessment.own_limits import WITHOUT_LIMIT
+from trunnion.app.parts.widgets import Html, column, items, joined, markup, pane
+from trunnion.app.views.base import VariantPane, View, ViewStep, load_cases, select, speed_range, unit_of
+from trunnion.app.views.remedy_buttons import RemedyButtons
+from trunnion.design.assessment.stated_limits import WITHOUT_LIMIT
 from trunnion.driveline.driveline import Driveline
 from trunnion.pictures.picture import Picture
 
 ALL = "as stated and every load case"
 
 
-class _Side(Side["VerdictView"]):
+class _VerdictPane(VariantPane["VerdictView"]):
     """Sentence, margins, table."""
 
     def make(self) -> None:
         """Panes and places of the pictures, made once."""
         self.sentence, self.table = pane(), pane()
         self.margins, self.torque = Canvas(), Canvas()
-        self.help = Help(self.view.session)
+        self.help = RemedyButtons(self.view.session)
         self.panel = column(self.sentence, self.margins.panel, self.help.panel, self.torque.panel, self.table)
         judged = [self.sentence, self.margins.panel, self.help.list, self.table]
         self.parts = {("assessment",): judged, ("assessment", "torque"): [self.torque.panel]}
         self.course: Picture | None = None
 
-    def show_assessment(self, step: Step, data: Any) -> None:
+    def show_assessment(self, step: ViewStep, data: Any) -> None:
         """The verdict, its margins and checks, and what binds over speed."""
         self.course = data["course"]
         if self.course is not None:
@@ -43,7 +43,7 @@ class _Side(Side["VerdictView"]):
         self.table.object = _table(data)
         self.help.clear(data["verdict"] != "satisfied" and self.variant == "now", self.view.load())
 
-    def show_torque(self, step: Step, picture: Picture) -> None:
+    def show_torque(self, step: ViewStep, picture: Picture) -> None:
         """The torque of the shaft that is loaded most, where nothing binds that has a value over speed."""
         if self.course is not None:
             return
@@ -75,7 +75,7 @@ class VerdictView(View):
 
     name = "verdict"
     about = "Every limit of the line and every rule that applies, over its speeds; the check that binds comes first."
-    side = _Side
+    side = _VerdictPane
     defaults = {"load": ALL}
     fields = {"load": lambda: select("Load", options=[ALL], width=260)}
 
@@ -83,13 +83,13 @@ class VerdictView(View):
         """Load cases of the line."""
         self.choose("load", [ALL, *load_cases(line)])
 
-    def steps(self, line: Driveline) -> list[Step]:
+    def steps(self, line: Driveline) -> list[ViewStep]:
         """The assessment, then the torques that its limits stand against."""
         keywords = self.load()
         low, high = speed_range(line)
         speeds = Call("tn.sweep_speeds", (LINE, low, high))
         return [
-            Step(
+            ViewStep(
                 "assessment",
                 Call("tn.assess", (LINE,), keywords),
                 "assessment",
@@ -97,7 +97,7 @@ class VerdictView(View):
                 files=("csv", "nc"),
                 title="checks",
             ),
-            Step(
+            ViewStep(
                 "torque",
                 Call("tn.order_response", (LINE, speeds), keywords),
                 "torque",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 
+from trunnion.design.assessment.assessment_input import WHOLE, AssessmentInput, LoadCaseResponse, SearchEffort, cases_of
 from trunnion.design.assessment.bending import bending
 from trunnion.design.assessment.check import Check, in_order, worst
 from trunnion.design.assessment.compared import uncovered
@@ -12,12 +13,11 @@ from trunnion.design.assessment.couplings import coupling_ratings
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.gear_hammer import gear_hammer
 from trunnion.design.assessment.joint_angles import joint_angles, uniformity
-from trunnion.design.assessment.own_limits import own_limits
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.result import Assessment, verdict_of
 from trunnion.design.assessment.separation import separation
 from trunnion.design.assessment.ship_shafts import ship_shafts
-from trunnion.design.assessment.subject import WHOLE, Case, Effort, Subject, cases_of
+from trunnion.design.assessment.stated_limits import stated_limits
 from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
@@ -28,7 +28,7 @@ from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
-OF_RESPONSE = (own_limits, coupling_ratings, ship_shafts, gear_hammer)
+OF_RESPONSE = (stated_limits, coupling_ratings, ship_shafts, gear_hammer)
 
 
 @keeps_time
@@ -70,7 +70,7 @@ def assess(
     return judgement(subject, checks_of(subject))
 
 
-def judgement(subject: Subject, checks: tuple[Check, ...]) -> Assessment:
+def judgement(subject: AssessmentInput, checks: tuple[Check, ...]) -> Assessment:
     """What follows from the checks of a line."""
     verdict, barred = verdict_of(checks, subject.speed)
     findings = _findings(subject.cases, subject.unit)
@@ -85,19 +85,21 @@ def subject_of(
     speeds: SpeedEnds | None,
     load_case: str | None,
     unit: str | None,
-    effort: Effort = WHOLE,
+    effort: SearchEffort = WHOLE,
     *,
     partly: bool = False,
-) -> Subject:
+) -> AssessmentInput:
     """What is judged: see ``assess``; ``effort``: how closely; ``partly``: what there is where a time limit ends it."""
     if load_case is not None:
         line = line.with_load(load_case)
     low, high, speed = _range(line, speeds)
     every = cases_of(line, low, high, effort, partly=partly)
-    return Subject(line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every)
+    return AssessmentInput(
+        line, low, high, speed, unit or speed_unit(line), every[:1] if load_case is not None else every
+    )
 
 
-def checks_of(subject: Subject, *, geometry: bool = True) -> tuple[Check, ...]:
+def checks_of(subject: AssessmentInput, *, geometry: bool = True) -> tuple[Check, ...]:
     """All checks in order, of each the load case that binds; ``geometry``: those that no load case changes, too."""
     prepare(subject.cases)
     found = list(worst(check for case in subject.cases for check in by_case(subject, case)))
@@ -106,10 +108,10 @@ def checks_of(subject: Subject, *, geometry: bool = True) -> tuple[Check, ...]:
     return in_order(weighed(found, subject.line.operation))
 
 
-def prepare(cases: tuple[Case, ...]) -> None:
+def prepare(cases: tuple[LoadCaseResponse, ...]) -> None:
     """Compute what the checks look at, cases side by side."""
     try:
-        on_threads(Case.prepare, cases, os.cpu_count() or 1)
+        on_threads(LoadCaseResponse.prepare, cases, os.cpu_count() or 1)
     except OutOfTime:
         if not all(case.partly for case in cases):
             raise  # otherwise each check says that it was not reached
@@ -122,7 +124,7 @@ def _range(line: Driveline, speeds: SpeedEnds | None) -> tuple[float, float, flo
     return *running_range(speeds), stated
 
 
-def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Check]:
+def by_case(subject: AssessmentInput, case: LoadCaseResponse, *, growth: bool = True) -> Iterator[Check]:
     """The checks of one load case; ``growth``: parametric stability too, which takes longest."""
     yield from of_response(subject, case)
     yield from separation(subject, case)
@@ -130,13 +132,13 @@ def by_case(subject: Subject, case: Case, *, growth: bool = True) -> Iterator[Ch
         yield from parametric_stability(subject, case)
 
 
-def of_response(subject: Subject, case: Case) -> Iterator[Check]:
+def of_response(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """The checks that look at the linear response by order."""
     for rule in OF_RESPONSE:
         yield from (uncovered(subject, case, check) for check in rule(subject, case))
 
 
-def of_line(subject: Subject) -> Iterator[Check]:
+def of_line(subject: AssessmentInput) -> Iterator[Check]:
     """The checks that no load case changes."""
     assembly, turn = subject.cases[0].assembly, _turn(subject)
     yield from joint_angles(subject, assembly, turn)
@@ -144,14 +146,14 @@ def of_line(subject: Subject) -> Iterator[Check]:
     yield from bending(subject, assembly)
 
 
-def _turn(subject: Subject) -> Kinetostatics | None:
+def _turn(subject: AssessmentInput) -> Kinetostatics | None:
     try:
         return kinetostatics(subject.line, subject.high)
     except InputError:  # a line clamped at both ends
         return None
 
 
-def _findings(cases: tuple[Case, ...], unit: str) -> tuple[Finding, ...]:
+def _findings(cases: tuple[LoadCaseResponse, ...], unit: str) -> tuple[Finding, ...]:
     """What the responses say of themselves, once; what only one load case says, with its name."""
     said: dict[str, tuple[Finding, list[str]]] = {}
     for case in cases:

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from trunnion.design.assessment.assessment_input import AssessmentInput
 from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import guideline
-from trunnion.design.assessment.subject import Subject
 from trunnion.equations.coefficients import Assembly
 from trunnion.modes.bending import SAFE_SHARE, bending_speeds
 
@@ -18,7 +18,7 @@ RULE = Rule(
 )
 
 
-def bending(subject: Subject, assembly: Assembly) -> Iterator[Check]:
+def bending(subject: AssessmentInput, assembly: Assembly) -> Iterator[Check]:
     """Every shaft described as a tube with a density."""
     found = bending_speeds(assembly)
     if not found:

@@ -11,7 +11,7 @@ from enum import Enum
 from math import inf, isfinite, isnan, nan
 
 from trunnion.design.assessment.cause import Cause
-from trunnion.design.assessment.course import Course
+from trunnion.design.assessment.response_curve import ResponseCurve
 from trunnion.driveline.rules import RULES
 from trunnion.results.fields import computed, internal, labelled, variable
 
@@ -73,7 +73,9 @@ class Check:
     decides: bool = variable(words="whether the verdict rests on it", default=True)
     element: str = internal("that is judged", default="")
     cause: Cause | None = internal("the order that leads there and the mode that it is nearest to", default=None)
-    course: Course | None = internal("value and limit at all speeds judged", default=None, repr=False, compare=False)
+    course: ResponseCurve | None = internal(
+        "value and limit at all speeds judged", default=None, repr=False, compare=False
+    )
     error: float = variable(words="what the value may be low by, in the unit of its check", default=nan)
     covered: tuple[tuple[float, float], ...] = internal("speed ranges that it was judged over", "rad/s", default=())
     ended: str = internal("what ended its search before it was done, as a clause", default="")

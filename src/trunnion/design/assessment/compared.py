@@ -7,11 +7,11 @@ from math import nan
 
 import numpy as np
 
+from trunnion.design.assessment.assessment_input import NO_RESPONSE, AssessmentInput, LargestShare, LoadCaseResponse
 from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.check import Check, Rule, Status, below, judged, percent
-from trunnion.design.assessment.course import Course
-from trunnion.design.assessment.subject import NO_RESPONSE, Case, Found, Subject
-from trunnion.driveline.quantities import Kind, against, shown
+from trunnion.design.assessment.response_curve import ResponseCurve
+from trunnion.driveline.quantities import QuantityKind, against, shown
 from trunnion.results.counts import counted
 
 WORTH_SAYING = 1e-3
@@ -20,26 +20,26 @@ MOST_GAPS = 4
 SEPARATION = "separation of"
 
 
-def unanswered(subject: Subject, case: Case, name: str, rule: Rule) -> Check:
+def unanswered(subject: AssessmentInput, case: LoadCaseResponse, name: str, rule: Rule) -> Check:
     """Of a case that has no linear response, or of which it was not reached."""
     if case.ended_by:
         return not_reached(subject, case, name, rule, case.ended_by[0])
     return Check(name, Status.NOT_JUDGED, rule, f"{NO_RESPONSE}{case.answer}")
 
 
-def not_reached(subject: Subject, case: Case, name: str, rule: Rule, ended: str) -> Check:
+def not_reached(subject: AssessmentInput, case: LoadCaseResponse, name: str, rule: Rule, ended: str) -> Check:
     """Of what a time limit left out; ``ended``: what ended the search, as a clause."""
     because = f"{subject.ranges([(case.low, case.high)])} not judged: {ended}{case.suffix}"
     return Check(name, Status.NOT_JUDGED, rule, because, load_case=case.name, ended=ended)
 
 
 def at_largest(
-    subject: Subject,
-    case: Case,
+    subject: AssessmentInput,
+    case: LoadCaseResponse,
     name: str,
     rule: Rule,
-    found: Found,
-    kind: Kind,
+    found: LargestShare,
+    kind: QuantityKind,
     *,
     required: float = 0.0,
     words: str = "",
@@ -49,7 +49,7 @@ def at_largest(
     element: str = "",
     barred: tuple[tuple[float, float], ...] = (),
     cause: Cause | None = None,
-    course: Course | None = None,
+    course: ResponseCurve | None = None,
 ) -> Check:
     """The check of a value that must not exceed its limit, where it comes nearest to it.
 
@@ -82,7 +82,7 @@ def at_largest(
     )  # fmt: skip
 
 
-def looked_at(subject: Subject, case: Case) -> str:
+def looked_at(subject: AssessmentInput, case: LoadCaseResponse) -> str:
     """ "searched from 300 rpm to 2400 rpm at 131 speeds"."""
     if case.low == case.high:
         return ""
@@ -90,7 +90,7 @@ def looked_at(subject: Subject, case: Case) -> str:
     return f"searched from {subject.shown(case.low)} to {subject.shown(case.high)} at {count}"
 
 
-def uncovered(subject: Subject, case: Case, check: Check) -> Check:
+def uncovered(subject: AssessmentInput, case: LoadCaseResponse, check: Check) -> Check:
     """A check of the response that holds wherever it could be judged: not judged where there are speeds at which it
     could not, or where a time limit ended the search."""
     if case.ended_by and check.judged:

@@ -15,9 +15,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse, cause
 from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import at_largest, unanswered
-from trunnion.design.assessment.course import WHOLE, course
 from trunnion.design.assessment.measures import (
     allowed_by,
     of_rating,
@@ -26,7 +26,7 @@ from trunnion.design.assessment.measures import (
     service_factors,
     spring_of,
 )
-from trunnion.design.assessment.subject import Case, Subject, cause
+from trunnion.design.assessment.response_curve import WHOLE, course
 from trunnion.driveline.dampers import Damper
 from trunnion.driveline.quantities import POWER, TORQUE, shown
 
@@ -52,7 +52,7 @@ LIMITED = {"vibratory_torque": "T_KW/S_t"}
 """How a picture calls the limit, where it is no rating by itself."""
 
 
-def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
+def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """Every rating that a coupling or a damper states."""
     for name, element in subject.line.parts:
         for key in element.ratings:
@@ -68,7 +68,7 @@ def coupling_ratings(subject: Subject, case: Case) -> Iterator[Check]:
                 yield _rated(subject, case, name, key, rating, rule)
 
 
-def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rule: Rule) -> Check:
+def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str, rating: float, rule: Rule) -> Check:
     measure, response = of_rating(case.assembly, name, key, rating), case.answered
     found, kind, words = case.largest(measure), POWER if key == "heat_rating" else TORQUE, rating_words(key)
     allowed = allowed_by(rating, key, service_factors(case.assembly, name)[0])
@@ -86,7 +86,7 @@ def _rated(subject: Subject, case: Case, name: str, key: str, rating: float, rul
     )  # fmt: skip
 
 
-def _factors(case: Case, name: str, key: str, at: int) -> str:
+def _factors(case: LoadCaseResponse, name: str, key: str, at: int) -> str:
     """Service factors that went in, S_f of the order that leads."""
     temperature, starting = service_factors(case.assembly, name)
     said = f"S_t = {temperature:g}"

@@ -11,12 +11,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse, cause
 from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import at_largest, unanswered
-from trunnion.design.assessment.course import SWING, course
 from trunnion.design.assessment.measures import of_hammer
-from trunnion.design.assessment.own_limits import bands
-from trunnion.design.assessment.subject import Case, Subject, cause
+from trunnion.design.assessment.response_curve import SWING, course
+from trunnion.design.assessment.stated_limits import bands
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import TORQUE
 
@@ -25,7 +25,7 @@ NOTHING = 1e-3
 """Share of its vibratory torque below which a mesh carries no mean torque: what losses and rounding leave."""
 
 
-def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
+def gear_hammer(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """Every mesh of the line."""
     pairs = [n for n, e in subject.line.parts if isinstance(e, GearPair)]
     if not pairs:
@@ -53,7 +53,7 @@ def gear_hammer(subject: Subject, case: Case) -> Iterator[Check]:
         )  # fmt: skip
 
 
-def _idle(subject: Subject, case: Case, title: str) -> Check:
+def _idle(subject: AssessmentInput, case: LoadCaseResponse, title: str) -> Check:
     """Of a mesh that carries no mean torque; where the line has load cases, they judge it."""
     if not case.name and len(subject.cases) > 1:
         return Check(title, Status.NOT_APPLICABLE, RULE, "no mean torque without a load case: under load it is judged")

@@ -20,9 +20,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from trunnion.design.assessment.assessment_input import AssessmentInput
 from trunnion.design.assessment.check import Check, Rule, Status, above, judged
 from trunnion.design.assessment.compared import guideline
-from trunnion.design.assessment.subject import Subject
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.driveline.quantities import DEGREE, RPM
 from trunnion.driveline.rules import RULES, SPICER
@@ -54,7 +54,7 @@ def allowed_angle(speed: float) -> float:
     return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
 
 
-def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | None) -> Iterator[Check]:
+def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics | None) -> Iterator[Check]:
     """The rules for every Hooke's joint, and for the line's accelerations at its highest speed."""
     joints = hooke_joints(subject.line)
     if not joints:
@@ -76,7 +76,7 @@ def joint_angles(subject: Subject, assembly: Assembly, turn: Kinetostatics | Non
         yield from _accelerations(subject, assembly, turn)
 
 
-def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Check]:
+def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Iterator[Check]:
     said = f"{angle / DEGREE:.4g} deg"
     margin = above(angle, SMALLEST)
     yield Check(
@@ -93,7 +93,7 @@ def _one(subject: Subject, name: str, angle: float, speed: float) -> Iterator[Ch
     yield guideline(title, MOST, (angle, limit, "rad"), numbers, speed=subject.high, element=name)
 
 
-def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
+def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
     topo = assembly.topology
     last = max((topo.speed_ratio[j] for j in topo.joints), key=abs)
     for branch in turn.branches:
@@ -112,13 +112,13 @@ def _accelerations(subject: Subject, assembly: Assembly, turn: Kinetostatics) ->
         yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL)
 
 
-def _acceleration(subject: Subject, title: str, rule: Rule, value: float, limit: float) -> Check:
+def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float) -> Check:
     value = value if value > ROUNDING * subject.high**2 else 0.0
     numbers = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}"
     return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
 
 
-def uniformity(subject: Subject, turn: Kinetostatics | None) -> Iterator[Check]:
+def uniformity(subject: AssessmentInput, turn: Kinetostatics | None) -> Iterator[Check]:
     """U at the end of every branch, shafts rigid."""
     if not hooke_joints(subject.line):
         yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the line has no Hooke's joint")

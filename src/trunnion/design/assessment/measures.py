@@ -19,7 +19,7 @@ from trunnion.driveline.limits import SHIP_SHAFTS, OneLimit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.response.orders.result import OrderResponse
-from trunnion.response.ranges.largest import Quantity
+from trunnion.response.ranges.largest import SearchedQuantity
 
 OF_LIMITS = (
     *("max_torque", "vibratory_torque", "transient_vibratory_torque", "max_stress", "max_twist"),
@@ -61,7 +61,7 @@ class Measure:
         return np.where(np.isfinite(share), share, np.where(np.isinf(self.limit(response)), 0.0, np.inf))
 
     @property
-    def quantity(self) -> Quantity:
+    def quantity(self) -> SearchedQuantity:
         """What the search looks for: the largest share of the limit."""
 
         def parts(response: OrderResponse) -> Complex:
@@ -69,7 +69,7 @@ class Measure:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return np.asarray(self.parts(response) / (np.sqrt(limit) if self.squared else limit))
 
-        return Quantity(self.shares, parts, self.squared, 1 - self.margin if self.bars else inf)
+        return SearchedQuantity(self.shares, parts, self.squared, 1 - self.margin if self.bars else inf)
 
 
 def measures(assembly: Assembly) -> Iterator[Measure]:

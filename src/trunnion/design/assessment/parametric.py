@@ -4,8 +4,9 @@
 
 The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
 slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
-looked at, and the ends of unstable ranges are located (``range_search.unstable``); bent lines with play or stages that
-start free, where each speed takes its own periodic motion, are looked at at 25 speeds and at named resonances.
+looked at, and the ends of unstable ranges are located (``range_search.unstable``); lines with joint angles and with
+play or stages that are free–free, where each speed takes its own periodic motion, are looked at at 25 speeds and at
+named resonances.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -19,13 +20,13 @@ from contextlib import suppress
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
-from trunnion.design.assessment.subject import Case, Subject
 from trunnion.errors import ComputationError, InputError
-from trunnion.floquet.ranges.span import Piece
+from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
-from trunnion.floquet.stability.along import NoSharedMotion, StabilityAlong, straight_decay
+from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, StabilityOverSpeed, straight_decay
 from trunnion.modes.resonance_speeds import resonance_speeds
 from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
@@ -37,10 +38,10 @@ ROUGHLY = 1e-3
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
 NAME = "parametric stability"
-QUIET = "no joint is bent and no mesh varies: nothing excites the line parametrically"
+QUIET = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
 
 
-def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
+def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """One check: the speed at which the slowest disturbance dies out slowest."""
     try:
         found = _ranges_of(case)
@@ -80,8 +81,8 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
         )
         yield _judged(case, Status.EXCEEDED, because, float(margin), worst, found.ranges, covered)
         return
-    if np.any(found.untold):
-        verdicts = found.along.verdict[found.untold]
+    if np.any(found.undecided):
+        verdicts = found.along.verdict[found.undecided]
         words = " and ".join(sorted({str(Verdict(int(v))) for v in verdicts}))
         remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
         because = f"{words} at some speeds: {remedy}{case.suffix}"
@@ -96,9 +97,9 @@ def parametric_stability(subject: Subject, case: Case) -> Iterator[Check]:
     yield _judged(case, status, because + gaps, float(share), worst, (), covered)
 
 
-def _covered(case: Case, found: UnstableRanges) -> tuple[tuple[float, float], ...]:
+def _covered(case: LoadCaseResponse, found: UnstableRanges) -> tuple[tuple[float, float], ...]:
     """The range without what was not looked at."""
-    left = [Piece(case.low, case.high)]
+    left = [SmoothRange(case.low, case.high)]
     for gap in found.gaps:
         left = [part for piece in left for part in piece.without(gap.low, gap.high)]
     return tuple((piece.low, piece.high) for piece in left)
@@ -109,7 +110,7 @@ Worst = tuple[float, float, str]
 
 
 def _judged(
-    case: Case,
+    case: LoadCaseResponse,
     status: Status,
     because: str,
     margin: float,
@@ -124,13 +125,13 @@ def _judged(
     )  # fmt: skip
 
 
-def _looked_at(subject: Subject, found: UnstableRanges) -> str:
+def _looked_at(subject: AssessmentInput, found: UnstableRanges) -> str:
     speeds = found.along.speed
     said = f"searched from {subject.shown(speeds[0])} to {subject.shown(speeds[-1])} at {counted(len(speeds), 'speed')}"
     return f"{said}; stable by a bound up to {subject.shown(found.slow)}" if found.slow else said
 
 
-def _ranges(subject: Subject, found: UnstableRanges) -> str:
+def _ranges(subject: AssessmentInput, found: UnstableRanges) -> str:
     """ "at 300 rpm", "between 300 rpm and 400 rpm, between …"."""
     if all(subject.shown(a) == subject.shown(b) for a, b in found.ranges):
         return f"at {' and '.join(subject.shown(a) for a, _ in found.ranges)}"
@@ -139,7 +140,7 @@ def _ranges(subject: Subject, found: UnstableRanges) -> str:
     return ", ".join(words) + more
 
 
-def _resonance(case: Case, speed: float) -> str:
+def _resonance(case: LoadCaseResponse, speed: float) -> str:
     # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.stability.stability import stability
 
@@ -150,26 +151,28 @@ def _resonance(case: Case, speed: float) -> str:
     return f" ({found})" if found else ""
 
 
-def _ranges_of(case: Case) -> UnstableRanges:
+def _ranges_of(case: LoadCaseResponse) -> UnstableRanges:
     try:
         return case.unstable
-    except NoSharedMotion:
+    except SpeedBySpeedError:
         return _one_by_one(case)
 
 
-def _one_by_one(case: Case) -> UnstableRanges:
-    """The same at few speeds, each about its own motion, found by shooting."""
+def _one_by_one(case: LoadCaseResponse) -> UnstableRanges:
+    """The same at few speeds, each about its periodic steady state, found by shooting."""
     # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.stability.stability import stability
 
-    def judge(speeds: Array) -> StabilityAlong:
+    def judge(speeds: Array) -> StabilityOverSpeed:
         radius, growth = np.full(len(speeds), np.nan), np.full(len(speeds), np.nan)
         verdict, period = np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8), 1.0
         for i, speed in enumerate(speeds):
             with suppress(ComputationError):
                 found = stability(case.assembly, float(speed), tolerance=COARSE)
                 radius[i], growth[i], verdict[i] = found.spectral_radius, found.growth_rate, int(found.verdict)
-        return StabilityAlong(speeds, radius, np.zeros(len(speeds)), radius.astype(complex), verdict, growth, period)
+        return StabilityOverSpeed(
+            speeds, radius, np.zeros(len(speeds)), radius.astype(complex), verdict, growth, period
+        )
 
     low, high = case.span.start, case.high
     named = [r.speed for r in resonance_speeds(case.assembly).within(low, high) if r.opens] if low < high else []

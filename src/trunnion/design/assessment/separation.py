@@ -16,10 +16,10 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import Check, Rule, Status, above
 from trunnion.design.assessment.compared import unanswered
-from trunnion.design.assessment.own_limits import unlimited
-from trunnion.design.assessment.subject import Case, Subject
+from trunnion.design.assessment.stated_limits import unlimited
 from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted, few
 from trunnion.results.speeds import order_name
@@ -35,7 +35,7 @@ NEEDS = "; a resonance needs "
 LIMITED = "limits of torque or stress, which are stated"
 
 
-def separation(subject: Subject, case: Case) -> Iterator[Check]:
+def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """One check a mode that an order meets, one for all the others together."""
     if case.response is None or case.ended_by:
         yield unanswered(subject, case, ALL, RULE)
@@ -68,14 +68,16 @@ def separation(subject: Subject, case: Case) -> Iterator[Check]:
         yield _near(case, ALL, Status.SATISFIED, said, nearest, speed, counted(len(orders), "order"))
 
 
-def _near(case: Case, name: str, status: Status, said: str, near: float, speed: float, inputs: str = "") -> Check:
+def _near(
+    case: LoadCaseResponse, name: str, status: Status, said: str, near: float, speed: float, inputs: str = ""
+) -> Check:
     return Check(
         name, status, RULE, said + case.suffix, margin=above(near, REQUIRED), value=near, limit=REQUIRED, unit="1",
         speed=speed, inputs=inputs, load_case=case.name,
     )  # fmt: skip
 
 
-def shaking_orders(case: Case) -> Array:
+def shaking_orders(case: LoadCaseResponse) -> Array:
     """Orders and frequencies beside them [rad/s], (order, 2), that make up 1 % of any spring's torque at least."""
     response = case.answered
     if not len(response.order):

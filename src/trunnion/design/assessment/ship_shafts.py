@@ -18,12 +18,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.design.assessment.assessment_input import AssessmentInput, LargestShare, LoadCaseResponse, cause
 from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import at_largest, unanswered
-from trunnion.design.assessment.course import SWING, course
 from trunnion.design.assessment.measures import HIGHEST, NO_BAR, of_ship_shaft, ship_name, ship_shaft
-from trunnion.design.assessment.own_limits import bands
-from trunnion.design.assessment.subject import Case, Found, Subject, cause
+from trunnion.design.assessment.response_curve import SWING, course
+from trunnion.design.assessment.stated_limits import bands
 from trunnion.driveline.quantities import PRESSURE
 
 SOURCE = "IACS UR M68 in form; check your edition"
@@ -39,7 +39,7 @@ def barred_range(speed: float, ratio: float) -> tuple[float, float]:
     return 16 * speed / (18 - ratio), (18 - ratio) * speed / 16
 
 
-def ship_shafts(subject: Subject, case: Case) -> Iterator[Check]:
+def ship_shafts(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """The continuous limit of every ship's shaft, and the transient one where a range has to be barred; of a ship that
     names none, that it has to."""
     named = [limit for limit in subject.line.limits_by_element if limit.key == "ship_shaft"]
@@ -50,7 +50,7 @@ def ship_shafts(subject: Subject, case: Case) -> Iterator[Check]:
         yield Check("IACS UR M68", Status.NOT_JUDGED, RULE, NONE_NAMED)
 
 
-def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Check]:
+def _one(subject: AssessmentInput, case: LoadCaseResponse, name: str, feature: str) -> Iterator[Check]:
     title = ship_name(name)
     if isinstance(case.answer, str):
         yield unanswered(subject, case, title, RULE)
@@ -91,7 +91,7 @@ def _one(subject: Subject, case: Case, name: str, feature: str) -> Iterator[Chec
         )  # fmt: skip
 
 
-def _words(found: Found) -> str:
+def _words(found: LargestShare) -> str:
     if not np.isfinite(found.value):
         return ""
     return f"±{found.value / 1e6:.4g} N/mm² against ±{found.limit / 1e6:.4g} N/mm²"

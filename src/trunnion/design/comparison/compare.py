@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.design.assessment.assess import checks_of, judgement, subject_of
+from trunnion.design.assessment.assessment_input import AssessmentInput, with_torques
 from trunnion.design.assessment.measures import rating_name
 from trunnion.design.assessment.result import Assessment
-from trunnion.design.assessment.subject import Subject, with_torques
 from trunnion.design.comparison.result import Comparison, Difference
 from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.changes import changes
@@ -119,7 +119,7 @@ def _modes(line: Driveline, said: list[Finding]) -> Iterator[tuple[str, tuple[st
             yield f"damping ratio of mode {m + 1}", ("damping ratio", float(found.damping_ratio[m]), "1", np.nan)
 
 
-def _over_range(subject: Subject) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
+def _over_range(subject: AssessmentInput) -> Iterator[tuple[str, tuple[str, float, str, float]]]:
     """The largest growth rate, and the largest torques by all orders, under the load case that binds."""
     growths = [one for case in subject.cases if (one := case.largest_growth()) is not None]
     if growths:
@@ -141,7 +141,7 @@ def _rated(judged: Assessment | None) -> Iterator[tuple[str, tuple[str, float, s
             yield check.name.removeprefix(RATING), ("torque", float(check.value), "N*m", float(check.speed))
 
 
-def _every_torque(subject: Subject) -> tuple[tuple[str, int], ...]:
+def _every_torque(subject: AssessmentInput) -> tuple[tuple[str, int], ...]:
     springs = shaft_names(subject.cases[0].assembly)
     return tuple((word, c) for c in range(len(springs)) for word in ("peak", "vibratory"))
 

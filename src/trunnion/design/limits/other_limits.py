@@ -45,7 +45,7 @@ LOOKS, ROUNDS = 9, 5
 
 
 @dataclass(frozen=True)
-class Demand:
+class LimitCheck:
     """One limit: its name, what it allows [unit], and what is compared with it, (case,), from a response of a table."""
 
     name: str
@@ -55,7 +55,7 @@ class Demand:
 
 
 def other_limits(
-    assembly: Assembly, columns: Columns, speed: Array, low: float, high: float, scan: int, tell: Progress
+    assembly: Assembly, columns: Columns, speed: Array, low: float, high: float, scan: int, report_progress: Progress
 ) -> Reached:
     """The value between ``low`` and ``high`` at which each limit of the line is reached first at every ``speed``.
 
@@ -64,9 +64,9 @@ def other_limits(
     demands = demands_of(assembly)
     if not demands:
         return (), ""
-    search = _Search(assembly, columns, demands, speed)
+    search = _LimitSearch(assembly, columns, demands, speed)
     try:
-        reached = search.first(np.linspace(low, high, scan + 1), tell)
+        reached = search.first(np.linspace(low, high, scan + 1), report_progress)
     except (InputError, ComputationError) as error:
         return (), f"limits of the description are not compared: {str(error).splitlines()[0]}"
     found = tuple(OtherLimit(d.name, d.allowed, d.unit, r) for d, r in zip(demands, reached, strict=True))
@@ -76,13 +76,13 @@ def other_limits(
     )
 
 
-def demands_of(assembly: Assembly) -> list[Demand]:
+def demands_of(assembly: Assembly) -> list[LimitCheck]:
     """Every limit and rating of the line that its response can be compared with."""
     line, found = assembly.line, []
     for limit in line.limits_by_element:
         if limit.key in OF_LIMITS:
             allowed, unit = limit.value * (1 - limit.margin), LIMIT_KINDS[limit.key].unit
-            found.append(Demand(name_of(limit), allowed, unit, partial(_of_limit, assembly, limit)))
+            found.append(LimitCheck(name_of(limit), allowed, unit, partial(_of_limit, assembly, limit)))
     for name, element in zip(line.names, line.elements, strict=True):
         for key in element.ratings:
             rating = getattr(element, key)
@@ -90,7 +90,7 @@ def demands_of(assembly: Assembly) -> list[Demand]:
                 continue
             unit, look = "W" if key == "heat_rating" else "N*m", partial(_of_rating, assembly, name, key)
             allowed = allowed_by(rating, key, service_factors(assembly, name)[0]) * (1 - required_of(assembly, name))
-            found.append(Demand(rating_name(name, key), allowed, unit, look))
+            found.append(LimitCheck(rating_name(name, key), allowed, unit, look))
     return found
 
 
@@ -104,10 +104,10 @@ def _of_rating(assembly: Assembly, name: str, key: str, response: OrderResponse,
 
 
 @dataclass(frozen=True)
-class _Search:
+class _LimitSearch:
     assembly: Assembly
     columns: Columns
-    demands: list[Demand]
+    demands: list[LimitCheck]
     speed: Array
 
     def over(self, value: Array, speed: Array) -> Array:
@@ -118,13 +118,13 @@ class _Search:
         over = np.stack([d.values(response, table) / d.allowed - 1 for d in self.demands])
         return np.where(np.isnan(over), np.inf, over)
 
-    def first(self, grid: Array, tell: Progress) -> Array:
+    def first(self, grid: Array, report_progress: Progress) -> Array:
         """The first value (demand, speed) at which each limit is reached; infinite where none is."""
         over = np.full((len(self.demands), len(self.speed), len(grid)), np.nan)
         known = len(grid)
         for i, value in enumerate(grid.tolist()):
             over[:, :, i] = self.over(np.full(len(self.speed), value), self.speed)
-            tell((i + 1) / len(grid))
+            report_progress((i + 1) / len(grid))
             if i and np.all((over[:, :, : i + 1] >= 0).any(axis=2)):
                 known = i + 1
                 break

@@ -24,11 +24,11 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.floquet.charts.building import family_for, way_named
+from trunnion.floquet.charts.building import family_for, strategy_named
 from trunnion.floquet.charts.stability_chart import Task, family_of_chart
 from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
-from trunnion.floquet.tongues.rows import Row, unknown_row, unstable_intervals
+from trunnion.floquet.tongues.rows import TongueRow, unknown_row, unstable_intervals
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.floquet.tongues.windows import StableWindows, stable_windows
 from trunnion.results.chart import StabilityChart, require_pixels
@@ -95,31 +95,39 @@ def stable_limit(
     if isinstance(scan, bool) or not isinstance(scan, int | np.integer) or scan < 2:
         raise InputError("must be a whole number of steps, 2 or more", key="scan", value=scan)
     require_pixels(len(speed), int(scan) + 1)
-    assembly, tell = assemble(line), progress or (lambda share: None)
+    assembly, report_progress = assemble(line), progress or (lambda share: None)
     ends = float(speed.min()), float(speed.max())
     if ends[0] == ends[1]:
         ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)
     task = task_of(assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit")
     workers = os.cpu_count() or 1
-    region = _region(task, len(speed), tolerance, workers, lambda s: tell(0.6 * s))
+    region = _region(task, len(speed), tolerance, workers, lambda s: report_progress(0.6 * s))
     at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
     rows, ended = _rows_in_time(region, at)
-    tell(0.7)
+    report_progress(0.7)
     every = between and len(at) > 1
     end = 0.8 if every else 1.0
     span = float(task.x.values[0]), float(task.x.values[-1])
     others: Reached = (), ""
     whole = None
     try:
-        others = other_limits(assembly, task.x.columns, at, *span, int(scan), lambda s: tell(0.7 + (end - 0.7) * s))
+        others = other_limits(
+            assembly, task.x.columns, at, *span, int(scan), lambda s: report_progress(0.7 + (end - 0.7) * s)
+        )
         if every:
             whole = stable_windows(
-                assembly, parameter, low, high, ends, margin=margin, progress=lambda s: tell(end + (1 - end) * s)
+                assembly,
+                parameter,
+                low,
+                high,
+                ends,
+                margin=margin,
+                progress=lambda s: report_progress(end + (1 - end) * s),
             )
     except OutOfTime as error:
         ended = error.why
         others = others if others[1] else ((), f"limits of the description are not compared: {ended}")
-    tell(1.0)
+    report_progress(1.0)
     with to_the_end():
         return replace(_result(assembly, task, region, at, rows, others, whole), ended=ended)
 
@@ -137,7 +145,7 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
         raise InputError("needs a chart of a driveline with the speed along x", element="chart")
     own_family, workers = family_of_chart(chart), os.cpu_count() or 1
     turned_about = replace(own_family, x=own_family.y, y=own_family.x)
-    family = family_for(way_named(chart.way), turned_about)
+    family = family_for(strategy_named(chart.way), turned_about)
     task = Task(family, turned_about.x, turned_about.y, None, chart.line, ())
     if chart.function.patches:
         region = turned(family, chart.function, workers)
@@ -148,22 +156,22 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     return _result(assemble(chart.line), task, region, at, _rows(region, at), ((), ""), None)
 
 
-def _region(task: Task, speeds: int, tolerance: float, workers: int, tell: Progress) -> Region:
+def _region(task: Task, speeds: int, tolerance: float, workers: int, report_progress: Progress) -> Region:
     """The box to search; few rows of a long line cost less than one patch of its matrices."""
     if 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
         return unpatched(task.family, task.x.values, task.y.values, workers)
-    return patched(task.family, task.x.values, task.y.values, tolerance, workers, tell)
+    return patched(task.family, task.x.values, task.y.values, tolerance, workers, report_progress)
 
 
-def _rows(region: Region, speed: Array) -> list[Row]:
+def _rows(region: Region, speed: Array) -> list[TongueRow]:
     """Unstable ranges of the parameter at every speed (speed,)."""
-    rows: list[Row] = []
+    rows: list[TongueRow] = []
     for start in range(0, len(speed), AT_ONCE):
         rows += unstable_intervals(region, region.family.to_patch(speed[start : start + AT_ONCE], False))
     return rows
 
 
-def _rows_in_time(region: Region, speed: Array) -> tuple[list[Row], str]:
+def _rows_in_time(region: Region, speed: Array) -> tuple[list[TongueRow], str]:
     """The same, unknown at speeds that a time limit left out, and what ended the search, as a clause.
 
     With a limit a few speeds at a time, spread over all of them, so that whatever is known covers the range.
@@ -175,7 +183,7 @@ def _rows_in_time(region: Region, speed: Array) -> tuple[list[Row], str]:
     if not limited() or len(speed) <= FEW_AT_ONCE:
         return _rows(region, speed), ""
     parts = -(-len(speed) // FEW_AT_ONCE)
-    rows: list[Row | None] = [None] * len(speed)
+    rows: list[TongueRow | None] = [None] * len(speed)
     ended = ""
     try:
         for first in range(parts):
@@ -194,7 +202,7 @@ def _result(
     task: Task,
     region: Region,
     speed: Array,
-    rows: list[Row],
+    rows: list[TongueRow],
     others: Reached,
     whole: StableWindows | None,
 ) -> StableLimit:

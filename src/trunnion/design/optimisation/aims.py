@@ -10,8 +10,14 @@ from math import inf, isfinite, nan
 import numpy as np
 
 from trunnion.design.assessment.assess import checks_of, subject_of
+from trunnion.design.assessment.assessment_input import (
+    WHOLE,
+    AssessmentInput,
+    LoadCaseResponse,
+    SearchEffort,
+    with_torques,
+)
 from trunnion.design.assessment.check import Check, Status, below
-from trunnion.design.assessment.subject import WHOLE, Case, Effort, Subject, with_torques
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import ComputationError, InputError
@@ -27,7 +33,7 @@ WORST = 10.0
 """The largest violation that one check can count, in margins."""
 NEAR = 0.8
 """Share of the largest torque from which that of another load case may turn out to be the largest."""
-OwnAim = Callable[[Driveline], float]
+UserAim = Callable[[Driveline], float]
 
 
 @dataclass(frozen=True)
@@ -38,7 +44,7 @@ class Aim:
     name: str
     unit: str
     largest: bool = False
-    own: OwnAim | None = None
+    own: UserAim | None = None
     word: str = ""
     spring: str = ""
 
@@ -54,7 +60,7 @@ class Aim:
 
 
 @dataclass(frozen=True)
-class Question:
+class DesignProblem:
     """What every design is asked: aims, the range of speeds [rad/s] or None, the checks that must hold (None: all
     that decide; empty: none), and the names of the load cases that aims look at (None: all)."""
 
@@ -62,20 +68,22 @@ class Question:
     speeds: tuple[float, float] | None
     load_case: str | None
     unit: str
-    held: frozenset[str] | None
+    required_checks: frozenset[str] | None
     cases: frozenset[str] | None = None
 
     @property
     def checking(self) -> bool:
         """Whether checks are computed."""
-        return self.speeds is not None and (self.held is None or bool(self.held) or any(a.judged for a in self.aims))
+        return self.speeds is not None and (
+            self.required_checks is None or bool(self.required_checks) or any(a.judged for a in self.aims)
+        )
 
-    def answer(self, line: Driveline, effort: Effort = WHOLE) -> Answer:
+    def answer(self, line: Driveline, effort: SearchEffort = WHOLE) -> DesignEvaluation:
         """The aims of one line, and by how much it violates checks; NaN where it cannot be computed."""
         try:
             return self._answer(line, effort)
         except (InputError, ComputationError):
-            return Answer(tuple(nan for _ in self.aims), inf, ())
+            return DesignEvaluation(tuple(nan for _ in self.aims), inf, ())
 
     def require(self, line: Driveline) -> None:
         """Raise what refuses a line, if anything does.
@@ -86,7 +94,7 @@ class Question:
         """
         self._answer(line, WHOLE)
 
-    def _answer(self, line: Driveline, effort: Effort) -> Answer:
+    def _answer(self, line: Driveline, effort: SearchEffort) -> DesignEvaluation:
         subject = None
         if self.checking or any(aim.over_range for aim in self.aims):
             subject = self._subject(line, effort)
@@ -98,20 +106,22 @@ class Question:
         judged = [c for c in asked if c.judged or _unsettled(c)]
         broken = [c for c in judged if c.status is Status.EXCEEDED or _unsettled(c)]
         violation = sum(min(abs(c.spare), WORST) for c in broken)
-        return Answer(values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf))
+        return DesignEvaluation(
+            values, violation, tuple(c.name for c in broken), min((c.spare for c in judged), default=inf)
+        )
 
     @property
     def of_torques(self) -> bool:
         """Whether nothing but torques is asked for, of which the load cases' largest counts."""
         return not self.checking and all(aim.word or not aim.over_range for aim in self.aims)
 
-    def _subject(self, line: Driveline, effort: Effort) -> Subject:
+    def _subject(self, line: Driveline, effort: SearchEffort) -> AssessmentInput:
         subject = subject_of(line, self.speeds, self.load_case, self.unit, effort)
         springs = shaft_names(subject.cases[0].assembly)
         asked = tuple((aim.word, springs.index(aim.spring)) for aim in self.aims if aim.word)
         return replace(subject, cases=tuple(with_torques(subject.cases, asked))) if asked else subject
 
-    def near_cases(self, line: Driveline, effort: Effort = WHOLE) -> frozenset[str]:
+    def near_cases(self, line: Driveline, effort: SearchEffort = WHOLE) -> frozenset[str]:
         """Names of the load cases whose torques come near the largest; none where nothing can be computed."""
         try:
             subject = self._subject(line, effort)
@@ -123,11 +133,11 @@ class Question:
         )
 
     def _must_hold(self, check: Check) -> bool:
-        return check.decides if self.held is None else check.name in self.held
+        return check.decides if self.required_checks is None else check.name in self.required_checks
 
 
 @dataclass(frozen=True)
-class Answer:
+class DesignEvaluation:
     """Values of the aims, the violation of checks (0 where all hold), the names of those violated, and the least margin
     beyond the one required."""
 
@@ -183,7 +193,7 @@ def _unsettled(check: Check) -> bool:
     )
 
 
-def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[Check]) -> float:
+def _value(aim: Aim, line: Driveline, subject: AssessmentInput | None, checks: Iterable[Check]) -> float:
     if aim.own is not None:
         return float(aim.own(line))
     if aim.name == IRREGULARITY:
@@ -197,9 +207,9 @@ def _value(aim: Aim, line: Driveline, subject: Subject | None, checks: Iterable[
     return max(_torques(aim, subject).values(), default=nan)
 
 
-def _torques(aim: Aim, subject: Subject) -> dict[str, float]:
+def _torques(aim: Aim, subject: AssessmentInput) -> dict[str, float]:
     """The largest torque of the aim's spring [N m] by load case that has a response."""
-    on_threads(Case.respond_all, subject.cases, os.cpu_count() or 1)
+    on_threads(LoadCaseResponse.respond_all, subject.cases, os.cpu_count() or 1)
     cases = [case for case in subject.cases if case.response is not None]
     if not cases:
         order_response(subject.cases[0].assembly, [subject.high])  # raises what refuses it

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.design.assessment.assess import assess, subject_of
-from trunnion.design.assessment.subject import QUICK
-from trunnion.design.optimisation.aims import Aim, Answer, OwnAim, Question, aims_of
+from trunnion.design.assessment.assessment_input import QUICK
+from trunnion.design.optimisation.aims import Aim, DesignEvaluation, DesignProblem, UserAim, aims_of
 from trunnion.design.optimisation.result import Optimum
-from trunnion.design.optimisation.search import Search, Tried, first, front, nondominated, thinned
+from trunnion.design.optimisation.search import DesignSearch, EvaluatedDesign, first, front, nondominated, thinned
 from trunnion.design.optimisation.space import Space
 from trunnion.driveline.arguments import SpeedEnds, running_range, whole_number
 from trunnion.driveline.driveline import Driveline
@@ -42,7 +42,7 @@ DESIGNS = 600
 def optimise(
     line: Driveline,
     free: Mapping[str, Sequence[object]],
-    aims: str | OwnAim | Sequence[str | OwnAim],
+    aims: str | UserAim | Sequence[str | UserAim],
     speeds: SpeedEnds | None = None,
     *,
     checks: bool | Iterable[str] = True,
@@ -99,17 +99,19 @@ def optimise(
     space = Space(assemble(line), free)
     designs, seed = whole_number(designs, "designs", 20), whole_number(seed, "seed", 0)
     span = _span(line, speeds, wanted)
-    held = _held(checks)
+    required_checks = _required_checks(checks)
     if span is not None:
         subject_of(line, span, load_case, unit)  # refuses speeds and load cases that there are not
-    question = Question(wanted, span, load_case, unit or speed_unit(line), held if span is not None else frozenset())
-    _require_checks(line, question, held or frozenset())
+    problem = DesignProblem(
+        wanted, span, load_case, unit or speed_unit(line), required_checks if span is not None else frozenset()
+    )
+    _require_checks(line, problem, required_checks or frozenset())
     begun = time.monotonic()
-    before = question.answer(line)
+    before = problem.answer(line)
     keep_time()
     # So that the best design can still be judged wholly.
     reserve = RESERVE * (time.monotonic() - begun)
-    found, best, tried, ended = _in_time(space, question, before, designs * len(wanted), seed, progress, reserve)
+    found, best, tried, ended = _in_time(space, problem, before, designs * len(wanted), seed, progress, reserve)
     after = _there(space, best)
     signs = np.array([-1.0 if aim.largest else 1.0 for aim in wanted])
     if progress:
@@ -140,48 +142,48 @@ def optimise(
 
 def _in_time(
     space: Space,
-    question: Question,
-    before: Answer,
+    problem: DesignProblem,
+    before: DesignEvaluation,
     most: int,
     seed: int,
     progress: Callable[[float], None] | None,
     reserve: float,
-) -> tuple[list[Tried], Tried, int, str]:
+) -> tuple[list[EvaluatedDesign], EvaluatedDesign, int, str]:
     """The front, the design to take, how many were computed, and what ended the search before it was done: a time
     limit, of which ``reserve`` seconds are kept for judging the design. Where it left none, the line as it stands, of
     which the answer is ``before``, if that lies within the bounds."""
-    made: list[Search] = []
+    made: list[DesignSearch] = []
     try:
         with time_kept(reserve, LEAST):
-            return *_searched(space, question, most, seed, progress, made), ""
+            return *_searched(space, problem, most, seed, progress, made), ""
     except OutOfTime as error:
         known = next((good for one in reversed(made) if (good := _possible(one))), [])
         if not known:
-            known = _as_it_stands(space, question, before)
+            known = _as_it_stands(space, problem, before)
         if not known:
             raise
         ended = error.why
     count = sum(len(one.tried) for one in made)
     found, best = _chosen(known)
     with suppress(OutOfTime):  # the values of the search then stand, which are those of a coarser grid
-        best = _anew(Search(space, question, most, seed, None), best)
-    return (found if len(question.aims) > 1 else [best]), best, count, ended
+        best = _anew(DesignSearch(space, problem, most, seed, None), best)
+    return (found if len(problem.aims) > 1 else [best]), best, count, ended
 
 
-def _as_it_stands(space: Space, question: Question, before: Answer) -> list[Tried]:
+def _as_it_stands(space: Space, problem: DesignProblem, before: DesignEvaluation) -> list[EvaluatedDesign]:
     stated = np.array([one.nominal for one in space.free])
     if not (before.possible and np.allclose(space.values(space.start), stated, rtol=1e-9, atol=0.0)):
         return []
-    signs = np.array([-1.0 if aim.largest else 1.0 for aim in question.aims])
-    return [Tried(space.start, before, signs * np.array(before.values))]
+    signs = np.array([-1.0 if aim.largest else 1.0 for aim in problem.aims])
+    return [EvaluatedDesign(space.start, before, signs * np.array(before.values))]
 
 
-def _possible(search: Search) -> list[Tried]:
+def _possible(search: DesignSearch) -> list[EvaluatedDesign]:
     """What a search has computed, without what cannot be."""
     return [one for one in search.tried.values() if one.answer.possible]
 
 
-def _chosen(known: list[Tried]) -> tuple[list[Tried], Tried]:
+def _chosen(known: list[EvaluatedDesign]) -> tuple[list[EvaluatedDesign], EvaluatedDesign]:
     """The front of what is known so far, and the design to take."""
     if len(known[0].losses) == 1:
         best = min(known, key=lambda one: (one.answer.violation, one.losses[0]))
@@ -195,24 +197,24 @@ def _chosen(known: list[Tried]) -> tuple[list[Tried], Tried]:
 
 def _searched(
     space: Space,
-    question: Question,
+    problem: DesignProblem,
     most: int,
     seed: int,
     progress: Callable[[float], None] | None,
-    made: list[Search],
-) -> tuple[list[Tried], Tried, int]:
+    made: list[DesignSearch],
+) -> tuple[list[EvaluatedDesign], EvaluatedDesign, int]:
     """The front, the design to take, and how many were computed.
 
     Checks cost more than most aims, so the first search leaves them alone: where what it finds satisfies them, nothing
     better is left to find.
     """
-    aims = replace(question, held=frozenset())
+    aims = replace(problem, required_checks=frozenset())
     before = 0
     if not aims.checking:
         found, best, before = _by_aims(space, aims, most, seed, progress, made)
-        if not question.checking or not any(question.answer(_there(space, one)).violation for one in found):
+        if not problem.checking or not any(problem.answer(_there(space, one)).violation for one in found):
             return found, best, before
-    search = Search(space, question, most, seed, progress)
+    search = DesignSearch(space, problem, most, seed, progress)
     made.append(search)
     found, best = _found(search)
     return found, best, before + len(search.tried)
@@ -220,60 +222,60 @@ def _searched(
 
 def _by_aims(
     space: Space,
-    question: Question,
+    problem: DesignProblem,
     most: int,
     seed: int,
     progress: Callable[[float], None] | None,
-    made: list[Search],
-) -> tuple[list[Tried], Tried, int]:
+    made: list[DesignSearch],
+) -> tuple[list[EvaluatedDesign], EvaluatedDesign, int]:
     """The same without checks. Of torques the load cases that come near the largest are searched alone; where another
     one turns out to bind, it is taken in and the search begins anew."""
-    cases = _near_cases(space, question, seed) if question.of_torques else None
+    cases = _near_cases(space, problem, seed) if problem.of_torques else None
     before = 0
     while True:
-        search = Search(space, replace(question, cases=cases or None), most, seed, progress)
+        search = DesignSearch(space, replace(problem, cases=cases or None), most, seed, progress)
         made.append(search)
         found, best = _found(search)
         before += len(search.tried)
         if not cases:
             return found, best, before
-        other = [line for one in found if _differs(question.answer(line := _there(space, one)), one.answer)]
+        other = [line for one in found if _differs(problem.answer(line := _there(space, one)), one.answer)]
         if not other:
             return found, best, before
-        cases |= frozenset().union(*(question.near_cases(line) for line in other))
+        cases |= frozenset().union(*(problem.near_cases(line) for line in other))
 
 
-def _differs(all_cases: Answer, some: Answer) -> bool:
+def _differs(all_cases: DesignEvaluation, some: DesignEvaluation) -> bool:
     return not np.allclose(all_cases.values, some.values, rtol=ALIKE, atol=0.0)
 
 
-def _near_cases(space: Space, question: Question, seed: int) -> frozenset[str]:
+def _near_cases(space: Space, problem: DesignProblem, seed: int) -> frozenset[str]:
     shares = np.random.default_rng(seed).random((LOOKS, len(space.free)))
     shares[0] = space.start
     lines = [line for one in shares if (line := space.line(one)) is not None]
-    return frozenset[str]().union(*(question.near_cases(line, QUICK) for line in lines))
+    return frozenset[str]().union(*(problem.near_cases(line, QUICK) for line in lines))
 
 
-def _there(space: Space, one: Tried) -> Driveline:
+def _there(space: Space, one: EvaluatedDesign) -> Driveline:
     line = space.line(one.shares)
     assert line is not None
     return line
 
 
-def _anew(search: Search, one: Tried) -> Tried:
+def _anew(search: DesignSearch, one: EvaluatedDesign) -> EvaluatedDesign:
     """One design as ``assess`` judges it; raises what refuses the line, or says that no design can be computed."""
     found = search.whole(one.shares)
     if not found.answer.possible:
         line = search.space.line(one.shares)
         if line is not None:
-            search.question.require(line)
+            search.problem.require(line)
         raise ComputationError("no design within the bounds can be computed; narrow them, or ask for other aims")
     return found
 
 
-def _found(search: Search) -> tuple[list[Tried], Tried]:
+def _found(search: DesignSearch) -> tuple[list[EvaluatedDesign], EvaluatedDesign]:
     """Designs of the front, computed anew, and the one to take: of two aims the one nearest to the best of both."""
-    if len(search.question.aims) == 1:
+    if len(search.problem.aims) == 1:
         best = _anew(search, search.best(first))
         return [best], best
     found = nondominated([search.whole(one.shares) for one in thinned(front(search), POINTS)])
@@ -284,7 +286,7 @@ def _found(search: Search) -> tuple[list[Tried], Tried]:
     return found, _balanced(found)
 
 
-def _balanced(found: list[Tried]) -> Tried:
+def _balanced(found: list[EvaluatedDesign]) -> EvaluatedDesign:
     """The design of a front that is nearest to the best of all aims."""
     losses = np.array([one.losses for one in found])
     off = (losses - losses.min(axis=0)) / np.maximum(np.ptp(losses, axis=0), 1e-300)
@@ -302,7 +304,7 @@ def _span(line: Driveline, speeds: SpeedEnds | None, aims: Sequence[Aim]) -> tup
     return None
 
 
-def _held(checks: object) -> frozenset[str] | None:
+def _required_checks(checks: object) -> frozenset[str] | None:
     if checks is True:
         return None
     if checks is False:
@@ -312,15 +314,15 @@ def _held(checks: object) -> frozenset[str] | None:
     return frozenset((checks,) if isinstance(checks, str) else checks)
 
 
-def _require_checks(line: Driveline, question: Question, held: frozenset[str]) -> None:
+def _require_checks(line: Driveline, problem: DesignProblem, required_checks: frozenset[str]) -> None:
     """Refuse names of checks that the line has not."""
-    named = {aim.name.removeprefix("margin of ") for aim in question.aims if aim.name.startswith("margin of ")}
-    named |= held
+    named = {aim.name.removeprefix("margin of ") for aim in problem.aims if aim.name.startswith("margin of ")}
+    named |= required_checks
     if not named:
         return
-    if question.speeds is None:
+    if problem.speeds is None:
         raise InputError("are judged over a range of speeds", key="checks", remedy="give speeds")
-    known = [c.name for c in assess(line, question.speeds, load_case=question.load_case).checks]
+    known = [c.name for c in assess(line, problem.speeds, load_case=problem.load_case).checks]
     for name in sorted(named):
         if name not in known:
             raise InputError(
@@ -328,7 +330,7 @@ def _require_checks(line: Driveline, question: Question, held: frozenset[str]) -
             )
 
 
-def _findings(space: Space, best: Tried, found: Sequence[Tried]) -> Iterator[Finding]:
+def _findings(space: Space, best: EvaluatedDesign, found: Sequence[EvaluatedDesign]) -> Iterator[Finding]:
     if best.answer.broken:
         yield Finding(
             Gravity.DANGER,

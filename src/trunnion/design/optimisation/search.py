@@ -14,8 +14,8 @@ import numpy as np
 from scipy.optimize import differential_evolution, minimize
 
 from trunnion.arrays import Array
-from trunnion.design.assessment.subject import QUICK
-from trunnion.design.optimisation.aims import Answer, Question
+from trunnion.design.assessment.assessment_input import QUICK
+from trunnion.design.optimisation.aims import DesignEvaluation, DesignProblem
 from trunnion.design.optimisation.space import Space
 from trunnion.waiting import keep_time
 
@@ -45,31 +45,31 @@ BESIDE = 1e-3
 Merit = Callable[[Array], float]
 
 
-class _Known(Exception):
+class _KnownOptimum(Exception):
     """A simplex came to where an earlier one ended."""
 
 
 @dataclass(frozen=True)
-class Tried:
+class EvaluatedDesign:
     """One design that was computed: its shares and what was answered; the largest aims count as negative."""
 
     shares: Array
-    answer: Answer
+    answer: DesignEvaluation
     losses: Array
 
 
-class Search:
+class DesignSearch:
     """Designs of one space, each computed once."""
 
     def __init__(
-        self, space: Space, question: Question, most: int, seed: int, progress: Callable[[float], None] | None
+        self, space: Space, problem: DesignProblem, most: int, seed: int, progress: Callable[[float], None] | None
     ) -> None:
-        self.space, self.question, self.most, self.seed = space, question, most, seed
+        self.space, self.problem, self.most, self.seed = space, problem, most, seed
         self.progress = progress
-        self.tried: dict[bytes, Tried] = {}
-        self.signs = np.array([-1.0 if aim.largest else 1.0 for aim in question.aims])
+        self.tried: dict[bytes, EvaluatedDesign] = {}
+        self.signs = np.array([-1.0 if aim.largest else 1.0 for aim in problem.aims])
 
-    def at(self, shares: Array) -> Tried:
+    def at(self, shares: Array) -> EvaluatedDesign:
         """One design, on a grid of speeds that is coarse except about the peaks."""
         shares = np.clip(np.asarray(shares, dtype=float), 0.0, 1.0)
         key = shares.tobytes()
@@ -82,28 +82,28 @@ class Search:
                 self.progress(min(len(self.tried) / self.most, 0.99))
         return self.tried[key]
 
-    def whole(self, shares: Array) -> Tried:
+    def whole(self, shares: Array) -> EvaluatedDesign:
         """One design as ``assess`` judges it, computed anew."""
         found = self._computed(shares, quick=False)
         keep_time()
         return found
 
-    def _computed(self, shares: Array, *, quick: bool) -> Tried:
+    def _computed(self, shares: Array, *, quick: bool) -> EvaluatedDesign:
         line = self.space.line(shares)
         if line is None:
-            answer = Answer(tuple(float("nan") for _ in self.signs), np.inf, ())
+            answer = DesignEvaluation(tuple(float("nan") for _ in self.signs), np.inf, ())
         else:
-            answer = self.question.answer(line, QUICK) if quick else self.question.answer(line)
+            answer = self.problem.answer(line, QUICK) if quick else self.problem.answer(line)
             if quick and abs(answer.spare) < NEAR:
-                answer = self.question.answer(line)
-        return Tried(shares.copy(), answer, self.signs * np.array(answer.values))
+                answer = self.problem.answer(line)
+        return EvaluatedDesign(shares.copy(), answer, self.signs * np.array(answer.values))
 
-    def best(self, merit: Callable[[Array], float]) -> Tried:
+    def best(self, merit: Callable[[Array], float]) -> EvaluatedDesign:
         """The design with the smallest ``merit(losses)`` found from everywhere within the bounds."""
         self._evolved(self._of(merit))
         return self.polished(merit, SIMPLEX, POLISH)
 
-    def polished(self, merit: Callable[[Array], float], sizes: Sequence[float], most: int) -> Tried:
+    def polished(self, merit: Callable[[Array], float], sizes: Sequence[float], most: int) -> EvaluatedDesign:
         """The same from the best designs that are known, by simplices of these sizes, each of so many designs per free
         number; the first from several of them that lie apart, as one may be the wrong valley."""
         function = self._of(merit)
@@ -121,7 +121,7 @@ class Search:
 
         def stop_at_known(place: Array) -> None:
             if any(np.abs(place - end).max() < size for end in ends):
-                raise _Known
+                raise _KnownOptimum
 
         try:
             found = minimize(
@@ -130,7 +130,7 @@ class Search:
                          "fatol": close * abs(function(start))},
             )  # fmt: skip
             ends.append(np.array(found.x))
-        except _Known:
+        except _KnownOptimum:
             pass
 
     def _evolved(self, function: Merit) -> None:
@@ -168,9 +168,9 @@ class Search:
         return function
 
 
-def _apart(ordered: list[Tried], most: int) -> list[Tried]:
+def _apart(ordered: list[EvaluatedDesign], most: int) -> list[EvaluatedDesign]:
     """The best designs of an ordered list, each farther than ``DISTANCE`` from those before it."""
-    found: list[Tried] = []
+    found: list[EvaluatedDesign] = []
     for one in ordered:
         if len(found) < most and all(np.abs(one.shares - other.shares).max() > DISTANCE for other in found):
             found.append(one)
@@ -188,7 +188,7 @@ def first(losses: Array) -> float:
     return float(losses[0])
 
 
-def front(search: Search) -> list[Tried]:
+def front(search: DesignSearch) -> list[EvaluatedDesign]:
     """Designs that no other one beats in both aims, by rising first aim."""
     ends = [search.best(lambda losses, k=k: float(losses[k])) for k in range(2)]  # type: ignore[misc]
     low = np.minimum(ends[0].losses, ends[1].losses)
@@ -207,18 +207,18 @@ def front(search: Search) -> list[Tried]:
     return nondominated(list(search.tried.values()))
 
 
-def nondominated(tried: list[Tried]) -> list[Tried]:
+def nondominated(tried: list[EvaluatedDesign]) -> list[EvaluatedDesign]:
     """Those that hold all checks and that no other one beats in both aims, by rising first aim."""
     good = [one for one in tried if one.answer.possible and not one.answer.violation]
     good.sort(key=lambda one: tuple(one.losses))
-    kept: list[Tried] = []
+    kept: list[EvaluatedDesign] = []
     for one in good:
         if not kept or one.losses[1] < kept[-1].losses[1]:
             kept.append(one)
     return kept
 
 
-def thinned(found: list[Tried], most: int) -> list[Tried]:
+def thinned(found: list[EvaluatedDesign], most: int) -> list[EvaluatedDesign]:
     """At most ``most`` of a front, evenly along it, its ends included."""
     if len(found) <= most:
         return found

@@ -13,7 +13,13 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import kind_of, parse
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.floquet.tolerance.bounded import Bounded, columns_of, each_named, require_possible, table_at
+from trunnion.floquet.tolerance.parameter_intervals import (
+    ParameterInterval,
+    columns_of,
+    each_named,
+    require_possible,
+    table_at,
+)
 
 EXAMPLE = 'free={"Shaft 2.fork_offset": ("0 deg", "180 deg")}'
 WIDE = 10.0
@@ -21,7 +27,7 @@ WIDE = 10.0
 
 
 @dataclass(frozen=True)
-class Free(Bounded):
+class FreeVariable(ParameterInterval):
     """One number to choose."""
 
     @property
@@ -68,14 +74,14 @@ class Space:
         return self.assembly.packed.line_if_possible(table_at(self.assembly, self.free, self.values(shares)[None])[0])
 
 
-def _free(assembly: Assembly, path: str, ends: Sequence[object]) -> Free:
+def _free(assembly: Assembly, path: str, ends: Sequence[object]) -> FreeVariable:
     columns = columns_of(assembly, path)
     if isinstance(ends, str) or not isinstance(ends, Sequence) or len(ends) != 2:
         raise InputError("must be a low and a high bound", key=path, value=ends, remedy=EXAMPLE)
     low, high = (_bound(path, end, columns.unit) for end in ends)
     if not low < high:
         raise InputError("must be rising bounds", key=path, value=tuple(ends), remedy=EXAMPLE)
-    return Free(path, columns.unit, columns, assembly.packed.value(path), low, high)
+    return FreeVariable(path, columns.unit, columns, assembly.packed.value(path), low, high)
 
 
 def _bound(path: str, end: object, unit: str) -> float:

@@ -9,12 +9,12 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.assessment.assess import checks_of, judgement, subject_of
+from trunnion.design.assessment.assessment_input import AssessmentInput
 from trunnion.design.assessment.check import Check, Status, percent
 from trunnion.design.assessment.result import verdict_of
-from trunnion.design.assessment.subject import Subject
 from trunnion.design.remedies.result import Remedies, Remedy
-from trunnion.design.remedies.search import Changes, Found, Search, goals_of
-from trunnion.design.remedies.trials import Trials
+from trunnion.design.remedies.search import CandidateChange, Changes, RemedySearch, goals_of
+from trunnion.design.remedies.trials import TrialLines
 from trunnion.design.sensitivity.checks import check_slopes
 from trunnion.design.sensitivity.directions import Neighbours, directions_of
 from trunnion.design.sensitivity.variables import Design
@@ -51,9 +51,9 @@ def remedies(
 
     Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase,
     and verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
-    worse; ``verified`` of the result says at which speeds. Of bent lines that start free sensitivities are those about
-    the motion of rigid shafts. A range of values narrower than a step (3 to 10 %, of bent free lines 5 to 20 %) can be
-    missed. What is zero is not varied.
+    worse; ``verified`` of the result says at which speeds. Of free–free lines with joint angles sensitivities are those
+    about the motion of rigid shafts. A range of values narrower than a step (3 to 10 %, of free–free lines with joint
+    angles 5 to 20 %) can be missed. What is zero is not varied.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ to 128.23 rad/s: margin 0.405 %
 
 
 def remedies_of(
-    subject: Subject,
+    subject: AssessmentInput,
     base: tuple[Check, ...],
     *,
     checks: Iterable[str] | None = None,
@@ -105,8 +105,8 @@ def remedies_of(
         slope, error, speed = _sensitivities(subject, design, targets)
         lines += 4 * len(targets) * len(design.variables)
         if goals:
-            trials = Trials(subject, base, design, targets)
-            changes = Search(trials, goals, most, progress).run()
+            trials = TrialLines(subject, base, design, targets)
+            changes = RemedySearch(trials, goals, most, progress).run()
             verified = trials.verified
             lines += trials.count
     except OutOfTime as ending:
@@ -129,10 +129,10 @@ def remedies_of(
     )
 
 
-def _sensitivities(subject: Subject, design: Design, checks: Sequence[Check]) -> tuple[Array, Array, Array]:
+def _sensitivities(subject: AssessmentInput, design: Design, checks: Sequence[Check]) -> tuple[Array, Array, Array]:
     """d ln(value)/d ln p of checks' values by design variables (check, variable), d ln(value)/dφ [1/rad] for angles;
-    their errors; the speed (check,) [rad/s] where they were taken. NaN where a check has no value. Of bent lines that
-    start free about the motion of rigid shafts, right to first order in what joints force."""
+    their errors; the speed (check,) [rad/s] where they were taken. NaN where a check has no value. Of lines with joint
+    angles that are free–free about the motion of rigid shafts, right to first order in what joints force."""
     assembly = subject.cases[0].assembly
     directions = directions_of(assembly, [v.path for v in design.variables]) if design.variables else ()
     if subject.cases[0].costly:
@@ -160,7 +160,7 @@ def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) ->
     return found
 
 
-def _remedy(subject: Subject, design: Design, before: Check, found: Found) -> Remedy:
+def _remedy(subject: AssessmentInput, design: Design, before: Check, found: CandidateChange) -> Remedy:
     variable, after = found.variable, found.after.get(before.name)
     value, margin = (after.value, after.margin) if after else (np.nan, np.nan)
     return Remedy(
@@ -178,7 +178,9 @@ def _remedy(subject: Subject, design: Design, before: Check, found: Found) -> Re
     )
 
 
-def _sentence(subject: Subject, design: Design, before: Check, after: Check | None, found: Found) -> str:
+def _sentence(
+    subject: AssessmentInput, design: Design, before: Check, after: Check | None, found: CandidateChange
+) -> str:
     change = found.variable.worded(found.value)
     if after is None:
         return f"{change} leaves nothing to pass quickly"
@@ -193,12 +195,12 @@ def _sentence(subject: Subject, design: Design, before: Check, after: Check | No
     return f"{change} brings it from {_shown(subject, before)} to {_shown(subject, after)}: {left}"
 
 
-def _shown(subject: Subject, check: Check) -> str:
+def _shown(subject: AssessmentInput, check: Check) -> str:
     """The value of a check in an engineer's unit, speeds in the file's."""
     return subject.shown(check.value) if check.unit == "rad/s" else in_words(check.value, check.unit)
 
 
-def _closest(found: Found, base: dict[str, Check]) -> str:
+def _closest(found: CandidateChange, base: dict[str, Check]) -> str:
     """ "coupling softer by 18 % (32.8 kN*m/rad) would, but gear hammer in gearbox is then exceeded by 4 %"."""
     first = found.breaks[0]
     now, before = percent(first.margin), base.get(first.name)
@@ -212,7 +214,9 @@ def _closest(found: Found, base: dict[str, Check]) -> str:
     return f"{found.variable.worded(found.value)} would, but {first.name} {how}{more}"
 
 
-def _critical(subject: Subject, design: Design, before: Check, found: Found) -> tuple[float, float] | None:
+def _critical(
+    subject: AssessmentInput, design: Design, before: Check, found: CandidateChange
+) -> tuple[float, float] | None:
     """The speed at which the order that leads meets its mode, before and after; None where it hardly moves."""
     cause = before.cause
     if cause is None or not cause.mode or not abs(cause.off) < 0.5 or not np.isfinite(cause.critical):

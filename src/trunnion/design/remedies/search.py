@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.design.assessment.check import Check, Status
-from trunnion.design.remedies.trials import Checks, Trial, Trials
+from trunnion.design.remedies.trials import Checks, TrialLine, TrialLines
 from trunnion.design.sensitivity.variables import DesignVariable, Scale
 from trunnion.numerics.threads import on_threads
 from trunnion.waiting import OutOfTime
@@ -34,7 +34,7 @@ DRAWN = 5
 
 
 @dataclass(frozen=True)
-class Found:
+class CandidateChange:
     """A change that satisfies ``check``: the variable, its new value, all checks after it; or what it ``breaks``."""
 
     check: str
@@ -54,15 +54,17 @@ class Changes:
     """What a search found: changes that satisfy goals, smallest first; the closest where there is none; and what ended
     it before it was done, as a clause, "" where it was done."""
 
-    found: list[Found]
-    closest: list[Found]
+    found: list[CandidateChange]
+    closest: list[CandidateChange]
     ended: str
 
 
-class Search:
+class RemedySearch:
     """Looks for changes of one line that satisfy its ``goals``: by check, the spare margin to reach."""
 
-    def __init__(self, trials: Trials, goals: dict[str, float], most: int, progress: Callable[[float], None] | None):
+    def __init__(
+        self, trials: TrialLines, goals: dict[str, float], most: int, progress: Callable[[float], None] | None
+    ):
         self.trials, self.goals, self.most, self.progress = trials, goals, most, progress
         self.variables = trials.design.variables
         self.sizes: tuple[float, ...] = FEWER_SIZES if trials.costly else SIZES
@@ -71,8 +73,8 @@ class Search:
     def run(self) -> Changes:
         """The smallest changes for every goal, smallest first; of each variable the smaller direction. For goals
         without any, the smallest change that would do if it broke nothing."""
-        passed: dict[str, dict[str, Found]] = {name: {} for name in self.goals}
-        closest: list[Found] = []
+        passed: dict[str, dict[str, CandidateChange]] = {name: {} for name in self.goals}
+        closest: list[CandidateChange] = []
         ended = ""
         try:
             self._search(passed, closest)
@@ -81,7 +83,7 @@ class Search:
         found = [f for name in self.goals for f in sorted(passed[name].values(), key=lambda f: f.size)[: self.most]]
         return Changes(found, closest, ended)
 
-    def _search(self, passed: dict[str, dict[str, Found]], closest: list[Found]) -> None:
+    def _search(self, passed: dict[str, dict[str, CandidateChange]], closest: list[CandidateChange]) -> None:
         """Fill in what is found, by goal and variable, and the closest of goals without any."""
         matter = self._that_matter()
         last = 0.0
@@ -93,13 +95,13 @@ class Search:
             for name in open_goals:
                 self._step(name, matter[name], last, size, passed[name])
             last = size
-            self._tell((step + 2) / (len(self.sizes) + 1))
+            self._report_progress((step + 2) / (len(self.sizes) + 1))
         for name in self.goals:
             if not passed[name] and (one := self._closest(name, matter[name])):
                 closest.append(one)
-        self._tell(1.0)
+        self._report_progress(1.0)
 
-    def _tell(self, share: float) -> None:
+    def _report_progress(self, share: float) -> None:
         if self.progress:
             self.progress(share)
 
@@ -110,7 +112,7 @@ class Search:
         for i, name in enumerate(self.goals):
             signed = [sign * size for size in self.probes for sign in (-1.0, 1.0)]
             kept[name] = [v for v in self.variables if any(self._moves(name, v, size) for size in signed)]
-            self._tell((i + 1) / len(self.goals) / (len(self.sizes) + 1))
+            self._report_progress((i + 1) / len(self.goals) / (len(self.sizes) + 1))
         return kept
 
     def _moves(self, name: str, variable: DesignVariable, size: float) -> bool:
@@ -129,14 +131,14 @@ class Search:
                     lines.setdefault((variable.path, signed), []).append((name, variable, signed))
             on_threads(lambda asked: [self._satisfies(*one) for one in asked], lines.values(), os.cpu_count() or 1)
 
-    def _quick(self, variable: DesignVariable, size: float) -> Trial | None:
+    def _quick(self, variable: DesignVariable, size: float) -> TrialLine | None:
         value = variable.at(size)
         if variable.scale is Scale.BEND and value < 0:
             return None
         return self.trials.quick(variable, value)
 
     def _step(
-        self, name: str, variables: list[DesignVariable], last: float, size: float, passed: dict[str, Found]
+        self, name: str, variables: list[DesignVariable], last: float, size: float, passed: dict[str, CandidateChange]
     ) -> None:
         """Add to ``passed`` what satisfies a goal with a change between the sizes ``last`` and ``size``, smallest
         first, until there are enough."""
@@ -166,14 +168,14 @@ class Search:
                 fails = middle
         return passes
 
-    def _verified(self, name: str, variable: DesignVariable, least: float, far: float) -> Found | None:
+    def _verified(self, name: str, variable: DesignVariable, least: float, far: float) -> CandidateChange | None:
         for value in self._written(variable, least, far):
             after = self.trials.whole(variable, value)
             if after is not None and self._reached(name, after) and not self.trials.broken(name, after):
-                return Found(name, variable, value, after.checks)
+                return CandidateChange(name, variable, value, after.checks)
         return None
 
-    def _closest(self, name: str, variables: list[DesignVariable]) -> Found | None:
+    def _closest(self, name: str, variables: list[DesignVariable]) -> CandidateChange | None:
         """The smallest change that satisfies a goal, and what it breaks, of the variables that do soonest."""
         sizes, near = (0.0, *self.sizes), []
         for variable in variables:
@@ -185,7 +187,7 @@ class Search:
             value = next(self._written(variable, least, sign * sizes[far]))
             after = self.trials.whole(variable, value)
             if after is not None and self._reached(name, after) and (broken := self.trials.broken(name, after)):
-                return Found(name, variable, value, {}, tuple(broken))
+                return CandidateChange(name, variable, value, {}, tuple(broken))
         return None
 
     def _written(self, variable: DesignVariable, size: float, far: float) -> Iterator[float]:
@@ -206,7 +208,7 @@ class Search:
         after = self._quick(variable, size)
         return after is not None and self._reached(name, after) and not self.trials.broken(name, after)
 
-    def _reached(self, name: str, after: Trial) -> bool:
+    def _reached(self, name: str, after: TrialLine) -> bool:
         check = self.trials.check(name, after)
         if check is None:
             return name.endswith(", passing")  # nothing is left to pass quickly

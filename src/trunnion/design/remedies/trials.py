@@ -1,9 +1,9 @@
 """Judging a line with one number changed, quickly to search and wholly to be sure.
 
 Checks are judged in groups, that of the check in question first: what does not satisfy it, or breaks another, costs no
-more. Of a bent line that starts free every speed takes a motion of its own. There the search looks at the response
-about the motion of rigid shafts, right to first order in what joints force; what it finds is judged about the line's
-own motions, as ``assess`` does.
+more. Of a free–free line with joint angles every speed takes a motion of its own. There the search looks at the
+response about the motion of rigid shafts, right to first order in what joints force; what it finds is judged about the
+line's own motions, as ``assess`` does.
 """
 
 from __future__ import annotations
@@ -12,6 +12,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from trunnion.design.assessment.assess import OF_RESPONSE, of_line, prepare
+from trunnion.design.assessment.assessment_input import (
+    QUICK,
+    WHOLE,
+    AssessmentInput,
+    LoadCaseResponse,
+    SearchEffort,
+    cases_of,
+)
 from trunnion.design.assessment.check import Check, Status, in_order, worst
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.parametric import NAME as GROWTH
@@ -20,7 +28,6 @@ from trunnion.design.assessment.result import verdict_of
 from trunnion.design.assessment.separation import ALL as SEPARATED
 from trunnion.design.assessment.separation import ONE as SEPARATION_OF_ONE
 from trunnion.design.assessment.separation import separation
-from trunnion.design.assessment.subject import QUICK, WHOLE, Case, Effort, Subject, cases_of
 from trunnion.design.sensitivity.variables import Design, DesignVariable
 from trunnion.driveline.driveline import Driveline
 from trunnion.waiting import keep_time
@@ -29,10 +36,10 @@ WORSE = 1e-3
 """Share of a limit by which what is exceeded already may be exceeded more."""
 
 Checks = dict[str, Check]
-Group = Callable[[Subject], Iterable[Check]]
+Group = Callable[[AssessmentInput], Iterable[Check]]
 
 
-def _by_case(rule: Callable[[Subject, Case], Iterable[Check]]) -> Group:
+def _by_case(rule: Callable[[AssessmentInput, LoadCaseResponse], Iterable[Check]]) -> Group:
     return lambda subject: worst(check for case in subject.cases for check in rule(subject, case))
 
 
@@ -40,10 +47,10 @@ GROUPS: tuple[Group, ...] = (of_line, *map(_by_case, (*OF_RESPONSE, separation, 
 """Checks that are judged together, growth last."""
 
 
-class Trial:
+class TrialLine:
     """One line, of which groups of checks are judged as they are asked for; ``whole``: all of them will be."""
 
-    def __init__(self, subject: Subject, groups: int, whole: bool = False) -> None:
+    def __init__(self, subject: AssessmentInput, groups: int, whole: bool = False) -> None:
         self.subject, self.groups, self.whole = subject, groups, whole
         self._found: dict[int, Checks] = {}
 
@@ -67,23 +74,25 @@ class Trial:
         return {check.name: check for check in in_order(c for found in self.in_turn(0) for c in found.values())}
 
 
-Known = dict[tuple[str, float], Trial | None]
+Known = dict[tuple[str, float], TrialLine | None]
 """Changed lines by the variable and its value; None where the line is refused."""
 
 
-class Trials:
+class TrialLines:
     """Changed lines, each judged once.
 
     quick: the checks of the load cases that bind, largest values to a hundredth; whole: all of them as ``assess`` does.
     """
 
-    def __init__(self, subject: Subject, base: tuple[Check, ...], design: Design, targets: Iterable[Check]) -> None:
+    def __init__(
+        self, subject: AssessmentInput, base: tuple[Check, ...], design: Design, targets: Iterable[Check]
+    ) -> None:
         self.subject, self.design = subject, design
         self.base: Checks = {check.name: check for check in base}
         self.verdict = verdict_of(base, subject.speed)[0]
         self.costly = subject.cases[0].costly
         targets = tuple(targets)
-        of_line = Trial(subject, 1).checks
+        of_line = TrialLine(subject, 1).checks
         # What the response says to a change that helps a check of the line is left to the whole judgement where costly.
         asked = [check for check in targets if not (self.costly and check.name in of_line)]
         self.cases = {check.load_case for check in asked}
@@ -110,17 +119,17 @@ class Trials:
         """Lines judged so far."""
         return len(self._quick) + len(self._whole)
 
-    def quick(self, variable: DesignVariable, value: float) -> Trial | None:
+    def quick(self, variable: DesignVariable, value: float) -> TrialLine | None:
         """The changed line to look around; None where it is refused."""
         return self._judged(self._quick, variable, value, self._looked_at)
 
-    def whole(self, variable: DesignVariable, value: float) -> Trial | None:
+    def whole(self, variable: DesignVariable, value: float) -> TrialLine | None:
         """The changed line to be judged wholly; None where it is refused."""
         return self._judged(self._whole, variable, value, self._judged_wholly)
 
     def _judged(
-        self, known: Known, variable: DesignVariable, value: float, judge: Callable[[Driveline], Trial]
-    ) -> Trial | None:
+        self, known: Known, variable: DesignVariable, value: float, judge: Callable[[Driveline], TrialLine]
+    ) -> TrialLine | None:
         key = variable.path, value
         keep_time()
         if key not in known:
@@ -128,29 +137,29 @@ class Trials:
             known[key] = None if line is None else judge(line)
         return known[key]
 
-    def _judged_wholly(self, line: Driveline) -> Trial:
-        return Trial(self._asked(line, WHOLE), len(GROUPS), whole=True)
+    def _judged_wholly(self, line: Driveline) -> TrialLine:
+        return TrialLine(self._asked(line, WHOLE), len(GROUPS), whole=True)
 
-    def _asked(self, line: Driveline, effort: Effort) -> Subject:
+    def _asked(self, line: Driveline, effort: SearchEffort) -> AssessmentInput:
         """The same question about another line."""
         subject = self.subject
         cases = cases_of(line, subject.low, subject.high, effort)[: len(subject.cases)]
         return replace(subject, line=line, cases=cases, naming=False)
 
-    def _looked_at(self, line: Driveline) -> Trial:
+    def _looked_at(self, line: Driveline) -> TrialLine:
         subject = self._asked(line, QUICK)
         cases = tuple(case for case in subject.cases if case.name in self.cases) or subject.cases[:1]
         if self.costly:
             cases = tuple(replace(case, rough=True) for case in cases)
-        return Trial(replace(subject, cases=cases), self.groups)
+        return TrialLine(replace(subject, cases=cases), self.groups)
 
-    def check(self, name: str, trial: Trial) -> Check | None:
+    def check(self, name: str, trial: TrialLine) -> Check | None:
         """One check of a changed line, others judged with it only where they belong to its group; of a mode that no
         order meets any more, that of all such modes."""
         found = trial.group(self.of[name]) if name in self.of else trial.checks
         return found.get(name) or (found.get(SEPARATED) if name.startswith(SEPARATION_OF_ONE) else None)
 
-    def broken(self, name: str, trial: Trial) -> list[Check]:
+    def broken(self, name: str, trial: TrialLine) -> list[Check]:
         """What a change made for the check called ``name`` breaks, or makes worse where it is exceeded already: of the
         first group of checks where there is any. A change that only spoils the verdict, by the operating speed in a
         barred range, say, breaks all that is exceeded."""

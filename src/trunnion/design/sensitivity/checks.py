@@ -17,11 +17,11 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.assessment.assess import OF_RESPONSE, of_line, of_response
+from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse, cases_of
 from trunnion.design.assessment.check import Check
 from trunnion.design.assessment.parametric import NAME as GROWTH
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.separation import separation
-from trunnion.design.assessment.subject import Case, Subject, cases_of
 from trunnion.design.sensitivity.differences import slope
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
 from trunnion.design.sensitivity.growth import radius_slope
@@ -47,7 +47,7 @@ class CheckSlopes:
 
 
 def check_slopes(
-    subject: Subject,
+    subject: AssessmentInput,
     near: Neighbours,
     directions: Sequence[Direction],
     checks: Sequence[Check],
@@ -81,11 +81,11 @@ class _Values:
 
     def __init__(
         self,
-        subject: Subject,
+        subject: AssessmentInput,
         near: Neighbours,
         directions: Sequence[Direction],
         checks: Sequence[Check],
-        cases: Sequence[Case],
+        cases: Sequence[LoadCaseResponse],
         speeds: Array,
     ) -> None:
         """``checks``, each of its load case (check,), bind at ``speeds`` (check,)."""
@@ -108,11 +108,11 @@ class _Values:
         self._seen: defaultdict[tuple[str, float, str, float], dict[str, Array]] = defaultdict(dict)
         self._around: dict[tuple[str, float], tuple[dict[str, SpectrumSlope | None], float]] = {}
 
-    def exact(self, case: Case, check: Check) -> bool:
+    def exact(self, case: LoadCaseResponse, check: Check) -> bool:
         """Whether derivatives go through the equations of the response."""
         return check.name in self.of_response[case.name]
 
-    def slope(self, case: Case, speed: float, check: Check, one: Direction) -> tuple[Array, Array] | None:
+    def slope(self, case: LoadCaseResponse, speed: float, check: Check, one: Direction) -> tuple[Array, Array] | None:
         """Derivatives of value and margin by shares of the direction's size, and their errors."""
         around, pace = self._slopes_at(case, speed) if self.exact(case, check) else ({}, 0.0)
         if (own := around.get(one.label)) is None:
@@ -120,7 +120,7 @@ class _Values:
         return own.slope(partial(self.about, case, speed, check, one, own), pace)
 
     def about(
-        self, case: Case, speed: float, check: Check, one: Direction, around: SpectrumSlope, share: float
+        self, case: LoadCaseResponse, speed: float, check: Check, one: Direction, around: SpectrumSlope, share: float
     ) -> Array | None:
         """Of the line moved along a direction, its response taken to first order; None where it is refused."""
         line = self.near.line(one, share) if share else self.subject.line
@@ -133,7 +133,7 @@ class _Values:
             self._seen[key] = _read(of_response(replace(subject, cases=(own,)), own))
         return self._seen[key].get(check.name, np.full(2, np.nan))
 
-    def _slopes_at(self, case: Case, speed: float) -> tuple[dict[str, SpectrumSlope | None], float]:
+    def _slopes_at(self, case: LoadCaseResponse, speed: float) -> tuple[dict[str, SpectrumSlope | None], float]:
         """How the response changes along every direction, and the fastest pace."""
         key = case.name, speed
         if key not in self._around:
@@ -145,12 +145,14 @@ class _Values:
             self._around[key] = every, max((one.pace for one in every.values() if one is not None), default=0.0)
         return self._around[key]
 
-    def at(self, case: Case, speed: float, check: Check, one: Direction, share: float) -> Array | None:
+    def at(self, case: LoadCaseResponse, speed: float, check: Check, one: Direction, share: float) -> Array | None:
         """Of the line moved along a direction, or as it is without a ``share``; None where it is refused."""
         line = self.near.line(one, share) if share else self.subject.line
         return None if line is None else self.known(case, speed, check, (one.label if share else "", share), line)
 
-    def known(self, case: Case, speed: float, check: Check, moved: tuple[str, float], line: Driveline) -> Array:
+    def known(
+        self, case: LoadCaseResponse, speed: float, check: Check, moved: tuple[str, float], line: Driveline
+    ) -> Array:
         """Of a ``line`` that is ``moved`` along a direction by a share of its size."""
         whole = check.name in self.of_line
         key = ("", 0.0, *moved) if whole else (case.name, speed, *moved)
@@ -166,12 +168,14 @@ class _Values:
                     self._seen[case.name, at, *moved] |= _read(self._by_case(one))
         return self._seen[key].setdefault(check.name, np.full(2, np.nan))
 
-    def _by_case(self, one: Subject) -> Iterator[Check]:
+    def _by_case(self, one: AssessmentInput) -> Iterator[Check]:
         for rule in self.rules:
             yield from rule(one, one.cases[0])
 
 
-def _speed_by_speed(subject: Subject, case: Case, speeds: Array) -> Iterator[tuple[float, Subject]]:
+def _speed_by_speed(
+    subject: AssessmentInput, case: LoadCaseResponse, speeds: Array
+) -> Iterator[tuple[float, AssessmentInput]]:
     """The same question at each of ``speeds`` (speed,) alone, of one load case, its response solved for all of them
     together."""
     answer = replace(case, low=float(speeds[0]), high=float(speeds[-1]), given=tuple(speeds.tolist())).answer
@@ -187,7 +191,7 @@ def _read(found: Iterable[Check]) -> dict[str, Array]:
     return {one.name: np.array([one.value, one.margin]) for one in found}
 
 
-def _growth(case: Case, speed: float, directions: Sequence[Direction]) -> tuple[Array, Array, str]:
+def _growth(case: LoadCaseResponse, speed: float, directions: Sequence[Direction]) -> tuple[Array, Array, str]:
     near = Neighbourhood(case.assembly)
     try:
         found = radius_slope(near, near.row(speed), [_under_load(case, one) for one in directions])
@@ -198,7 +202,7 @@ def _growth(case: Case, speed: float, directions: Sequence[Direction]) -> tuple[
     return found.slope * rate, found.error * rate, found.refused
 
 
-def _under_load(case: Case, one: Direction) -> Direction:
+def _under_load(case: LoadCaseResponse, one: Direction) -> Direction:
     """A direction that leaves alone what the load case itself states."""
     operation, labels = case.assembly.line.operation, case.assembly.packed.labels
     if not case.name or operation is None:
@@ -207,12 +211,12 @@ def _under_load(case: Case, one: Direction) -> Direction:
     return one.but(column for column, label in enumerate(labels) if label in stated)
 
 
-def _of(subject: Subject, case: Case, line: Driveline) -> tuple[Subject, Case]:
+def _of(subject: AssessmentInput, case: LoadCaseResponse, line: Driveline) -> tuple[AssessmentInput, LoadCaseResponse]:
     changed = replace(subject, line=line, cases=cases_of(line, subject.low, subject.high))
     return changed, replace(next(c for c in changed.cases if c.name == case.name), rough=case.rough)
 
 
-def at_speed(subject: Subject, case: Case, speed: float) -> Subject:
+def at_speed(subject: AssessmentInput, case: LoadCaseResponse, speed: float) -> AssessmentInput:
     """The same question at one speed, of one load case."""
     one = replace(case, low=speed, high=speed, given=(speed,))
     return replace(subject, cases=(one,))

@@ -22,7 +22,7 @@ from trunnion.arrays import Array
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.equations.linear import line_matrices, over_mass, periodic_linear_system, rigid_motions
-from trunnion.floquet.propagation.carried_modes import carried_mode, judged_multipliers, propagated
+from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.numerics.spectrum import spectral_radius
 
 TOLERANCE = 1e-12
@@ -79,7 +79,7 @@ def radius_slope(
     others &= np.abs(values - critical.conjugate()) > 1e-12 * radius
     if np.any(np.abs(values[others]) > radius * (1 - EQUAL)):
         return without(f"two multipliers are equally large ({radius:.6g}), so the larger of them has none")
-    motion = carried_mode(system, run, critical)
+    motion = floquet_mode(system, run, critical)
     spread = np.linalg.eigvals(run.scaled_monodromy)
     distance = np.sort(np.abs(spread - critical))[1] if len(spread) > 1 else np.inf
     uncertain = run.error + 1e-15 * float(np.linalg.norm(run.scaled_monodromy, 2))

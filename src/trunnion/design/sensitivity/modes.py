@@ -17,7 +17,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
-from trunnion.design.sensitivity.result import EXACT, Quantity, Rows
+from trunnion.design.sensitivity.result import EXACT, SensitivityQuantity, SensitivityRows
 from trunnion.equations.aligned import AlignedMatrices, UnitMasses, loaded_matrices
 from trunnion.modes.natural_frequencies import natural_frequencies
 
@@ -27,7 +27,7 @@ COINCIDE = 1e-7
 """Relative distance below which two modes count as one frequency, which has no derivative of its own."""
 
 
-def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterator[Rows]:
+def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterator[SensitivityRows]:
     """Frequencies [rad/s] and damping ratios [1] of every elastic mode of the aligned line along every direction."""
     assembly = near.assembly
     topo = assembly.topology
@@ -59,17 +59,19 @@ def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterato
     frequency_slope[np.array(refused) != ""] = np.nan
     ratio_slope[np.array(refused) != ""] = np.nan
     frequencies = [
-        Quantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
+        SensitivityQuantity(f"natural frequency of {name}", "frequency", float(w), "rad/s", EXACT, refused=why)
         for name, w, why in zip(names, found.frequency[first:], refused, strict=True)
     ]
-    yield Rows(frequencies, frequency_slope, ROUNDING * np.abs(frequency_slope))
+    yield SensitivityRows(frequencies, frequency_slope, ROUNDING * np.abs(frequency_slope))
     ratio = found.damping_ratio[first:]
     damped = np.flatnonzero(ratio != 0) if np.any(ratio_slope) else np.zeros(0, dtype=int)
     ratios = [
-        Quantity(f"damping ratio of {names[m]}", "damping ratio", float(ratio[m]), "1", EXACT, refused=refused[m])
+        SensitivityQuantity(
+            f"damping ratio of {names[m]}", "damping ratio", float(ratio[m]), "1", EXACT, refused=refused[m]
+        )
         for m in damped
     ]
-    yield Rows(ratios, ratio_slope[damped], ROUNDING * np.abs(ratio_slope[damped]))
+    yield SensitivityRows(ratios, ratio_slope[damped], ROUNDING * np.abs(ratio_slope[damped]))
 
 
 def _ratio_slope(value: complex, change: complex) -> float:

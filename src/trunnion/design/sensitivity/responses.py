@@ -19,7 +19,7 @@ from trunnion.arrays import Array
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, STEP, Values, central, slope
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.response.orders.response import response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
@@ -102,7 +102,7 @@ def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> Spectru
     """How the response at ``speed`` [rad/s] changes along a direction; None where the lines beside it have none: their
     torques do not balance, or a frequency of excitation moves.
     """
-    assert not moves_by_itself(near.assembly)
+    assert not has_periodic_base(near.assembly)
     row = near.row(speed)
     keys = {near.assembly.packed.labels[i].rpartition(".")[2] for i in one.columns.index}
     step = WIDE_STEP if keys <= set(LINEAR_KEYS) else SMOOTH_STEP

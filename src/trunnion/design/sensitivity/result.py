@@ -34,7 +34,7 @@ CROSSES_ZERO = ("growth rate", "spectral radius")
 
 
 @labelled
-class Quantity:
+class SensitivityQuantity:
     """What follows the parameters."""
 
     name: str = internal()
@@ -47,10 +47,10 @@ class Quantity:
 
 
 @dataclass(frozen=True)
-class Rows:
+class SensitivityRows:
     """Quantities, their derivatives and errors (quantity, direction)."""
 
-    quantities: Sequence[Quantity]
+    quantities: Sequence[SensitivityQuantity]
     slope: Array
     error: Array
 
@@ -77,8 +77,8 @@ class Sensitivities(Result):
     At a kink the derivative alone is NaN and the error half of what the slopes on its two sides differ by.
     """
 
-    quantities: tuple[Quantity, ...] = members(
-        Quantity, "quantity", "what follows", name="name", only="value unit kind method refused speed"
+    quantities: tuple[SensitivityQuantity, ...] = members(
+        SensitivityQuantity, "quantity", "what follows", name="name", only="value unit kind method refused speed"
     )
     parameters: tuple[str, ...] = coordinate("parameter")
     parameter_value: Array = variable("parameter", words="in the unit of the parameter")
@@ -115,7 +115,7 @@ class Sensitivities(Result):
         """Change of every quantity (quantity, parameter), in its unit, that the usual step of a parameter makes."""
         return self.derivative * self.step
 
-    def quantity(self, name: str) -> Quantity:
+    def quantity(self, name: str) -> SensitivityQuantity:
         """The quantity called ``name``; InputError with the nearest name where there is none."""
         return self.quantities[self._place(name)]
 
@@ -165,7 +165,7 @@ class Sensitivities(Result):
             for one in self.ranked(name)
         ]
 
-    def sentence(self, quantity: Quantity, most: int = STRONGEST) -> str:
+    def sentence(self, quantity: SensitivityQuantity, most: int = STRONGEST) -> str:
         """What a quantity follows most, in one sentence."""
         head = f"{quantity.name} ({self.shown(quantity)})"
         if quantity.refused:
@@ -195,7 +195,7 @@ class Sensitivities(Result):
             if len(own) > PRINTED:
                 yield f"  … and {len(own) - PRINTED} more of this kind: .ranked(name)"
 
-    def shown(self, quantity: Quantity) -> str:
+    def shown(self, quantity: SensitivityQuantity) -> str:
         """The value of a quantity in an engineer's unit."""
         if quantity.unit == "rad/s":
             if quantity.kind == "frequency":
@@ -214,7 +214,7 @@ class Sensitivities(Result):
         return names.index(name)
 
 
-def share_of(quantity: Quantity) -> tuple[float, str]:
+def share_of(quantity: SensitivityQuantity) -> tuple[float, str]:
     """What a change is multiplied with to be printed, and " [%]", its unit: of margins in points, of what may be zero
     as it is, of all others as a share of the value."""
     if quantity.kind == "margin":
@@ -224,7 +224,7 @@ def share_of(quantity: Quantity) -> tuple[float, str]:
     return 100 / abs(quantity.value), " [%]"
 
 
-def effect_words(quantity: Quantity, one: Effect) -> str:
+def effect_words(quantity: SensitivityQuantity, one: Effect) -> str:
     """ "+1.3 % for +1 deg of joint 1.angle"; a step that would more than double the value is taken smaller."""
     factor, unit = share_of(quantity)
     tenths = too_large(quantity, one.change)
@@ -232,7 +232,7 @@ def effect_words(quantity: Quantity, one: Effect) -> str:
     return f"{change} for {smaller(one.step_words, tenths)} of {one.parameter}"
 
 
-def too_large(quantity: Quantity, change: float) -> int:
+def too_large(quantity: SensitivityQuantity, change: float) -> int:
     """By how many powers of ten a step is to be taken smaller, whose ``change`` would more than double the value: a
     derivative tells nothing so far away."""
     factor, unit = share_of(quantity)

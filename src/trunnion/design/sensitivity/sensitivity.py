@@ -20,18 +20,18 @@ from trunnion.design.sensitivity.modes import mode_slopes
 from trunnion.design.sensitivity.result import (
     DIFFERENCES,
     EXACT,
-    Quantity,
-    Rows,
     Sensitivities,
+    SensitivityQuantity,
+    SensitivityRows,
 )
 from trunnion.design.sensitivity.tips import tip_slopes
-from trunnion.design.sensitivity.torques import exact_torque_slopes, own_growth, slopes, torques
+from trunnion.design.sensitivity.torques import exact_torque_slopes, free_line_growth, slopes, torques
 from trunnion.driveline.arguments import several, speeds_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.tongues.result import Tongues
@@ -60,7 +60,7 @@ def sensitivity(
 
     Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint,
     torques and what is limited of them through the equations of the response, all exact; tips by implicit
-    differentiation; other checks, and the torques of bent lines that start free, by differences of fourth order.
+    differentiation; other checks, and the torques of free–free lines with joint angles, by differences of fourth order.
 
     Parameters
     ----------
@@ -95,20 +95,20 @@ def sensitivity(
     """
     kinds = _kinds(of)
     stated = line if load_case is None else line.with_load(load_case)
-    question = _Question(
+    problem = _SensitivityProblem(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
         load_case=load_case, unit=unit or speed_unit(line),
     )  # fmt: skip
-    parts: dict[str, Callable[[], Iterator[Rows]]] = {
-        "frequencies": partial(mode_slopes, question.near, question.directions),
-        "growth": partial(_growth, question),
-        "torques": partial(_torques, question),
-        "checks": partial(_checks, question, line, checks),
+    parts: dict[str, Callable[[], Iterator[SensitivityRows]]] = {
+        "frequencies": partial(mode_slopes, problem.near, problem.directions),
+        "growth": partial(_growth, problem),
+        "torques": partial(_torques, problem),
+        "checks": partial(_checks, problem, line, checks),
     }
-    rows: list[Rows] = []
+    rows: list[SensitivityRows] = []
     refusals: list[TrunnionProblem] = []
     for k, kind in enumerate(kinds):
-        question.progress = partial(_tell_part, progress, k, len(kinds))
+        problem.progress = partial(_report_part, progress, k, len(kinds))
         try:
             rows += parts[kind]()
         except (InputError, ComputationError) as error:
@@ -118,11 +118,11 @@ def sensitivity(
     if tips is not None:
         if not isinstance(tips, Tongues):
             raise InputError("are no tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
-        rows += tip_slopes(question.near, tips, question.directions)
+        rows += tip_slopes(problem.near, tips, problem.directions)
     if not rows and refusals:
         raise refusals[0]
     said = [Finding(Gravity.CAUTION, str(error).splitlines()[0]) for error in refusals]
-    return _result(question, rows, [*said, *question.findings, *_left_out(stated, kinds)])
+    return _result(problem, rows, [*said, *problem.findings, *_left_out(stated, kinds)])
 
 
 TrunnionProblem = InputError | ComputationError
@@ -130,7 +130,7 @@ ANALYSES = {"frequencies": "natural_frequencies", "growth": "stability", "torque
 
 
 @dataclass
-class _Question:
+class _SensitivityProblem:
     """The line under its load case, speeds (speed,) and directions; findings that come up on the way."""
 
     line: Driveline
@@ -149,7 +149,7 @@ class _Question:
         return Words(self.unit).speed(float(f"{speed:.12g}"))
 
 
-def _tell_part(progress: Callable[[float], None] | None, part: int, parts: int, share: float) -> None:
+def _report_part(progress: Callable[[float], None] | None, part: int, parts: int, share: float) -> None:
     if progress:
         progress((part + share) / parts)
 
@@ -172,75 +172,77 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
     return np.array([operating_speed(line, float(one)) for one in at])
 
 
-def _growth(question: _Question) -> Iterator[Rows]:
-    if moves_by_itself(question.assembly):
+def _growth(problem: _SensitivityProblem) -> Iterator[SensitivityRows]:
+    if has_periodic_base(problem.assembly):
         # Its own motion follows every parameter, so lines beside it are judged.
-        if len(question.at):
-            here, slope, error = _by_differences(question, own_growth)
-            for k, speed in enumerate(question.at.tolist()):
-                yield _stability_rows(question, speed, DIFFERENCES, "", here[:, k], slope[:, k], error[:, k])
+        if len(problem.at):
+            here, slope, error = _by_differences(problem, free_line_growth)
+            for k, speed in enumerate(problem.at.tolist()):
+                yield _stability_rows(problem, speed, DIFFERENCES, "", here[:, k], slope[:, k], error[:, k])
         return
-    for speed in question.at.tolist():
-        found = radius_slope(question.near, question.near.row(speed), question.directions)
+    for speed in problem.at.tolist():
+        found = radius_slope(problem.near, problem.near.row(speed), problem.directions)
         by = np.array([speed / found.period, found.radius])
         yield _stability_rows(
-            question, speed, EXACT, found.refused, np.array([found.growth_rate(speed), found.radius]),
+            problem, speed, EXACT, found.refused, np.array([found.growth_rate(speed), found.radius]),
             by[:, None] * found.slope, by[:, None] * found.error,
         )  # fmt: skip
 
 
-def _by_differences(question: _Question, look: Callable[[Array, Driveline], Array]) -> tuple[Array, Array, Array]:
+def _by_differences(
+    problem: _SensitivityProblem, look: Callable[[Array, Driveline], Array]
+) -> tuple[Array, Array, Array]:
     """What ``look`` sees of the line at the speeds, its derivatives and errors."""
-    values = partial(look, question.at)
-    return values(question.line), *slopes(values, question.lines, question.directions, question.progress)
+    values = partial(look, problem.at)
+    return values(problem.line), *slopes(values, problem.lines, problem.directions, problem.progress)
 
 
 def _stability_rows(
-    question: _Question, speed: float, method: str, refused: str, value: Array, slope: Array, error: Array
-) -> Rows:
-    at = f"at {question.shown(speed)}"
+    problem: _SensitivityProblem, speed: float, method: str, refused: str, value: Array, slope: Array, error: Array
+) -> SensitivityRows:
+    at = f"at {problem.shown(speed)}"
     both = [
-        Quantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
+        SensitivityQuantity(f"{kind} {at}", kind, v, unit, method, speed, refused)
         for kind, unit, v in zip(("growth rate", "spectral radius"), ("1/s", "1"), value.tolist(), strict=True)
     ]
-    return Rows(both, slope, error)
+    return SensitivityRows(both, slope, error)
 
 
-def _torques(question: _Question) -> Iterator[Rows]:
-    if not len(question.at):
+def _torques(problem: _SensitivityProblem) -> Iterator[SensitivityRows]:
+    if not len(problem.at):
         return
-    exact = not moves_by_itself(question.assembly)
+    exact = not has_periodic_base(problem.assembly)
     if exact:
         here, slope, error = exact_torque_slopes(
-            question.near, question.lines, question.at, question.directions, question.progress
+            problem.near, problem.lines, problem.at, problem.directions, problem.progress
         )
     else:
-        here, slope, error = _by_differences(question, torques)
-    springs, words = shaft_names(question.assembly), ("peak torque", "vibratory torque")
+        here, slope, error = _by_differences(problem, torques)
+    springs, words = shaft_names(problem.assembly), ("peak torque", "vibratory torque")
     for w, v, s in np.ndindex(here.shape):
-        speed, value = float(question.at[v]), float(here[w, v, s])
-        name = f"{words[w]} of {springs[s]} at {question.shown(speed)}"
+        speed, value = float(problem.at[v]), float(here[w, v, s])
+        name = f"{words[w]} of {springs[s]} at {problem.shown(speed)}"
         why = "" if np.isfinite(value) else "there is no steady state"
-        one = Quantity(name, "torque", value, "N*m", EXACT if exact else DIFFERENCES, speed, why)
-        yield Rows([one], slope[w, v, s], error[w, v, s])
+        one = SensitivityQuantity(name, "torque", value, "N*m", EXACT if exact else DIFFERENCES, speed, why)
+        yield SensitivityRows([one], slope[w, v, s], error[w, v, s])
 
 
-def _checks(question: _Question, line: Driveline, names: Iterable[str] | None) -> Iterator[Rows]:
+def _checks(problem: _SensitivityProblem, line: Driveline, names: Iterable[str] | None) -> Iterator[SensitivityRows]:
     span = None
     if stated_range(line) is None:
-        if not len(question.at):
+        if not len(problem.at):
             return
-        span = (float(question.at.min()), float(question.at.max()))
-    subject = subject_of(line, span, question.load_case, question.unit)
+        span = (float(problem.at.min()), float(problem.at.max()))
+    subject = subject_of(line, span, problem.load_case, problem.unit)
     chosen = _chosen(checks_of(subject), names)
-    found = check_slopes(subject, question.lines, question.directions, chosen, question.progress)
+    found = check_slopes(subject, problem.lines, problem.directions, chosen, problem.progress)
     for c, check in enumerate(chosen):
         method, at = EXACT if found.exact[c] else DIFFERENCES, float(found.speed[c])
         value, margin = found.value[c].tolist()
-        both = [Quantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
+        both = [SensitivityQuantity(check.name, "check", value, check.unit, method, at, found.refused[c])]
         if check.name != GROWTH or not found.exact[c]:  # its margin follows another speed's straight line besides
-            both.append(Quantity(f"margin of {check.name}", "margin", margin, "1", method, at))
-        yield Rows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
+            both.append(SensitivityQuantity(f"margin of {check.name}", "margin", margin, "1", method, at))
+        yield SensitivityRows(both, found.slope[c, : len(both)], found.error[c, : len(both)])
 
 
 def _chosen(every: tuple[Check, ...], names: Iterable[str] | None) -> list[Check]:
@@ -262,16 +264,18 @@ def _left_out(line: Driveline, kinds: Sequence[str]) -> list[Finding]:
     return [finding for kind in kinds if kind in ANALYSES for finding in left_out(ANALYSES[kind], line)]
 
 
-def _result(question: _Question, rows: Sequence[Rows], findings: Sequence[Finding]) -> Sensitivities:
-    width = len(question.directions)
+def _result(
+    problem: _SensitivityProblem, rows: Sequence[SensitivityRows], findings: Sequence[Finding]
+) -> Sensitivities:
+    width = len(problem.directions)
     once = {finding.sentence: finding for finding in findings}
     return Sensitivities(
         quantities=tuple(q for part in rows for q in part.quantities),
-        parameters=tuple(one.label for one in question.directions),
-        parameter_value=np.array([one.value for one in question.directions]),
-        parameter_unit=tuple(one.unit for one in question.directions),
+        parameters=tuple(one.label for one in problem.directions),
+        parameter_value=np.array([one.value for one in problem.directions]),
+        parameter_unit=tuple(one.unit for one in problem.directions),
         derivative=np.concatenate([part.slope.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
         error=np.concatenate([part.error.reshape(-1, width) for part in rows] or [np.zeros((0, width))]),
-        unit=question.unit,
+        unit=problem.unit,
         findings=by_gravity(once.values()),
     )

@@ -17,7 +17,7 @@ from trunnion.arrays import Array
 from trunnion.design.sensitivity.differences import CENTRAL, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood, direction
 from trunnion.design.sensitivity.growth import RadiusSlope, radius_slope
-from trunnion.design.sensitivity.result import IMPLICIT, Quantity, Rows
+from trunnion.design.sensitivity.result import IMPLICIT, SensitivityQuantity, SensitivityRows
 from trunnion.driveline.parameters import SPEED, Columns
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.tongues.result import Tongues
@@ -30,7 +30,7 @@ CLOSED = 1e-11
 """|ln ρ| at which a tip is found."""
 
 
-def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direction]) -> Iterator[Rows]:
+def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direction]) -> Iterator[SensitivityRows]:
     """Where every tongue that has a tip closes.
 
     Raises
@@ -52,10 +52,10 @@ def tip_slopes(near: Neighbourhood, tongues: Tongues, directions: Sequence[Direc
         name = f"the tip of tongue {tongue.number}, {tongue.name}"
         place, slope, error, refused = _tip(near, tongue.tip, columns, own)
         both = [
-            Quantity(f"{label} at {name}", "tip", value, unit, IMPLICIT, place[labels.index(SPEED)], refused)
+            SensitivityQuantity(f"{label} at {name}", "tip", value, unit, IMPLICIT, place[labels.index(SPEED)], refused)
             for label, value, unit in zip(labels, place, units, strict=True)
         ]
-        yield Rows(both, slope, error)
+        yield SensitivityRows(both, slope, error)
 
 
 def _tip(

@@ -1,7 +1,7 @@
-"""How torques by all orders, and the growth rate of bent lines that start free, follow parameters.
+"""How torques by all orders, and the growth rate of free–free lines with joint angles, follow parameters.
 
-The torque of a spring is the largest over the cycle, at a speed that is kept. A bent line that starts free is judged
-about its own periodic motion, which follows every parameter too: lines beside it are computed and compared.
+The torque of a spring is the largest over the cycle, at a speed that is kept. A free–free line with joint angles is
+judged about its own periodic motion, which follows every parameter too: lines beside it are computed and compared.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from trunnion.design.sensitivity.responses import spectrum_slope
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
-from trunnion.floquet.stability.along import stability_along
+from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.response.orders.response import order_response
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 
@@ -49,8 +49,8 @@ def exact_torque_slopes(
                 return both and (both[0][:, 0], both[1][:, 0])
             return around.slope(lambda share: _extremes(around.moved(share)), pace)
 
-        tell = progress and (lambda share, v=v: progress((v + share) / len(speeds)))  # type: ignore[misc]
-        found[:, v], errors[:, v] = along_each(directions, look, (2, here.shape[2]), tell)
+        report_progress = progress and (lambda share, v=v: progress((v + share) / len(speeds)))  # type: ignore[misc]
+        found[:, v], errors[:, v] = along_each(directions, look, (2, here.shape[2]), report_progress)
     return here, found, errors
 
 
@@ -66,8 +66,8 @@ def torques(speeds: Array, line: Driveline | Assembly) -> Array:
     return np.stack([found.peak_torque, found.vibratory_torque])
 
 
-def own_growth(speeds: Array, line: Driveline) -> Array:
-    """Growth rate and spectral radius (2, speed) of a bent line that starts free."""
+def free_line_growth(speeds: Array, line: Driveline) -> Array:
+    """Growth rate and spectral radius (2, speed) of a free–free line with joint angles."""
     found = stability_along(assemble(line), speeds)
     return np.stack([found.growth_rate, found.radius])
 

@@ -99,7 +99,7 @@ def study_checks(
     lines: int | None,
     confidence: float,
     seed: int,
-    tell: Callable[[float], None],
+    report_progress: Callable[[float], None],
 ) -> CheckStudy:
     """Judge ``lines`` lines (None: as many as ``SECONDS`` allow) over ``speeds``; see ``tolerance_study``.
 
@@ -122,7 +122,7 @@ def study_checks(
     try:
         for k, place in enumerate(shares):
             found.append(judge.of(place))
-            tell((k + 1) / len(shares))
+            report_progress((k + 1) / len(shares))
     except OutOfTime as error:
         ended = error.why
         whole = len(found) // each

@@ -23,7 +23,7 @@ STEEPEST_ANGLE = np.deg2rad(89.0)
 
 
 @dataclass(frozen=True)
-class Axis:
+class ChartAxis:
     """``values`` (points,) of a parameter with its label, unit and place among the packed columns."""
 
     values: Array
@@ -53,7 +53,7 @@ class Axis:
         return self.columns.unit
 
 
-def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str | None]:
+def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[ChartAxis, str | None]:
     """Turn ``(parameter, low, high, points[, "log"])`` into an Axis; also what was clipped, as a sentence.
 
     Raises
@@ -66,7 +66,7 @@ def axis(assembly: Assembly, request: AxisRequest, key: str) -> tuple[Axis, str 
     low, high, said = _clip(assembly, columns, low, high)
     values = _points(columns.label, low, high, points, scale)
     _check_columns(assembly, columns, values)
-    return Axis(values, columns, scale, parameter, _is_joint_angle(assembly, columns)), said
+    return ChartAxis(values, columns, scale, parameter, _is_joint_angle(assembly, columns)), said
 
 
 def _is_joint_angle(assembly: Assembly, columns: Columns) -> bool:
@@ -77,7 +77,7 @@ def _is_joint_angle(assembly: Assembly, columns: Columns) -> bool:
     return plain and all(assembly.packed.labels[c] in joints for c in columns.index)
 
 
-def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Axis:
+def user_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> ChartAxis:
     """The same for a parameter of a family of one's own."""
     name = _parameter(request, key)
     if name not in family.parameters:
@@ -87,7 +87,7 @@ def own_axis(family: PeriodicLinearFamily, request: AxisRequest, key: str) -> Ax
     low, high, points, scale = _range(request, str(name), unit)
     none = np.zeros(0)
     columns = Columns(str(name), unit, np.zeros(0, dtype=np.intp), none, none)
-    return Axis(_points(str(name), low, high, points, scale), columns, scale, name)
+    return ChartAxis(_points(str(name), low, high, points, scale), columns, scale, name)
 
 
 SHARES = np.mod(np.sqrt(5) / 2 * np.arange(7), 1.0)
@@ -96,8 +96,8 @@ SHARES = np.mod(np.sqrt(5) / 2 * np.arange(7), 1.0)
 
 def moves_nothing(
     stability: Callable[[Array, Array], Array],
-    x: Axis,
-    y: Axis,
+    x: ChartAxis,
+    y: ChartAxis,
     of_x: bool,
     differ: Callable[[Array, Array], bool] = lambda x, y: False,
 ) -> bool:
@@ -243,7 +243,7 @@ def _check_columns(assembly: Assembly, columns: Columns, values: Array) -> None:
     _refuse_impossible(assembly, table, columns.label, [("low", ends[0].item()), ("high", ends[1].item())])
 
 
-def check_corners(assembly: Assembly, x: Axis, y: Axis) -> None:
+def check_corners(assembly: Assembly, x: ChartAxis, y: ChartAxis) -> None:
     """Refuse two axes whose values are possible one by one and not together, as a bore wider than its tube.
 
     Raises

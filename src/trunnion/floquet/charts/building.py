@@ -3,7 +3,7 @@
 A chart interpolates, and interpolation rests on assumptions that nobody has proved for every line: that the
 tails of the series tell the error, that slabs are smooth, that half a period suffices. So every chart compares
 random pixels with direct integration over whole periods, at a thousandth of its tolerance. Where one differs by
-more than its estimate, no estimate can be trusted and the chart is built in the next way of ``LADDER``, each of
+more than its estimate, no estimate can be trusted and the chart is built in the next way of ``FALLBACKS``, each of
 which assumes less; a chart that fails in every way is refused.
 """
 
@@ -44,7 +44,7 @@ UNEVEN = 0.4713
 
 
 @dataclass(frozen=True)
-class Way:
+class ChartStrategy:
     """One way of building a chart.
 
     ``name`` as results carry it; ``said``: how a note puts it; ``share`` of the tolerance asked for; ``smaller``
@@ -59,15 +59,15 @@ class Way:
     patched: bool = True
 
 
-LADDER = (
-    Way("patches", "patches"),
-    Way("smaller patches", "smaller patches at a tenth of the tolerance", 0.1, smaller=True),
-    Way(
+FALLBACKS = (
+    ChartStrategy("patches", "patches"),
+    ChartStrategy("smaller patches", "smaller patches at a tenth of the tolerance", 0.1, smaller=True),
+    ChartStrategy(
         "whole periods",
         "smaller patches at a tenth of the tolerance, integrated over whole periods",
         0.1, smaller=True, half_windows=False,
     ),
-    Way(
+    ChartStrategy(
         "pixel by pixel",
         "every pixel integrated by itself over whole periods at a tenth of the tolerance",
         0.1, half_windows=False, patched=False,
@@ -76,13 +76,13 @@ LADDER = (
 
 
 @dataclass(frozen=True)
-class Built:
+class BuiltChart:
     """A chart's pixels and what stands behind them: the way that held, its family and tolerance, and its check.
 
     ``failed``: what the checks of the ways before found.
     """
 
-    way: Way
+    strategy: ChartStrategy
     family: ChartFamily
     tolerance: float
     function: PatchedFunction
@@ -98,31 +98,33 @@ class Built:
             ratio = max(check.worst_ratio for check in self.failed)
             said.append(
                 f"its check found the chart as first built off by {ratio:.2g} times its error estimate; "
-                f"it was built anew from {self.way.said}"
+                f"it was built anew from {self.strategy.said}"
             )
-        if count := self.function.stubborn:
+        if count := self.function.unconverged:
             many = f"{count} small regions" if count > 1 else "1 small region"
             said.append(f"{many} did not converge as patches: integrated pixel by pixel")
         return said
 
 
-def way_named(name: str) -> Way:
-    """The way of ``LADDER`` that a saved chart names."""
-    for way in LADDER:
-        if way.name == name:
-            return way
+def strategy_named(name: str) -> ChartStrategy:
+    """The way of ``FALLBACKS`` that a saved chart names."""
+    for strategy in FALLBACKS:
+        if strategy.name == name:
+            return strategy
     raise InputError(
         "is not a way of building charts", element="chart", key="way", value=name, remedy="compute it again"
     )
 
 
-def family_for(way: Way, family: ChartFamily) -> ChartFamily:
+def family_for(strategy: ChartStrategy, family: ChartFamily) -> ChartFamily:
     """The family as this way integrates it."""
-    return family if way.half_windows else family.over_whole_periods()
+    return family if strategy.half_windows else family.over_whole_periods()
 
 
-def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress) -> Built:
-    """Pixels (y, x) in the first way of ``LADDER`` whose check passes.
+def build(
+    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, report_progress: Progress
+) -> BuiltChart:
+    """Pixels (y, x) in the first way of ``FALLBACKS`` whose check passes.
 
     Raises
     ------
@@ -130,23 +132,23 @@ def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: in
     """
     failed: list[SpotCheck] = []
 
-    def sharp() -> Spots:
+    def sharp() -> RefinedPixels:
         return spots_known(family, x, y, tolerance, threads, SPOTS * (1 + len(failed)))
 
     # What the check compares with asks nothing of the chart. Functions of a user's own stay on one thread.
     beside = threads > 1 and isinstance(family, LineFamily)
     with ThreadPoolExecutor(1) as aside:
         first = aside.submit(copy_context().run, sharp) if beside else None
-        for way in LADDER:
-            own, asked = family_for(way, family), tolerance * way.share
-            if way.smaller and not way.half_windows and own is family:
+        for strategy in FALLBACKS:
+            own, asked = family_for(strategy, family), tolerance * strategy.share
+            if strategy.smaller and not strategy.half_windows and own is family:
                 continue  # it never used half periods, so this was tried before
-            function = _patched(way, own, x, y, asked, threads, tell)
+            function = _patched(strategy, own, x, y, asked, threads, report_progress)
             pixels = fill(own, function, x, y, asked, threads)
             check = compared(sharp() if first is None else first.result(), pixels)
             first = None
             if not check.worst_ratio > 1:
-                return Built(way, own, asked, function, pixels, check, tuple(failed))
+                return BuiltChart(strategy, own, asked, function, pixels, check, tuple(failed))
             failed.append(check)
     worst = failed[-1]
     raise ComputationError(
@@ -157,17 +159,28 @@ def build(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: in
 
 
 def _patched(
-    way: Way, family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Progress
+    strategy: ChartStrategy,
+    family: ChartFamily,
+    x: Array,
+    y: Array,
+    tolerance: float,
+    threads: int,
+    report_progress: Progress,
 ) -> PatchedFunction:
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box = Box.around(u, v)
-    if not way.patched or box.u0 == box.u1 or box.v0 == box.v1:
+    if not strategy.patched or box.u0 == box.u1 or box.v0 == box.v1:
         return PatchedFunction((), (box,))
-    if not way.smaller and (few := family.leading(box, len(u) * len(v), tolerance / 4, threads, tell)) is not None:
+    if (
+        not strategy.smaller
+        and (few := family.leading(box, len(u) * len(v), tolerance / 4, threads, report_progress)) is not None
+    ):
         return few
-    sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads, slabs=not way.smaller)
-    boxes = [part for whole in sampler.boxes for part in (_quarters(whole) if way.smaller else [whole])]
-    return patches.build(sampler.evaluate, boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=tell)
+    sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads, slabs=not strategy.smaller)
+    boxes = [part for whole in sampler.boxes for part in (_quarters(whole) if strategy.smaller else [whole])]
+    return patches.build(
+        sampler.evaluate, boxes, u, v, tolerance / 4, direct_below=sampler.direct_below, tick=report_progress
+    )
 
 
 def _quarters(box: Box) -> list[Box]:
@@ -185,9 +198,9 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
 
     pixels, left = shown(function, family.to_patch(x, True), family.to_patch(y, False), judged, threads)
     r, c = np.nonzero(left)
-    at_once = int(np.clip(DIRECT_BYTES // (32 * (2 * family.size) ** 2), 1, 65536))
-    for start in range(0, len(r), at_once):
-        here = (r[start : start + at_once], c[start : start + at_once])
+    batch_size = int(np.clip(DIRECT_BYTES // (32 * (2 * family.size) ** 2), 1, 65536))
+    for start in range(0, len(r), batch_size):
+        here = (r[start : start + batch_size], c[start : start + batch_size])
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
         found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.set_aside)
         pixels.put(here, found)
@@ -220,7 +233,7 @@ def shown(
     return pixels, left
 
 
-class Spots(NamedTuple):
+class RefinedPixels(NamedTuple):
     """Some of a chart's pixels, known more sharply: ``found`` (spot,) of ``rows`` and ``columns``."""
 
     found: Pixels
@@ -228,14 +241,14 @@ class Spots(NamedTuple):
     columns: Places
 
 
-def spots_known(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, count: int) -> Spots:
+def spots_known(family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, count: int) -> RefinedPixels:
     """``count`` random pixels (y, x) by integration over whole periods at a thousandth of the tolerance.
 
     The same pixels for the same shape: a chart built anew is asked first where it failed before.
     """
     rows, columns = spots((len(y), len(x)), count)
     values, bounds = family.over_whole_periods().evaluate(x[columns], y[rows], sharply(tolerance), threads)
-    return Spots(judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside), rows, columns)
+    return RefinedPixels(judge(values.T.copy(), bounds.T.copy(), family.size, family.set_aside), rows, columns)
 
 
 def sharply(tolerance: float) -> float:
@@ -249,7 +262,7 @@ def spots(shape: tuple[int, int], count: int) -> tuple[Places, Places]:
     return (shares[:, 0] * shape[0]).astype(int), (shares[:, 1] * shape[1]).astype(int)
 
 
-def compared(known: Spots, pixels: Pixels) -> SpotCheck:
+def compared(known: RefinedPixels, pixels: Pixels) -> SpotCheck:
     """What pixels (y, x) of a chart are off from ``known``."""
     found, rows, columns = known
     off = np.abs(found.radius - pixels.radius[rows, columns])

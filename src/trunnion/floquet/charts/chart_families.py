@@ -15,17 +15,17 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LARGEST_DENSE, LineRates, fastest_cycles, steps_that_see
 from trunnion.equations.kinematics import base_motion
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import require_period
-from trunnion.floquet.charts.axes import Axis
+from trunnion.floquet.charts.axes import ChartAxis
 from trunnion.floquet.charts.chart_pixels import Pixels, undamped
-from trunnion.floquet.charts.few_nodes import corners_of, leading_patches
-from trunnion.floquet.charts.leading_group import told_apart
-from trunnion.floquet.charts.prices import compiling_pays, instead_of_compiling, without_groups
+from trunnion.floquet.charts.cost_model import compiling_pays, instead_of_compiling, without_groups
+from trunnion.floquet.charts.leading_group import distinguished
+from trunnion.floquet.charts.multiplier_interpolation import corners_of, leading_patches
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import (
     Window,
@@ -35,13 +35,13 @@ from trunnion.numerics.chain.chain_monodromy import (
     has_extra,
     symmetry_phase,
 )
-from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
+from trunnion.numerics.chain.chain_tables import ChainBatch, ChainProgram
 from trunnion.numerics.chain.characteristic import LARGEST, coefficients_from_matrices, radii_on_rows
-from trunnion.numerics.chain.exponential_lanes import integrate_exponentials
+from trunnion.numerics.chain.exponential_batch import integrate_exponentials
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
-from trunnion.numerics.jit import at_hand
+from trunnion.numerics.jit import is_compiled
 from trunnion.numerics.patches.patches import NODES, Box, Evaluate, Grid, PatchedFunction, grid_by_grid, halved_across
 from trunnion.numerics.patches.slabs import build_slabs, slab_edges
 from trunnion.numerics.threads import on_threads
@@ -80,7 +80,7 @@ class ChartFamily(Protocol):
         return _point_by_point(self, box, tolerance, threads)
 
     def leading(
-        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+        self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
     ) -> PatchedFunction | None:
         """Patches of the largest multipliers alone, where those stand apart and cost less; else None."""
         return None
@@ -131,8 +131,8 @@ class LineFamily(ChartFamily):
     """A driveline over two of its parameters; ``half_windows``: half periods suffice where the joints' phases allow."""
 
     assembly: Assembly
-    x: Axis
-    y: Axis
+    x: ChartAxis
+    y: ChartAxis
     speed: float
     statically_twisted: bool
     half_windows: bool = True
@@ -155,14 +155,14 @@ class LineFamily(ChartFamily):
         """Period [rad of input angle]."""
         return 2 * np.pi * float(require_period(self.assembly.line, self.assembly.topology))
 
-    def lanes(self, x: Array, y: Array) -> ChainLanes:
+    def batch(self, x: Array, y: Array) -> ChainBatch:
         """The kernel's numbers at points (x, y)."""
-        return self.lanes_of(self.table(x, y))
+        return self.batch_of(self.table(x, y))
 
-    def lanes_of(self, table: Array) -> ChainLanes:
+    def batch_of(self, table: Array) -> ChainBatch:
         """The kernel's numbers of cases of packed numbers (case, column)."""
         coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
-        return chain_lanes(self.assembly.topology, coefficients, self._by_speed)
+        return chain_batch(self.assembly.topology, coefficients, self._by_speed)
 
     @cached_property
     def _by_speed(self) -> frozenset[int]:
@@ -183,7 +183,7 @@ class LineFamily(ChartFamily):
     def exponentials(self, x: Array, y: Array) -> ChainExponentials:
         """Points (x, y) as lanes of the kernel of exponential steps."""
         steps = steps_that_see(fastest_cycles(self.assembly, self.period))
-        return ChainExponentials(self.program, self.lanes(x, y), self.period, steps)
+        return ChainExponentials(self.program, self.batch(x, y), self.period, steps)
 
     def _coefficients(self, x: Array, y: Array) -> LineCoefficients:
         return self.assembly.coefficients(self.table(x, y), statically_twisted=self.statically_twisted)
@@ -197,8 +197,8 @@ class LineFamily(ChartFamily):
 
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
-        lanes = self.lanes(x, y)
-        return chain_monodromy(self.program, lanes, self._window(self.program, lanes), tolerance, threads)
+        batch = self.batch(x, y)
+        return chain_monodromy(self.program, batch, self._window(self.program, batch), tolerance, threads)
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
@@ -212,13 +212,13 @@ class LineFamily(ChartFamily):
         """By slabs where the period spans many radians of the highest mode, else by plain integration."""
         if not slabs or pixels < FEWEST_PIXELS:
             return _point_by_point(self, box, tolerance, threads)
-        lanes = self._patch_lanes(*spread(box))
+        batch = self._patch_batch(*spread(box))
         program = self.program
         # One window serves the whole box, so it must suit every point of it: corners alone would not tell.
-        window = self._window(program, lanes)
+        window = self._window(program, batch)
         length = window.period / 2 if window.half else window.period
         # ν is the root mean square of the modes; the highest is at most √n times that.
-        swiftest = float(lanes.frequency.max())
+        swiftest = float(batch.frequency.max())
         edges = slab_edges(swiftest * np.sqrt(self.size), *self._swiftness(spread(box, 5), window.begin, length))
         count = len(edges) - 1
         if count < FEWEST_SLABS:
@@ -228,7 +228,7 @@ class LineFamily(ChartFamily):
 
         def propagate(u: Array, v: Array, begin: float, stretch: float) -> tuple[Array, Array, Array]:
             asked = max(sharper / (4 * count), 1e-14)
-            return chain_propagator(program, self._patch_lanes(u, v), begin, stretch, asked, threads)
+            return chain_propagator(program, self._patch_batch(u, v), begin, stretch, asked, threads)
 
         built = build_slabs(propagate, box, edges, 2 * self.size, sharper / 4)
         if built is None:
@@ -236,7 +236,7 @@ class LineFamily(ChartFamily):
 
         def evaluate(grids: list[Grid]) -> list[tuple[Array, Array]]:
             return [
-                quantities(*complete(program, self._grid_lanes(grid), window, *parts, threads=threads))
+                quantities(*complete(program, self._grid_batch(grid), window, *parts, threads=threads))
                 for grid, parts in zip(grids, on_threads(built.propagators, grids, threads), strict=True)
             ]
 
@@ -245,31 +245,31 @@ class LineFamily(ChartFamily):
         return Sampler(evaluate, -1, halved_across(evaluate, strips, along_u, tolerance) if len(strips) > 1 else strips)
 
     def leading(
-        self, box: Box, pixels: int, tolerance: float, threads: int, tell: Callable[[float], None]
+        self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
     ) -> PatchedFunction | None:
         """See ``ChartFamily``."""
         if self.set_aside or self.size > LARGEST_DENSE:
             return None
-        lanes = self._patch_lanes(*spread(box, 6))
-        half = self.half_windows and symmetry_phase(self.program, lanes, self.period) is not None
-        phase = lanes.frequency * np.sqrt(self.size) * self.period / (2 if half else 1)
+        batch = self._patch_batch(*spread(box, 6))
+        half = self.half_windows and symmetry_phase(self.program, batch, self.period) is not None
+        phase = batch.frequency * np.sqrt(self.size) * self.period / (2 if half else 1)
         elsewhere = without_groups(self.size, pixels, float(phase.mean()), float(phase.max()), FEWEST_PIXELS)
         corners = self.rates(*self._from_patch(*corners_of(box)))
 
         def points(u: Array, v: Array) -> ChainExponentials:
             return self.exponentials(*self._from_patch(u, v))
 
-        return leading_patches(points, corners, box, pixels, tolerance, threads, elsewhere, tell)
+        return leading_patches(points, corners, box, pixels, tolerance, threads, elsewhere, report_progress)
 
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""
-        return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and told_apart(self.exponentials(x, y))
+        return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and distinguished(self.exponentials(x, y))
 
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
         if self.set_aside or not LARGEST < 2 * self.size <= 2 * LARGEST_DENSE:
             return None
-        return self.by_halving(self.rates(x, y))
+        return self.step_halving(self.rates(x, y))
 
     def in_numpy(self, x: Array, y: Array) -> Pixels | None:
         """See ``ChartFamily``."""
@@ -279,7 +279,7 @@ class LineFamily(ChartFamily):
             rates = self.rates(x, y)
             if np.any(undamped(rates.trace, self.size)):
                 return None
-            found = self.by_halving(rates)
+            found = self.step_halving(rates)
         return found if np.isfinite(found.radius).all() else None
 
     @property
@@ -287,21 +287,21 @@ class LineFamily(ChartFamily):
         """Whether its matrices may be stepped in NumPy, and its kernels would have to be compiled."""
         if self.set_aside or self.size > LARGEST_DENSE:
             return False
-        ends = self.lanes(self.x.values[[0, -1]], self.y.values[[0, -1]])
+        ends = self.batch(self.x.values[[0, -1]], self.y.values[[0, -1]])
         integrator = integrate_stages if has_extra(self.program, ends) else integrate_series
         by_steps = (integrate_exponentials,) if 2 * self.size > LARGEST else ()
-        return not at_hand(integrator, *by_steps, radii_on_rows)
+        return not is_compiled(integrator, *by_steps, radii_on_rows)
 
-    def by_halving(self, rates: LineRates, tolerance: float = 1e-10) -> Pixels:
+    def step_halving(self, rates: LineRates, tolerance: float = 1e-10) -> Pixels:
         """The points of ``rates`` from exponential steps that are halved until the multipliers stay."""
         found = exponential_monodromies(
             rates, len(rates.table), 2 * self.size, self.period, tolerance=tolerance, least_steps=rates.steps
         )
         return Pixels.of(found.radius, found.error, found.critical, rates.trace, self.size)
 
-    def _window(self, program: ChainProgram, lanes: ChainLanes) -> Window:
-        """The window that suits all ``lanes``: half a period where every joint is even about one phase in each."""
-        begin = symmetry_phase(program, lanes, self.period) if self.half_windows else None
+    def _window(self, program: ChainProgram, batch: ChainBatch) -> Window:
+        """The window that suits all ``batch``: half a period where every joint is even about one phase in each."""
+        begin = symmetry_phase(program, batch, self.period) if self.half_windows else None
         return Window(0.0 if begin is None else begin, self.period, begin is not None)
 
     def _swiftness(self, points: tuple[Array, Array], begin: float, length: float) -> tuple[Array, Array]:
@@ -337,15 +337,15 @@ class LineFamily(ChartFamily):
             return [Box(a, b, box.v0, box.v1) for a, b in pairs]
         return [Box(box.u0, box.u1, a, b) for a, b in pairs]
 
-    def _patch_lanes(self, u: Array, v: Array) -> ChainLanes:
-        return self.lanes(*self._from_patch(u, v))
+    def _patch_batch(self, u: Array, v: Array) -> ChainBatch:
+        return self.batch(*self._from_patch(u, v))
 
     def _from_patch(self, u: Array, v: Array) -> tuple[Array, Array]:
         return self.from_patch(u, True), self.from_patch(v, False)
 
-    def _grid_lanes(self, grid: Grid) -> ChainLanes:
+    def _grid_batch(self, grid: Grid) -> ChainBatch:
         u, v = grid
-        return self._patch_lanes(np.tile(u, len(v)), np.repeat(v, len(u)))
+        return self._patch_batch(np.tile(u, len(v)), np.repeat(v, len(u)))
 
     def to_patch(self, value: Array, of_x: bool) -> Array:
         """1/Ω for a speed axis, the rapidity asinh(tan β) for a joint angle, the value itself otherwise.

@@ -13,10 +13,10 @@ from typing import Protocol, Self
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
-from trunnion.floquet.charts.prices import pixel_price, step_price
+from trunnion.floquet.charts.cost_model import pixel_cost, step_cost
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.chain.characteristic import LARGEST
 from trunnion.numerics.chain.exponential_monodromy import MOST_STEPS
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.threads import on_threads
 
 FAINT = 0.01
@@ -33,7 +33,7 @@ TELLING = 100
 """Difference over its error at which two points are told apart without a second look."""
 
 
-class Points(Protocol):
+class GridPoints(Protocol):
     """Lines over one period whose monodromy matrices come from exponential steps."""
 
     @property
@@ -55,22 +55,22 @@ class Points(Protocol):
         """These points and then those of ``other``."""
 
 
-class Settling:
+class ConvergingMultipliers:
     """Multipliers (point, m) at a growing number of points, of N/2, N and 2N ``steps``; ``work``: what was done so far,
     in steps, eigenvalues counted as the steps that they cost.
 
     Those of N/2 steps are NaN until a point is sharpened. trace (point,): ∫ tr(M⁻¹C) dτ over the period.
     """
 
-    def __init__(self, points: Points, threads: int) -> None:
+    def __init__(self, points: GridPoints, threads: int) -> None:
         self.points, self.threads, self.work = points, threads, 0.0
-        self.price = step_price(points.states)
-        self.eigenvalues = pixel_price(points.states) / self.price
+        self.cost = step_cost(points.states)
+        self.eigenvalues = pixel_cost(points.states) / self.cost
         self.fine, self.coarse, self.coarser = (np.empty((0, points.states), complex) for _ in range(3))
         self.norm, self.trace, self.steps = np.empty(0), np.empty(0), np.empty(0, dtype=np.intp)
         self._add(points.count)
 
-    def add(self, points: Points) -> None:
+    def add(self, points: GridPoints) -> None:
         """Multipliers of further points."""
         self.points = self.points.and_also(points)
         self._add(points.count)
@@ -113,8 +113,8 @@ class Settling:
             order = np.argsort(-np.abs(values), axis=1)
             return np.take_along_axis(values, order, axis=1), norm, trace
 
-        worth = len(which) * (steps * self.price) / WORTH_A_THREAD
-        pieces = np.array_split(which, max(1, min(self.threads, len(which) // LANES, int(worth))))
+        worth = len(which) * (steps * self.cost) / WORTH_A_THREAD
+        pieces = np.array_split(which, max(1, min(self.threads, len(which) // BATCH, int(worth))))
         values, norm, trace = zip(*on_threads(run, pieces, len(pieces)), strict=True)
         return np.concatenate(values), np.concatenate(norm), np.concatenate(trace)
 
@@ -141,7 +141,7 @@ def symmetric_functions(values: Complex) -> Array:
     return np.asarray(e[:, 1:].real)
 
 
-def settle(found: Settling, d: int, tolerance: float, most_work: float) -> bool:
+def settle(found: ConvergingMultipliers, d: int, tolerance: float, most_work: float) -> bool:
     """Halve steps until e₁ … e_d of every point are known to ``tolerance`` of their size (1 at least).
 
     False where more than ``most_work`` steps would not do.
@@ -158,7 +158,7 @@ def settle(found: Settling, d: int, tolerance: float, most_work: float) -> bool:
 
 
 @np.errstate(over="ignore", invalid="ignore")  # as steps that are far too long overflow
-def known(found: Settling, d: int) -> tuple[Array, Array, Array]:
+def known(found: ConvergingMultipliers, d: int) -> tuple[Array, Array, Array]:
     """e₁ … e_d, their errors, and what of them is rounding, each (point, d).
 
     The error is the change from N to 2N steps. Where the change before was larger by ``FALLS``, the order of the method
@@ -175,9 +175,9 @@ def known(found: Settling, d: int) -> tuple[Array, Array, Array]:
     return fine, change + rounding, rounding
 
 
-def told_apart(both: Points) -> bool:
+def distinguished(both: GridPoints) -> bool:
     """Whether e₁ … e_m of two cases differ by far more than steps that are too long can make them."""
-    found = Settling(both, 1)
+    found = ConvergingMultipliers(both, 1)
     for _ in range(3):
         values, errors, _ = known(found, both.states)
         noise = errors.sum(axis=0)

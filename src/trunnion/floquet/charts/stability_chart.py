@@ -18,17 +18,17 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base, require_tree
+from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.floquet.charts.axes import Axis, AxisRequest, axis, check_corners, moves_nothing, own_axis
-from trunnion.floquet.charts.building import Built, build, decide, family_for, fill, way_named
+from trunnion.floquet.charts.axes import AxisRequest, ChartAxis, axis, check_corners, moves_nothing, user_axis
+from trunnion.floquet.charts.building import BuiltChart, build, decide, family_for, fill, strategy_named
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.charts.chart_pixels import judge, multipliers_of, tells_all
-from trunnion.floquet.charts.own_families import OwnFamily, PatchesAlone
-from trunnion.floquet.charts.plain_chart import MOST_FIRST, Plain, build_plainly
-from trunnion.floquet.charts.prices import compiling_pays, instead_of_compiling
+from trunnion.floquet.charts.cost_model import compiling_pays, instead_of_compiling
+from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build_with_numpy
+from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
 from trunnion.results.verdict import Verdict
@@ -76,38 +76,43 @@ def stability_chart(
     KeyboardInterrupt : passed on; nothing is kept.
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
-    task = chart_task(line, x, y, speed, statically_twisted, plain=not compiling_pays())
+    task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
-    tell, built = progress or (lambda share: None), None
+    report_progress, built = progress or (lambda share: None), None
     if isinstance(task.family, LineFamily) and not compiling_pays():
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
-            built = build_plainly(task.family, task.x.values, task.y.values, asked, tell, MOST_FIRST)
-    return _chart(task, built, tolerance, statically_twisted, threads, tell)
+            built = build_with_numpy(task.family, task.x.values, task.y.values, asked, report_progress, MOST_FIRST)
+    return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
 
 
 def chart_of_report(
     assembly: Assembly, x: AxisRequest, y: AxisRequest, tolerance: float, progress: Progress | None = None
 ) -> StabilityChart:
     """As ``stability_chart`` of a driveline, in plain NumPy where that takes seconds: nothing is compiled then."""
-    tell, task = progress or (lambda share: None), chart_task(assembly, x, y, None, True, plain=True)
+    report_progress, task = progress or (lambda share: None), chart_task(assembly, x, y, None, True, numpy_only=True)
     assert isinstance(task.family, LineFamily)
-    built = build_plainly(task.family, task.x.values, task.y.values, tolerance, tell)
-    return _chart(task, built, tolerance, True, None, tell)
+    built = build_with_numpy(task.family, task.x.values, task.y.values, tolerance, report_progress)
+    return _chart(task, built, tolerance, True, None, report_progress)
 
 
 def _chart(
-    task: Task, built: Built | None, tolerance: float, twisted: bool, threads: int | None, tell: Progress
+    task: Task,
+    built: BuiltChart | None,
+    tolerance: float,
+    twisted: bool,
+    threads: int | None,
+    report_progress: Progress,
 ) -> StabilityChart:
     """What was built, by compiled kernels if it is not yet, as a result."""
     workers = threads or os.cpu_count() or 1
     if built is None:
-        built = build(task.family, task.x.values, task.y.values, tolerance, workers, tell)
-    tell(1.0)
+        built = build(task.family, task.x.values, task.y.values, tolerance, workers, report_progress)
+    report_progress(1.0)
     x_axis, y_axis, pixels = task.x, task.y, built.pixels
     remarks = [*task.remarks, *built.remarks]
-    if isinstance(task.family, OwnFamily):
+    if isinstance(task.family, UserFamily):
         remarks += task.family.failures(x_axis.values, y_axis.values, pixels.verdict == Verdict.FAILED, tolerance)
     return StabilityChart(
         x=x_axis.values,
@@ -131,7 +136,7 @@ def _chart(
         evaluate_point=_pointwise(built.family, built.function, built.tolerance),
         resample=_resampler(built.family, built.function, built.tolerance, workers),
         spot_check=built.check,
-        way=built.way.name,
+        way=built.strategy.name,
     )
 
 
@@ -146,8 +151,8 @@ class Task:
     """What is to be searched: a family over two axes, the speed where neither is it, the line, and what to say."""
 
     family: ChartFamily
-    x: Axis
-    y: Axis
+    x: ChartAxis
+    y: ChartAxis
     speed: float | None
     line: Driveline | None
     remarks: tuple[str, ...]
@@ -161,21 +166,21 @@ def chart_task(
     twisted: bool,
     analysis: str = "stability_chart",
     *,
-    plain: bool = False,
+    numpy_only: bool = False,
 ) -> Task:
     """A line or family over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
 
-    ``plain``: nothing is compiled for it, where the line suits that.
+    ``numpy_only``: nothing is compiled for it, where the line suits that.
 
     Raises
     ------
     InputError : see ``stability_chart``.
     """
     if not isinstance(line, PeriodicLinearFamily):
-        return _line_task(line, x, y, speed, twisted, analysis, plain)
+        return _line_task(line, x, y, speed, twisted, analysis, numpy_only)
     if speed is not None:
         raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
-    return _own_task(line, x, y)
+    return _user_task(line, x, y)
 
 
 def _line_task(
@@ -185,7 +190,7 @@ def _line_task(
     speed: float | str | None,
     twisted: bool,
     analysis: str,
-    plain: bool,
+    numpy_only: bool,
 ) -> Task:
     assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
@@ -200,7 +205,7 @@ def _line_task(
             remedy="give y a parameter that leaves it alone",
         )
     check_corners(assembly, across, up)
-    refuse_own_motion(
+    refuse_periodic_base(
         assembly,
         "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
         bends=across.is_joint_angle or up.is_joint_angle,
@@ -217,19 +222,19 @@ def _line_task(
     family = LineFamily(assembly, across, up, base, twisted)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
-    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", plain), *said) if s)
+    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", numpy_only), *said) if s)
     return Task(family, across, up, None if swept else base, assembly.line, remarks)
 
 
-def _idle(family: ChartFamily, x: Axis, y: Axis, what: str, plain: bool = False) -> list[str]:
+def _idle(family: ChartFamily, x: ChartAxis, y: ChartAxis, what: str, numpy_only: bool = False) -> list[str]:
     """Sentences about axes that change nothing."""
 
     def decisive(x: Array, y: Array) -> Array:
         return family.evaluate(x, y, 1e-12, 1)[0]
 
     differ = family.differ
-    if plain and isinstance(family, LineFamily) and family.uncompiled:
-        decisive, differ = Plain(family).decisive, Plain(family).differ
+    if numpy_only and isinstance(family, LineFamily) and family.uncompiled:
+        decisive, differ = NumpyAxisTest(family).decisive, NumpyAxisTest(family).differ
     return [
         f"{own.label} changes nothing in this {what}"
         for own in (x, y)
@@ -241,13 +246,13 @@ def _middle(x: Array, y: Array) -> tuple[float, float]:
     return float(np.median(x)), float(np.median(y))
 
 
-def _own_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
+def _user_task(family: PeriodicLinearFamily, x: AxisRequest, y: AxisRequest) -> Task:
     """A family of one's own over two of its parameters, checked."""
-    across, up = own_axis(family, x, "x"), own_axis(family, y, "y")
+    across, up = user_axis(family, x, "x"), user_axis(family, y, "y")
     if across.label == up.label:
         raise InputError("stands on both axes", key=across.label, remedy="give y another parameter")
     family.require_period(dict(zip((across.label, up.label), _middle(across.values, up.values), strict=True)))
-    own = OwnFamily(family, across.label, up.label, _middle(across.values, up.values))
+    own = UserFamily(family, across.label, up.label, _middle(across.values, up.values))
     return Task(own, across, up, None, None, tuple(_idle(own, across, up, "family")))
 
 
@@ -299,14 +304,14 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
     assert chart.function is not None
     own: ChartFamily | None
     if family is not None:
-        own = OwnFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
+        own = UserFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
     elif chart.line is None:
-        own = PatchesAlone(chart) if chart.function.patches else None
+        own = StoredPatches(chart) if chart.function.patches else None
     else:
         own = family_of_chart(chart)
     if own is None:
         return chart
-    way = way_named(chart.way)
+    way = strategy_named(chart.way)
     own, tolerance = family_for(way, own), chart.tolerance * way.share
     return replace(
         chart,

@@ -128,10 +128,10 @@ class _Line:
     def followed(self, value: Complex, shape: Complex) -> _Found:
         """From exponents (mode,) and shapes (mode, n) on; NaN where one does not settle."""
         inside, parts = np.searchsorted(self.wide, self.narrow), []
-        at_once = max(1, MOST_NUMBERS // (self.n * len(self.wide)))
-        for begin in range(0, len(value), at_once):
+        batch_size = max(1, MOST_NUMBERS // (self.n * len(self.wide)))
+        for begin in range(0, len(value), batch_size):
             keep_time()
-            some = slice(begin, begin + at_once)
+            some = slice(begin, begin + batch_size)
             near = np.zeros((self.n, len(value[some]), len(self.narrow)), dtype=complex)
             near[..., int(np.searchsorted(self.narrow, 0))] = shape[some].T
             found, near = self._settled(value[some], near, self.narrow)

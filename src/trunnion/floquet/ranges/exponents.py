@@ -1,4 +1,4 @@
-"""Floquet exponents of chosen modes at chosen speeds, by Hill's blocks: where modes lie once joints are bent.
+"""Floquet exponents of chosen modes at chosen speeds, by Hill's blocks: where modes lie once joints have angles.
 
 A free motion Re[e^{λt} Σ_h X_h e^{ihbΩt}], b = 2π/period of the equations in the input angle, makes
 
@@ -50,7 +50,7 @@ MOST_NUMBERS = 2_000_000
 
 
 @dataclass(frozen=True)
-class SideOrders:
+class ExponentOrders:
     """How far the coefficients of a line reach: harmonics (h,) about an order, in ``turns``⁻¹ cycles per turn, and the
     samples over the period that resolve them."""
 
@@ -59,7 +59,7 @@ class SideOrders:
     times: int
 
     @classmethod
-    def of(cls, assembly: Assembly, reach: int = REACH) -> SideOrders:
+    def of(cls, assembly: Assembly, reach: int = REACH) -> ExponentOrders:
         """Raises InputError where the line has no period."""
         turns = require_period(assembly.line, assembly.topology)
         layers = sorted(offsets({int(rate * turns) for rate in assembly.topology.rates}, reach))
@@ -68,7 +68,7 @@ class SideOrders:
 
 
 def floquet_exponents(
-    assembly: Assembly, sides: SideOrders, table: Array, start: Complex, shape: NDArray[Any]
+    assembly: Assembly, sides: ExponentOrders, table: Array, start: Complex, shape: NDArray[Any]
 ) -> Complex:
     """Exponents λ (case,) [1/s] at rows of packed numbers ``table`` (case, column) of the modes that are ``start``
     (case,) with ``shape`` (case, n) on the straight line. NaN where the iteration does not settle.
@@ -85,9 +85,9 @@ def floquet_exponents(
     return found
 
 
-def meeting_exponents(
+def colliding_exponents(
     assembly: Assembly,
-    sides: SideOrders,
+    sides: ExponentOrders,
     table: Array,
     cycles: Fraction,
     starts: tuple[Complex, Complex],
@@ -114,17 +114,17 @@ def _along_tree(assembly: Assembly) -> bool:
     return assembly.topology.size >= LONG and not assembly.topology.graph
 
 
-def _batches(cases: Places, sides: SideOrders, assembly: Assembly) -> Iterator[Places]:
+def _batches(cases: Places, sides: ExponentOrders, assembly: Assembly) -> Iterator[Places]:
     numbers = len(sides.harmonics) * assembly.topology.size
-    at_once = max(1, MOST_NUMBERS // (8 * numbers if _along_tree(assembly) else numbers**2))
-    for begin in range(0, len(cases), at_once):
-        yield cases[begin : begin + at_once]
+    batch_size = max(1, MOST_NUMBERS // (8 * numbers if _along_tree(assembly) else numbers**2))
+    for begin in range(0, len(cases), batch_size):
+        yield cases[begin : begin + batch_size]
 
 
 class _Blocks:
     """A(λ) of some rows of packed numbers and A′(λ), each (case, m, m)."""
 
-    def __init__(self, assembly: Assembly, sides: SideOrders, table: Array) -> None:
+    def __init__(self, assembly: Assembly, sides: ExponentOrders, table: Array) -> None:
         co = assembly.coefficients(table, any_frequency=True)
         tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)

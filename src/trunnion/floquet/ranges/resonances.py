@@ -5,7 +5,7 @@ A harmonic of order K (cycles per turn of the input) and frequency ν meets mode
     |KΩ + ν| = Im λ_m(Ω),     half-width |Re λ_m|/|K|.
 
 Orders are those of disks and transmission errors; of joints and meshes whose stiffness varies; and the side orders
-that these make of all. λ_m is an eigenvalue of the loaded straight line, behind bent joints the Floquet exponent that
+that these make of all. λ_m is an eigenvalue of the loaded straight line, behind angled joints the Floquet exponent that
 grows out of it.
 """
 
@@ -19,9 +19,9 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import line_harmonics
-from trunnion.equations.steady_base import bent
+from trunnion.equations.steady_base import has_joint_angles
 from trunnion.equations.topology import require_period
-from trunnion.floquet.ranges.exponents import SideOrders, floquet_exponents
+from trunnion.floquet.ranges.exponents import ExponentOrders, floquet_exponents
 from trunnion.floquet.ranges.span import Span
 from trunnion.laws.harmonic import forward
 from trunnion.modes.loaded_modes import loaded_modes
@@ -30,7 +30,7 @@ from trunnion.steady.orders.groups import offsets
 LAYERS = 2
 """Side orders of side orders that are looked for."""
 BESIDE = 0.1
-"""Share of a speed by which bent joints may shift a resonance into the range."""
+"""Share of a speed by which angled joints may shift a resonance into the range."""
 ROUNDS = 4
 GRID = 65
 """Speeds at which the modes of a line are known whose damping depends on the speed."""
@@ -71,8 +71,8 @@ class Modes:
 
 
 def varies(assembly: Assembly) -> bool:
-    """Whether a bent joint or a mesh makes the coefficients vary."""
-    return bent(assembly) or any(mesh.stiffness_rates for mesh in assembly.topology.meshes)
+    """Whether an angled joint or a mesh makes the coefficients vary."""
+    return has_joint_angles(assembly) or any(mesh.stiffness_rates for mesh in assembly.topology.meshes)
 
 
 def orders_acting(assembly: Assembly) -> tuple[Array, Array]:
@@ -121,8 +121,8 @@ def resonances(span: Span) -> Resonances:
 def _shifted(
     span: Span, modes: Modes, mode: Places, order: Array, frequency: Array, speed: Array
 ) -> tuple[Array, Complex]:
-    """Where the same meet once joints are bent, and the exponents there."""
-    sides = SideOrders.of(span.assembly)
+    """Where the same meet once joints have angles, and the exponents there."""
+    sides = ExponentOrders.of(span.assembly)
     start, shape = modes.at(speed, mode)
     value, left = start.copy(), np.arange(len(speed))
     for _ in range(ROUNDS):

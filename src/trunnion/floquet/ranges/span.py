@@ -34,17 +34,17 @@ STANDSTILL = 1e-6
 
 
 @dataclass(frozen=True)
-class Piece:
+class SmoothRange:
     """Speeds [rad/s] within which nothing of the line changes but smoothly."""
 
     low: float
     high: float
 
-    def without(self, low: float, high: float) -> list[Piece]:
+    def without(self, low: float, high: float) -> list[SmoothRange]:
         """What is left of it beside a range."""
         if high <= self.low or low >= self.high:
             return [self]
-        return [Piece(a, b) for a, b in ((self.low, low), (high, self.high)) if b > a]
+        return [SmoothRange(a, b) for a, b in ((self.low, low), (high, self.high)) if b > a]
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Span:
         return max(self.low, STANDSTILL * self.high)
 
     @cached_property
-    def pieces(self) -> tuple[Piece, ...]:
+    def pieces(self) -> tuple[SmoothRange, ...]:
         """The range in pieces, what cannot be looked at left out."""
         left = [piece for piece in self._same if not self._uncovered((piece.low + piece.high) / 2)]
         for gap in self.lost:
@@ -105,14 +105,14 @@ class Span:
         return tuple(sorted([*found, *self.lost], key=lambda gap: gap.low))
 
     @cached_property
-    def _same(self) -> tuple[Piece, ...]:
+    def _same(self) -> tuple[SmoothRange, ...]:
         if self.start >= self.high:
-            return (Piece(self.high, self.high),)
+            return (SmoothRange(self.high, self.high),)
         inner = [p for p in self.points if self.start < p < self.high]
         probes = np.unique(np.concatenate([np.linspace(self.start, self.high, PROBES), self._turning, inner]))
         cuts = {*inner, *self._changes(probes)}
         ends = [self.start, *sorted(cuts), self.high]
-        return tuple(Piece(a, b) for a, b in pairwise(ends) if b > a)
+        return tuple(SmoothRange(a, b) for a, b in pairwise(ends) if b > a)
 
     @property
     def _turning(self) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
-from trunnion.floquet.stability.along import StabilityAlong, straight_decay
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, straight_decay
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.results.verdict import Verdict
 
@@ -20,14 +20,14 @@ def straight_ranges(span: Span) -> UnstableRanges:
     """Negative damping, or a torque that grows with the speed, over a range."""
     speeds = np.unique(np.concatenate([[span.start], np.linspace(span.start, span.high, POINTS)]))
 
-    def judge(at: Array) -> StabilityAlong:
+    def judge(at: Array) -> StabilityOverSpeed:
         verdict = verdicts_at(span.assembly, at, table=span.table(at))
         growth = np.array(
             [-straight_decay(span.assembly, speed, row) for speed, row in zip(at, span.table(at), strict=True)]
         )
         with np.errstate(under="ignore", over="ignore"):
             radius = np.exp(growth * TURN / at)
-        return StabilityAlong(at, radius, np.zeros(len(at)), radius.astype(complex), verdict, growth, TURN)
+        return StabilityOverSpeed(at, radius, np.zeros(len(at)), radius.astype(complex), verdict, growth, TURN)
 
     verdict = verdicts_at(span.assembly, speeds, table=span.table(speeds))
     if not np.any(verdict == Verdict.UNSTABLE):

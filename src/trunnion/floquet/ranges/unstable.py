@@ -20,13 +20,13 @@ import numpy as np
 
 from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.coefficients import joint_laws
-from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.floquet.charts.axes import lowest_speed
-from trunnion.floquet.ranges.exponents import SideOrders, meeting_exponents
+from trunnion.floquet.ranges.exponents import ExponentOrders, colliding_exponents
 from trunnion.floquet.ranges.resonances import BESIDE, Modes, resonances
-from trunnion.floquet.ranges.slow import slow_enough
-from trunnion.floquet.ranges.span import Gap, Piece, Span
-from trunnion.floquet.stability.along import StabilityAlong
+from trunnion.floquet.ranges.slow_speeds import slow_enough
+from trunnion.floquet.ranges.span import Gap, SmoothRange, Span
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
 from trunnion.numerics.curves import parabola
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.groups import offsets
@@ -51,7 +51,7 @@ ENDS = 1e-7
 SLOWEST = 20.0
 """Factor below the lowest speed of a chart down to which growth is computed."""
 
-Judge = Callable[[Array], StabilityAlong]
+Judge = Callable[[Array], StabilityOverSpeed]
 
 
 @dataclass(frozen=True)
@@ -59,17 +59,17 @@ class UnstableRanges:
     """``along``: stability at all speeds looked at, rising; ``ranges``: unstable from where to where [rad/s]; ``slow``:
     speed [rad/s] up to which the line is stable by a bound, 0 without; ``gaps``: what was not looked at."""
 
-    along: StabilityAlong
+    along: StabilityOverSpeed
     ranges: tuple[tuple[float, float], ...]
     slow: float
     gaps: tuple[Gap, ...]
 
     @property
-    def untold(self) -> Flags:
+    def undecided(self) -> Flags:
         """Where it could not be told (speed,)."""
         return np.asarray((self.along.verdict != Verdict.STABLE) & (self.along.verdict != Verdict.UNSTABLE))
 
-    def stable_part(self, pieces: tuple[Piece, ...]) -> list[Piece]:
+    def stable_part(self, pieces: tuple[SmoothRange, ...]) -> list[SmoothRange]:
         """Pieces without what is unstable in them."""
         left = list(pieces)
         for low, high in self.ranges:
@@ -90,7 +90,7 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> Unstab
         low = high
     even = np.linspace(low, high, points)
     octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
-    met, damping, width = meetings(span, low, high)
+    met, damping, width = exponent_collisions(span, low, high)
     lost = np.array([at for gap in span.lost for at in (gap.low, (gap.low + gap.high) / 2, gap.high)])
     along = judge(np.unique(np.concatenate([even, octaves, met, lost[(lost >= low) & (lost <= high)]])))
     along = _beside_met(along, judge, met, damping, width, (low, high))
@@ -119,14 +119,14 @@ def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
     return slow, (Gap(max(slow, span.low), least, why),), begin
 
 
-def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
+def exponent_collisions(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
     """Speeds (meeting,) at which two exponents meet, the decay of the slower mode [1/s] there, and half of the stretch
     [rad/s] over which they can grow."""
     modes, none = Modes.of(span), np.zeros(0)
     if not modes.value.shape[1] or low >= high or not span.assembly.topology.rates:
         return none, none, none
-    fed = min(_unevenness(span) + _swing(span), 1.0)
-    sides = SideOrders.of(span.assembly)
+    fed = min(_nonuniformity(span) + _swing(span), 1.0)
+    sides = ExponentOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
     every = {step / sides.turns: k for step, k in offsets(rates, ORDERS[min(len(rates), 2) - 1]).items() if step > 0}
     found = [_of_cycles(span, modes, sides, cycles, FED * fed**k) for cycles, k in every.items()]
@@ -136,7 +136,7 @@ def meetings(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
 
 
 def _of_cycles(
-    span: Span, modes: Modes, sides: SideOrders, cycles: Fraction, share: float
+    span: Span, modes: Modes, sides: ExponentOrders, cycles: Fraction, share: float
 ) -> tuple[Array, Array, Array]:
     """The same of what excites with so many ``cycles`` per turn and feeds a ``share`` of a frequency."""
     i, j = np.triu_indices(modes.value.shape[1])
@@ -158,9 +158,9 @@ def _of_cycles(
 
 
 def _followed(
-    span: Span, modes: Modes, sides: SideOrders, cycles: Fraction, pair: tuple[Places, Places], speed: Array
+    span: Span, modes: Modes, sides: ExponentOrders, cycles: Fraction, pair: tuple[Places, Places], speed: Array
 ) -> Array:
-    """Where two exponents meet once joints are bent, from where those of the straight line do.
+    """Where two exponents meet once joints have angles, from where those of the straight line do.
 
     Their difference squared is smooth where they meet and where they have parted: −c²((Ω − Ω₀)² − w²), nearly. Three
     speeds tell Ω₀.
@@ -170,7 +170,7 @@ def _followed(
         three = speed[:, None] * (1 + wide * np.array([-1.0, 0.0, 1.0]))
         flat = three.ravel()
         one, two = (modes.at(flat, np.repeat(mode, 3)) for mode in pair)
-        found = meeting_exponents(
+        found = colliding_exponents(
             span.assembly, sides, span.table(flat), cycles, (one[0], two[0]), (one[1], two[1])
         )  # fmt: skip
         square = -((found[:, 0] - found[:, 1]) ** 2).real.reshape(three.shape)
@@ -182,7 +182,7 @@ def _followed(
     return speed
 
 
-def _unevenness(span: Span) -> float:
+def _nonuniformity(span: Span) -> float:
     """How much joints and meshes vary stiffness and inertia, as a share of either."""
     table = span.table(np.linspace(span.start, span.high, 5))
     coefficients = span.assembly.coefficients(table, any_frequency=True)
@@ -192,9 +192,9 @@ def _unevenness(span: Span) -> float:
 
 
 def _swing(span: Span) -> float:
-    """How far the inputs of joints swing [rad] in the own motion of a line that has one, at its resonances too, by
-    linear theory: what it feeds beside the joints' unevenness."""
-    if not moves_by_itself(span.assembly):
+    """How far the inputs of joints swing [rad] in the periodic steady state of a line that has one, at its resonances
+    too, by linear theory: what it feeds beside the joints' unevenness."""
+    if not has_periodic_base(span.assembly):
         return 0.0
     speed = np.unique(np.concatenate([np.linspace(span.start, span.high, POINTS), resonances(span).speed]))
     table = span.table(speed) if span.put else None
@@ -203,8 +203,8 @@ def _swing(span: Span) -> float:
 
 
 def _beside_met(
-    along: StabilityAlong, judge: Judge, met: Array, decay: Array, width: Array, ends: tuple[float, float]
-) -> StabilityAlong:
+    along: StabilityOverSpeed, judge: Judge, met: Array, decay: Array, width: Array, ends: tuple[float, float]
+) -> StabilityOverSpeed:
     """With two speeds beside every meeting at which growth stands out."""
     if not len(met):
         return along
@@ -216,7 +216,7 @@ def _beside_met(
     return along.beside(judge(beside)) if len(beside) else along
 
 
-def _rising(along: StabilityAlong) -> Array:
+def _rising(along: StabilityOverSpeed) -> Array:
     """Speeds at which growth may be faster than the fastest known, or begin where none is known."""
     known = np.isfinite(along.growth_rate)
     x, v = along.speed[known], along.growth_rate[known]
@@ -235,8 +235,8 @@ def _rising(along: StabilityAlong) -> Array:
 
 
 def closed_in(
-    along: StabilityAlong, judge: Judge, closely: float = ENDS
-) -> tuple[StabilityAlong, tuple[tuple[float, float], ...]]:
+    along: StabilityOverSpeed, judge: Judge, closely: float = ENDS
+) -> tuple[StabilityOverSpeed, tuple[tuple[float, float], ...]]:
     """With the ends of what is unstable located, ``closely`` as a share of the speed, and the ranges."""
     grows = along.verdict == Verdict.UNSTABLE
     change = np.flatnonzero(grows[1:] != grows[:-1])

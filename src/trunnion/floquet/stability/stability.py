@@ -22,11 +22,11 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
-from trunnion.equations.steady_base import moves_by_itself
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.propagation.carried_modes import carried_mode, judged_multipliers, propagated
+from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -55,7 +55,7 @@ NEAR = 0.1
 """As FARTHEST, on a stability boundary."""
 OWN = 0.1
 """Tolerance of the motion that a free line is judged about, over that of its multipliers."""
-EXTRA = "what the drives of a bent line that starts free give beyond the balance of the loads; None elsewhere"
+EXTRA = "what the drives of a free–free line with joint angles give beyond the balance of the loads; None elsewhere"
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -68,7 +68,7 @@ SET_ASIDE = {
 class Stability(Result):
     """Floquet stability at one speed.
 
-    Spectral radius and error estimate leave out the ``set_aside`` multipliers, exactly 1: of a line that starts free a
+    Spectral radius and error estimate leave out the ``set_aside`` multipliers, exactly 1: of a free–free line a
     turn of the whole line, and its speed where no torque depends on it; of a damper without a spring a turn of its
     ring.
     """
@@ -92,7 +92,9 @@ class Stability(Result):
     unit: str = internal("of speeds in print", default="rad/s")
     extra_torque: float | None = internal(EXTRA, "N m at the input", default=None)
     dragged: int = internal("how many of those set aside belong to dampers without a spring", default=0)
-    speed_sentence: str = internal("of a bent free line none of whose torques depends on the speed", default="")
+    speed_sentence: str = internal(
+        "of a free–free line with joint angles none of whose torques depends on the speed", default=""
+    )
 
     @property
     def response(self) -> LinearResponse | None:
@@ -205,7 +207,7 @@ def stability(
     speed : mean input speed [rad/s]; default the operating speed of the file.
     tolerance : error asked of Z in energy-like units.
     statically_twisted : linearise about the line twisted by its load torques (joint phases and η′T̄);
-        False takes zero twist, as S1 and S3 do. A bent line that starts free is judged about its own periodic
+        False takes zero twist, as S1 and S3 do. A free–free line with joint angles is judged about its own periodic
         motion, twist and all, whatever this says.
 
     Raises
@@ -223,8 +225,8 @@ def stability(
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
     assembly = assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
-    if moves_by_itself(assembly):
-        found = _about_own_motion(assembly, float(table[0, 0]), tolerance)
+    if has_periodic_base(assembly):
+        found = _about_steady_state(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
     return replace(
@@ -270,13 +272,13 @@ def _named(
     return named and replace(named, speed=named.speed * rate)
 
 
-def _about_own_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability:
-    """Of a free line with bent joints, which no motion of rigid shafts stands for."""
+def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> Stability:
+    """Of a free line with angled joints, which no motion of rigid shafts stands for."""
     topo = assembly.topology
     turns = require_period(assembly.line, topo)
-    from trunnion.steady.own.own_motion import own_motion
+    from trunnion.steady.free.periodic_steady_state import periodic_steady_state
 
-    motion = own_motion(assembly.line, speed, tolerance=OWN * tolerance)
+    motion = periodic_steady_state(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)
     values, vectors = np.linalg.eig(orbit.monodromy)
@@ -330,7 +332,7 @@ def _judge(
     if len(judged) and verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         # Only what grows belongs to a resonance.
         critical = np.argmin(np.abs(values - judged[np.abs(judged).argmax()]))
-        motion = carried_mode(system, run, complex(values[critical]))
+        motion = floquet_mode(system, run, complex(values[critical]))
         named = _named(motion, verdict, system.rate, frequency, excited, turns)
     sign, log_det = np.linalg.slogdet(matrix)
     return Stability(

@@ -11,12 +11,12 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import first_order, scales
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices
-from trunnion.equations.steady_base import bent
-from trunnion.floquet.stability.along import stability_along
+from trunnion.equations.steady_base import has_joint_angles
+from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.results.verdict import Verdict
 
 if TYPE_CHECKING:
-    from trunnion.steady.own.own_motions import MotionsBySpeed
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 GROWS = 1e-9
 """Real part of an eigenvalue, relative to the largest, from which a straight line counts as unstable."""
@@ -27,16 +27,16 @@ def verdicts_at(
     speed: Array,
     *,
     statically_twisted: bool = True,
-    motions: MotionsBySpeed | None = None,
+    motions: SteadyStatesBySpeed | None = None,
     table: Array | None = None,
 ) -> Codes:
     """Codes of ``Verdict`` (speed,) at every ``speed`` [rad/s]; FAILED where a loss factor holds at all frequencies,
     which has no equations in time, so that no multipliers exist, and where the computation failed.
-    ``motions``: own motions that are known already; ``table`` as of ``stability_along``.
+    ``motions``: periodic steady states that are known already; ``table`` as of ``stability_along``.
     """
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted, any_frequency=True)
-    varies = bent(assembly) or bool(co.waves)
+    varies = has_joint_angles(assembly) or bool(co.waves)
     if co.loss.any() and varies:
         return np.full(len(speed), Verdict.FAILED, dtype=np.int8)
     if varies:

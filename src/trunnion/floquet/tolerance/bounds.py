@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
-from trunnion.equations.topology import Link
+from trunnion.equations.topology import LinkKind
 
 ROUNDED = 1e-13
 """Relative widening of what is computed from a description, far above its rounding."""
@@ -121,9 +121,9 @@ def ratios(assembly: Assembly, middle: Array, co: Coefficients, tau: Array) -> R
     joint = 0
     for s, station in enumerate(topo.stations):
         b = station.before
-        if station.link is Link.SHAFT:
+        if station.link is LinkKind.SHAFT:
             speed[:, s], gain[:, s] = speed[:, b], gain[:, b]
-        elif station.link is Link.JOINT:
+        elif station.link is LinkKind.JOINT:
             sj, cj, r = sine[:, joint], cosine[:, joint], co.turned[:, joint]
             chi = motion.angle[:, :, b] + coefficients.shift[:, s, None]
             by_angle[:, :, s], slope_by_angle[:, :, s] = _by_angle(co.angle[:, joint, None], chi)

@@ -19,13 +19,13 @@ from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base, require_tree
-from trunnion.equations.topology import Link
+from trunnion.equations.topology import LinkKind
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.stability.stability import stability
-from trunnion.floquet.tolerance.bounded import table_at
 from trunnion.floquet.tolerance.bounds import half_widths, over_boxes
 from trunnion.floquet.tolerance.lyapunov import judge_boxes
+from trunnion.floquet.tolerance.parameter_intervals import table_at
 from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, internal, labelled, variable
@@ -209,7 +209,7 @@ class _Space:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _BoxSearch:
     counterexample: dict[str, float] | None
     open: Array
     proved: Array
@@ -218,7 +218,7 @@ class _Found:
     ended: str = ""
 
 
-def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
+def _search(space: _Space, most: int, report_progress: Callable[[float], None]) -> _BoxSearch:
     size = 1 + len(space.spreads)
     cells = max(1, int(np.ceil(np.log(space.speeds[1] / space.speeds[0]) / FIRST)))
     edges = np.linspace(0.0, 1.0, cells + 1)
@@ -228,7 +228,7 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
     batch_size, judged, radius = BATCH[space.assembly.topology.size], 0, 0.0
     while len(todo) and judged < most:
         if ended := time_is_up():
-            return _Found(None, todo, np.concatenate(proved), judged, radius, ended)
+            return _BoxSearch(None, todo, np.concatenate(proved), judged, radius, ended)
         # The largest first: what is left when the budget ends is then as small as can be.
         order = np.argsort(-np.prod(todo[:, 1] - todo[:, 0], axis=1), kind="stable")
         batch, todo = todo[order[:batch_size]], todo[order[batch_size:]]
@@ -241,10 +241,10 @@ def _search(space: _Space, most: int, tell: Callable[[float], None]) -> _Found:
             with to_the_end():
                 example = _confirmed(space, box)
             if example is not None:
-                return _Found(example, np.concatenate([left, todo]), np.concatenate(proved), judged, radius)
+                return _BoxSearch(example, np.concatenate([left, todo]), np.concatenate(proved), judged, radius)
         todo = np.concatenate([todo, _halved(left, space.across(left, found.blame[~found.proved]))])
-        tell(min(1 - _volume(todo), 0.999))
-    return _Found(None, todo, np.concatenate(proved), judged, radius)
+        report_progress(min(1 - _volume(todo), 0.999))
+    return _BoxSearch(None, todo, np.concatenate(proved), judged, radius)
 
 
 def _halved(boxes: Array, along: Integers) -> Array:
@@ -277,7 +277,7 @@ def _require_provable(assembly: Assembly) -> None:
         return InputError(problem, element=element, remedy="tolerance_study() says how probable stability is")
 
     if not isinstance(line.elements[0], ConstantSpeed) or topo.free:
-        raise refuse("starts free, and only lines behind a ConstantSpeed can be certified", line.names[0])
+        raise refuse("is free–free, and only lines behind a ConstantSpeed can be certified", line.names[0])
     if topo.size > MOST_UNKNOWNS:
         raise refuse(f"has {topo.size} unknowns, and at most {MOST_UNKNOWNS} can be certified", "driveline")
     for compliance in topo.compliances:
@@ -286,7 +286,7 @@ def _require_provable(assembly: Assembly) -> None:
             raise refuse("is no single shaft, and only such can be certified", line.names[compliance.shafts[0]])
         bends = 0
         at = compliance.near
-        while topo.stations[at].link is Link.JOINT:
+        while topo.stations[at].link is LinkKind.JOINT:
             bends += 1
             at = topo.stations[at].before
         if bends > 1:
@@ -295,8 +295,8 @@ def _require_provable(assembly: Assembly) -> None:
     loaded = any(np.any(part != 0) for part in (co.load, co.viscous, co.quadratic))
     for s, station in enumerate(topo.stations):
         name = line.names[station.element] if station.element >= 0 else "driveline"
-        hooke = station.link is Link.JOINT and line.elements[station.element].kind == "HookeJoint"
-        if station.link not in (Link.ROOT, Link.SHAFT) and not hooke:
+        hooke = station.link is LinkKind.JOINT and line.elements[station.element].kind == "HookeJoint"
+        if station.link not in (LinkKind.ROOT, LinkKind.SHAFT) and not hooke:
             raise refuse("is neither shaft, disk nor Hooke's joint, and only these can be certified", name)
         if hooke and co.inertia[0, s] > 0:
             raise refuse("carries an inertia behind the joint, so that it varies with the angle", name)

@@ -62,7 +62,7 @@ EVERY = 2
 
 
 @dataclass(frozen=True)
-class Judged:
+class BoxProof:
     """For each box: proved stable, the largest multiplier at its middle, and the bound on the largest eigenvalue of the
     Hermitian part of H [per radian], each (boxes,); how much of what stands against a proof each variable brings
     (boxes, variables): ln k, ln c, ln 1/J, ln s, and the angle of a line's only joint."""
@@ -73,7 +73,7 @@ class Judged:
     blame: Array
 
 
-def judge_boxes(assembly: Assembly, low: Array, high: Array) -> Judged:
+def judge_boxes(assembly: Assembly, low: Array, high: Array) -> BoxProof:
     """Boxes between tables of numbers (boxes, columns) at their low and high ends."""
     co = over_boxes(assembly, low, high)
     tau = HALF_TURN * np.arange(2 * STEPS) / (2 * STEPS)
@@ -85,7 +85,7 @@ def judge_boxes(assembly: Assembly, low: Array, high: Array) -> Judged:
     with np.errstate(all="ignore"):
         first = first_order(terms, co, here, form)
         largest, blame = _largest(terms, co, a[:, ::2], form, first)
-    return Judged((largest < 0) & (form.radius < 1), form.radius, largest, blame)
+    return BoxProof((largest < 0) & (form.radius < 1), form.radius, largest, blame)
 
 
 @dataclass(frozen=True)

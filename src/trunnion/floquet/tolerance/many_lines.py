@@ -11,16 +11,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Flags
+from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
-from trunnion.equations.lanes import chain_lanes, chain_program, loaded_by_speed
-from trunnion.equations.steady_base import refuse_own_motion, require_steady_base, require_tree
+from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
 from trunnion.floquet.charts.chart_pixels import Pixels, judge
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
-from trunnion.numerics.chain.exponential_monodromy import by_halving
+from trunnion.numerics.chain.exponential_monodromy import step_halving
 from trunnion.numerics.threads import on_threads
 
 AT_ONCE = 1 << 15
@@ -47,7 +47,7 @@ class ManyLines:
     def of(cls, assembly: Assembly, table: Array, twisted: bool, threads: int) -> ManyLines:
         """Refuses lines without period, without a steady base at any row of ``table``, and bent free ones."""
         require_period(assembly.line, assembly.topology)
-        refuse_own_motion(assembly, "put a ConstantSpeed in front", bends=False)
+        refuse_periodic_base(assembly, "put a ConstantSpeed in front", bends=False)
         require_steady_base(assembly, table)
         require_tree(assembly, "studies of many lines do")
         return cls(assembly, twisted, threads)
@@ -62,10 +62,10 @@ class ManyLines:
         topo = self.assembly.topology
         coefficients = self.assembly.coefficients(table, statically_twisted=self.statically_twisted)
         by_speed = loaded_by_speed(topo, coefficients)
-        program, lanes = chain_program(topo, coefficients, by_speed), chain_lanes(topo, coefficients, by_speed)
-        begin = symmetry_phase(program, lanes, self.period)
+        program, batch = chain_program(topo, coefficients, by_speed), chain_batch(topo, coefficients, by_speed)
+        begin = symmetry_phase(program, batch, self.period)
         window = Window(0.0 if begin is None else begin, self.period, begin is not None)
-        return chain_monodromy(program, lanes, window, tolerance, self.threads)
+        return chain_monodromy(program, batch, window, tolerance, self.threads)
 
     def set_aside(self, table: Array) -> int:
         """Multipliers exactly 1, as ``Stability.set_aside``."""
@@ -97,11 +97,11 @@ class ManyLines:
         def run(rows: Array) -> Pixels:
             co = self.assembly.coefficients(rows, statically_twisted=self.statically_twisted)
             by_speed = loaded_by_speed(topo, co)
-            lanes = chain_lanes(topo, co, by_speed)
-            points = ChainExponentials(chain_program(topo, co, by_speed), lanes, self.period, steps)
+            batch = chain_batch(topo, co, by_speed)
+            points = ChainExponentials(chain_program(topo, co, by_speed), batch, self.period, steps)
             rest = LineRates.of(self.assembly, rows, self.statically_twisted).rest() if topo.still else None
             beside = None if rest is None else lambda which, z: rest[which].transpose(0, 2, 1) @ z @ rest[which]
-            found = by_halving(
+            found = step_halving(
                 lambda which, count: points.monodromies(which, count)[0],
                 len(rows), 2 * topo.size, tolerance=COARSE, least_steps=steps, aside=beside,
             )  # fmt: skip

@@ -13,7 +13,13 @@ from trunnion.driveline.parameters import unit_of
 from trunnion.driveline.tolerances import Scatter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.floquet.tolerance.bounded import Bounded, columns_of, each_named, require_possible, table_at
+from trunnion.floquet.tolerance.parameter_intervals import (
+    ParameterInterval,
+    columns_of,
+    each_named,
+    require_possible,
+    table_at,
+)
 from trunnion.results.units import in_words
 
 Tolerances = Mapping[str, object]
@@ -25,7 +31,7 @@ EXAMPLE = '{"Shaft 1.stiffness": 0.1} for ±10 %, ("range", low, high), ("normal
 
 
 @dataclass(frozen=True)
-class Spread(Bounded):
+class Spread(ParameterInterval):
     """One parameter that scatters, uniformly, or normally about its middle with ``deviation``."""
 
     deviation: float | None = None

@@ -59,7 +59,7 @@ def sampled_columns(region: Region, v: Array) -> ColumnSearch:
     return search
 
 
-def _stretches(held: Flags, v: Array) -> Array:
+def _stretches(inside: Flags, v: Array) -> Array:
     """Stretches (stretches, 2) from the first to the last of neighbouring places that are held."""
-    edges = np.diff(np.concatenate([[0], held.astype(int), [0]]))
+    edges = np.diff(np.concatenate([[0], inside.astype(int), [0]]))
     return np.stack([v[np.flatnonzero(edges > 0)], v[np.flatnonzero(edges < 0) - 1]], axis=1)

@@ -24,7 +24,7 @@ from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.tongues.naming import eigenvalues, nearest_phases, partly_bent, straight_frequencies
 from trunnion.floquet.tongues.region import Region
-from trunnion.floquet.tongues.rows import BY_RESONANCES, BY_ROWS, Row, looked_at, unstable_intervals
+from trunnion.floquet.tongues.rows import BY_RESONANCES, BY_ROWS, TongueRow, looked_at, unstable_intervals
 from trunnion.modes.resonance_speeds import sources
 
 Multipliers = Callable[[Array], Complex]
@@ -51,7 +51,7 @@ BESIDE = 0.05
 
 
 @dataclass(frozen=True)
-class Followed:
+class TrackedResonances:
     """Resonances on their way through the box: modes i, j (elastic ones, from 0) and N cycles in the period with
     θ_i + θ_j = 2πN; speeds (levels, resonances) and phases (levels, resonances, modes) at the levels ``v``
     (levels,), rising."""
@@ -70,7 +70,7 @@ class Followed:
         """How many could not be followed to the last level."""
         return int(np.sum(np.abs(_off(self.phase[-1], self.pairs)) > MEETS))
 
-    def rows(self, v: Array) -> list[Row]:
+    def rows(self, v: Array) -> list[TongueRow]:
         """Unstable intervals of rows ``v`` by the search along the row and by this one."""
         known = unstable_intervals(self.region, v)
         places = [self.stretches(row.v) for row in known]
@@ -96,7 +96,7 @@ class Followed:
         return here, np.clip(ends, region.box.u0, region.box.u1), high[here] > PARTED
 
 
-def followed(region: Region) -> Followed | None:
+def followed(region: Region) -> TrackedResonances | None:
     """Every resonance of a line over speed, followed through the box; None where x is not the speed of a line."""
     family = region.family
     if not isinstance(family, LineFamily) or not family.x.is_speed:
@@ -118,14 +118,14 @@ def followed(region: Region) -> Followed | None:
         return lambda x: partly_bent(family, x, np.full(len(x), y[0]), np.full(len(x), share), region.threads)
 
     if not len(pairs):
-        return Followed(region, pairs, v, np.zeros((len(v), 0)), np.zeros((len(v), 0, len(elastic))))
+        return TrackedResonances(region, pairs, v, np.zeros((len(v), 0)), np.zeros((len(v), 0, len(elastic))))
     shares = (np.arange(1, BENDS + 1) / BENDS) ** 0.5  # angles act by their squares
     *_, (speed, phase) = _along([bent(float(share)) for share in shares], speed, phase, pairs)
     steps = _along([_of(region, float(level), ON_THE_WAY) for level in v], speed, phase, pairs)
-    return Followed(region, pairs, v, *(np.stack(part) for part in zip(*steps, strict=True)))
+    return TrackedResonances(region, pairs, v, *(np.stack(part) for part in zip(*steps, strict=True)))
 
 
-def in_words(found: Followed, by: list[int]) -> str:
+def in_words(found: TrackedResonances, by: list[int]) -> str:
     """What was followed, and which of the regions found ``by`` which searches."""
     lost = f", {found.lost} of them lost on the way" if found.lost else ""
     both, rows, resonances = (by.count(code) for code in (BY_ROWS | BY_RESONANCES, BY_ROWS, BY_RESONANCES))
@@ -201,12 +201,12 @@ def _off(phase: Array, pairs: Places) -> Array:
     return phase[own, pairs[:, 0]] + phase[own, pairs[:, 1]] - 2 * np.pi * pairs[:, 2]
 
 
-def _met(row: Row, stretches: Array) -> Flags:
+def _met(row: TongueRow, stretches: Array) -> Flags:
     """Which intervals of a row meet which stretches (intervals, stretches)."""
     return (row.low[:, None] <= stretches[:, 1]) & (stretches[:, 0] <= row.high[:, None])
 
 
-def _attributed(row: Row, rows_alone: Row, which: Places, stretches: Array, opened: Flags) -> Row:
+def _attributed(row: TongueRow, rows_alone: TongueRow, which: Places, stretches: Array, opened: Flags) -> TongueRow:
     """The row with ``by`` and ``of``: which of its intervals each search found, and the resonances in each."""
     own = np.stack([rows_alone.low, rows_alone.high], axis=1)
     met = _met(row, stretches)

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
-from trunnion.floquet.charts.axes import Axis
+from trunnion.floquet.charts.axes import ChartAxis
 
 DAMPING = ("damping", "loss_factor", "relative_damping", "mesh_damping", "damping_ratio")
 """Numbers of a description that damp."""
@@ -16,7 +16,7 @@ FAINTEST = 1e-6
 """Share of the largest damping from which on a range that starts at none is searched by equal ratios."""
 
 
-def levels_of(axis: Axis, count: int, own: float | None = None) -> Array:
+def levels_of(axis: ChartAxis, count: int, own: float | None = None) -> Array:
     """``count`` values (values,) along an axis, rising, and ``own`` among them where it lies inside.
 
     Damping acts over decades: of a range that starts at none, half of the values stand by equal ratios.
@@ -35,7 +35,7 @@ def levels_of(axis: Axis, count: int, own: float | None = None) -> Array:
     return levels
 
 
-def own_value(assembly: Assembly, axis: Axis) -> float | None:
+def own_value(assembly: Assembly, axis: ChartAxis) -> float | None:
     """The value that the line itself has of the parameter of ``axis``; None where several numbers differ."""
     columns = axis.columns
     if not len(columns.index) or np.any(columns.slope == 0):

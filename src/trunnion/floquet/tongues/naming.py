@@ -21,7 +21,7 @@ from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import LineFamily
-from trunnion.floquet.tongues.rows import Kind
+from trunnion.floquet.tongues.rows import InstabilityKind
 from trunnion.modes.mode_content import excited
 from trunnion.modes.resonance_speeds import Resonance, sources
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy
@@ -51,7 +51,7 @@ def partly_bent(family: LineFamily, x: Array, y: Array, share: Array, threads: i
     bent = [c for c, label in enumerate(assembly.packed.labels) if _bends(assembly, label)]
     table[:, bent] *= share[:, None]
     window = Window(0.0, family.period, False)
-    matrix, _, _ = chain_monodromy(family.program, family.lanes_of(table), window, TOLERANCE, threads)
+    matrix, _, _ = chain_monodromy(family.program, family.batch_of(table), window, TOLERANCE, threads)
     return eigenvalues(matrix)
 
 
@@ -83,7 +83,7 @@ def _named(family: LineFamily, speed: float, modes: Array, every: Complex, kind:
     turns = require_period(family.assembly.line, family.assembly.topology)
     phases = _followed(modes[elastic] * (family.period / speed), every)
     last = every[-1][np.abs(every[-1]).argmax()]
-    meeting = _meeting(phases, last, kind)
+    meeting = _collision(phases, last, kind)
     if meeting is None:
         return None
     i, j, cycles = meeting
@@ -132,13 +132,15 @@ def nearest_phases(ahead: Array, values: Complex) -> Array:
     return phase
 
 
-def _meeting(phases: Array, multiplier: complex, kind: int) -> tuple[int, int, int] | None:
+def _collision(phases: Array, multiplier: complex, kind: int) -> tuple[int, int, int] | None:
     """The two modes that meet at ``multiplier``, and the cycles N in the period with θ_i + θ_j = 2πN."""
 
     def off(phase: float) -> float:
         return float(abs(np.angle(multiplier * np.exp(-1j * phase))))
 
-    pairs = [(i, j) for i in range(len(phases)) for j in range(len(phases)) if (i == j) == (kind != Kind.COMPLEX)]
+    pairs = [
+        (i, j) for i in range(len(phases)) for j in range(len(phases)) if (i == j) == (kind != InstabilityKind.COMPLEX)
+    ]
     if not pairs:
         return None
     i, j = min(pairs, key=lambda p: off(phases[p[0]]) + off(-phases[p[1]]))

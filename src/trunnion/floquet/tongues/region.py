@@ -39,7 +39,7 @@ PIECES = 8
 
 
 @dataclass(frozen=True)
-class Piece:
+class PatchRows:
     """Rows of one patch: their places, the stretch of u, cosine series (rows, q, J) of θ = arccos of u, errors (rows,
     q).
 
@@ -151,7 +151,7 @@ class Region:
         """Spectral radius less 1 (points,)."""
         return self.judged(u, v).radius - 1
 
-    def pieces(self, v: Array) -> Iterator[Piece]:
+    def pieces(self, v: Array) -> Iterator[PatchRows]:
         """The rows at ``v`` (rows,), patch by patch; every row is covered from end to end."""
         for patch in self.function.patches:
             inside = self._rows_of(patch.box, v)
@@ -168,14 +168,14 @@ class Region:
         below = v < box.v1 if box.v1 < self.box.v1 * (1 + 1e-12) - 1e-300 and box.v1 != self.box.v1 else v <= box.v1
         return np.flatnonzero((v >= box.v0) & below)
 
-    def _along(self, patch: Patch, rows: Places, v: Array) -> Piece:
+    def _along(self, patch: Patch, rows: Places, v: Array) -> PatchRows:
         weights = patch.weights(v)
         series = np.einsum("ri,qij->rqj", weights, patch.coefficients)
         _, block = patch.blocks(np.array([patch.box.u0]), v)
         errors = patch.error.max(axis=2)[:, block].T
         return self._piece(rows, patch.box.u0, patch.box.u1, series, errors)
 
-    def _integrated(self, u0: float, u1: float, rows: Places, v: Array) -> Piece:
+    def _integrated(self, u0: float, u1: float, rows: Places, v: Array) -> PatchRows:
         from scipy.fft import dct
 
         nodes = (u0 + u1) / 2 + (u1 - u0) / 2 * np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
@@ -188,7 +188,7 @@ class Region:
         tail = np.abs(series[:, :, -4:]).sum(axis=2)
         return self._piece(rows, u0, u1, series, bounds.reshape(len(rows), NODES, -1).max(axis=1) + tail)
 
-    def _piece(self, rows: Places, u0: float, u1: float, series: Array, errors: Array) -> Piece:
+    def _piece(self, rows: Places, u0: float, u1: float, series: Array, errors: Array) -> PatchRows:
         still = undamped(np.abs(series[:, -1]).sum(axis=1), self.family.size)
         series, errors = series[:, :-1], errors[:, :-1]
         aside = self.family.set_aside
@@ -196,7 +196,7 @@ class Region:
             # (σ − 1) divides out of the polynomial, a linear operation: coefficient by coefficient of the series, where
             # e₀ = 1 stands in the constant term alone.
             series, errors = _set_aside(series, errors, aside)
-        return Piece(rows, u0, u1, series, errors, still)
+        return PatchRows(rows, u0, u1, series, errors, still)
 
 
 def _by_rows(v: Array) -> tuple[Places, Places]:
@@ -229,7 +229,7 @@ def _set_aside(series: Array, errors: Array, aside: int) -> tuple[Array, Array]:
 
 
 def patched(
-    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, tell: Callable[[float], None]
+    family: ChartFamily, x: Array, y: Array, tolerance: float, threads: int, report_progress: Callable[[float], None]
 ) -> Region:
     """Patch a family over the box that the values ``x`` and ``y`` span, however few points a picture of it would
     have.
@@ -239,14 +239,14 @@ def patched(
     """
     u, v = family.to_patch(x, True), family.to_patch(y, False)
     box = Box.around(u, v)
-    if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, tell)) is not None:
+    if (few := family.leading(box, LOOKED_AT, GROUP * tolerance / 4, threads, report_progress)) is not None:
         return Region(family, few, box, threads)
     for share in EASIER:
         asked, most = share * tolerance / 4, MOST_BOXES if share != EASIER[-1] else np.inf
         sampler = family.sampler(box, 1_000_000, asked, threads)
         try:
             built = patches.build(
-                _at_most(most, sampler.evaluate), sampler.boxes, u, v, asked, direct_below=-1, tick=tell
+                _at_most(most, sampler.evaluate), sampler.boxes, u, v, asked, direct_below=-1, tick=report_progress
             )
         except _NeverSettlesError:
             continue

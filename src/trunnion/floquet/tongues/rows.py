@@ -5,7 +5,7 @@ Up to three unknowns every change of stability is a zero of a boundary function,
 are then solved for with points of their own, so that they owe nothing to the patches.
 
 More unknowns are sampled, in two passes: by eigenvalues of interpolated matrices, denser where a local maximum of the
-radius comes near 1; and where two multipliers meet (``meetings``), however narrow the region there.
+radius comes near 1; and where two multipliers meet (``multiplier_collisions``), however narrow the region there.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ import numpy as np
 from trunnion.arrays import Array, Codes, Complex, Flags, Places
 from trunnion.floquet.tongues.boundaries import boundary_functions
 from trunnion.floquet.tongues.bracketing import bracketed
-from trunnion.floquet.tongues.meetings import meetings
-from trunnion.floquet.tongues.region import Piece, Region
+from trunnion.floquet.tongues.multiplier_collisions import multiplier_collisions
+from trunnion.floquet.tongues.region import PatchRows, Region
 from trunnion.floquet.tongues.series_roots import row_roots
 from trunnion.results.verdict import Verdict
 
@@ -45,7 +45,7 @@ BY_ROWS, BY_RESONANCES = 1, 2
 """Which search found an interval."""
 
 
-class Kind(IntEnum):
+class InstabilityKind(IntEnum):
     """How the multipliers leave the unit circle; codes of arrays."""
 
     POSITIVE = 0
@@ -59,11 +59,13 @@ class Kind(IntEnum):
 def kind_of(critical: Complex) -> Codes:
     """Kinds of critical multipliers."""
     real = np.abs(critical.imag) <= 1e-9 * np.abs(critical)
-    return np.where(~real, Kind.COMPLEX, np.where(critical.real > 0, Kind.POSITIVE, Kind.NEGATIVE)).astype(np.int8)
+    return np.where(
+        ~real, InstabilityKind.COMPLEX, np.where(critical.real > 0, InstabilityKind.POSITIVE, InstabilityKind.NEGATIVE)
+    ).astype(np.int8)
 
 
 @dataclass(frozen=True)
-class Row:
+class TongueRow:
     """Unstable intervals of the row at ``v``, rising: ``low``, ``high``, a point ``inside`` each, all in u; ``kind``
     there.
 
@@ -87,7 +89,7 @@ class Row:
         return len(self.low)
 
 
-def unstable_intervals(region: Region, v: Array) -> list[Row]:
+def unstable_intervals(region: Region, v: Array) -> list[TongueRow]:
     """The unstable intervals of rows ``v``, each found from end to end."""
     v = np.atleast_1d(np.asarray(v, dtype=float))
     found = (_zeros(piece) if region.by_coefficients else _sampled(region, piece) for piece in region.pieces(v))
@@ -95,17 +97,17 @@ def unstable_intervals(region: Region, v: Array) -> list[Row]:
     return settled(region, v, (row, at), (np.zeros(0, dtype=np.intp), np.zeros(0)), (close_row, close))
 
 
-def unknown_row(region: Region, v: float) -> Row:
+def unknown_row(region: Region, v: float) -> TongueRow:
     """A row of which nothing is known."""
     none = np.zeros(0)
     whole = np.array([[region.box.u0, region.box.u1]])
-    return Row(
+    return TongueRow(
         v=v, low=none, high=none, inside=none, kind=none.astype(np.int8), clipped=np.zeros((0, 2), bool), unknown=whole,
         by=none.astype(np.int8), of=(),
     )  # fmt: skip
 
 
-def looked_at(region: Region, rows: list[Row], stretches: list[Array]) -> list[Row]:
+def looked_at(region: Region, rows: list[TongueRow], stretches: list[Array]) -> list[TongueRow]:
     """Rows with what lies in ``stretches`` (stretches, 2) of each row added to what was known of it."""
     known = [k for k, own in enumerate(stretches) if len(own)]
     if not known:
@@ -121,7 +123,7 @@ def _of_rows(parts: list[Array]) -> tuple[Places, Array]:
     return np.repeat(np.arange(len(parts)), [len(part) for part in parts]), np.concatenate(parts)
 
 
-def _zeros(piece: Piece) -> Iterator[Marks]:
+def _zeros(piece: PatchRows) -> Iterator[Marks]:
     """Rows and places of all zeros of boundary functions on a piece, and of stretches that may touch one."""
     for undamped in (False, True):
         own = np.flatnonzero(piece.undamped == undamped)
@@ -144,7 +146,7 @@ NEAR = 0.5
 """A local maximum of the radius is looked at closely where 1 − ρ there is below this share of its mean."""
 
 
-def _sampled(region: Region, piece: Piece) -> Iterator[Marks]:
+def _sampled(region: Region, piece: PatchRows) -> Iterator[Marks]:
     """The same from samples of the spectral radius: changes of sign of ρ − 1, and local maxima below it."""
     theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
     u = piece.u(theta)
@@ -160,7 +162,7 @@ def _sampled(region: Region, piece: Piece) -> Iterator[Marks]:
         changes = np.flatnonzero(grows[:-1] != grows[1:])
         top = np.flatnonzero((over[1:-1] >= over[:-2]) & (over[1:-1] >= over[2:])) + 1
         top = top[~grows[top] & (-over[top] < NEAR * np.abs(over).mean()) & ~piece.undamped[r]]
-        _, met = meetings(lambda at, own, r=r: multipliers(at, r), theta, values[None])  # type: ignore[misc]
+        _, met = multiplier_collisions(lambda at, own, r=r: multipliers(at, r), theta, values[None])  # type: ignore[misc]
         reach = np.abs(piece.u(np.maximum(met - BESIDE, 0)) - piece.u(np.minimum(met + BESIDE, np.pi)))
         beside = [np.stack([u[top - 1], u[top + 1]], axis=1), piece.u(met)[:, None] + reach[:, None] * [-0.5, 0.5]]
         close = np.concatenate(beside)
@@ -179,7 +181,7 @@ def _multipliers(region: Region, entries: Array) -> Complex:
 
 def settled(
     region: Region, v: Array, marks: tuple[Places, Array], peaks: tuple[Places, Array], close: tuple[Places, Array]
-) -> list[Row]:
+) -> list[TongueRow]:
     """Verdicts of the gaps between marks, then edges where they change.
 
     Each of rows and places: ``marks``, between which the verdict does not change, ``peaks``, points inside regions, and
@@ -243,7 +245,7 @@ def _edges(
     unstable: Flags,
     radius: Array,
     kinds: Codes,
-) -> list[Row]:
+) -> list[TongueRow]:
     """Rows from gaps and their verdicts: neighbouring unstable gaps are one interval, their ends are solved for."""
     same = which[1:] == which[:-1]
     changes = np.flatnonzero(same & (unstable[1:] != unstable[:-1]))
@@ -262,7 +264,7 @@ def _edges(
         unknown = gaps[(which == r) & np.isnan(radius), :2]
         by, of = np.full(own.sum(), BY_ROWS, dtype=np.int8), (frozenset[int](),) * int(own.sum())
         inside, kind = gaps[top[own], 2], kinds[top[own]]
-        row = Row(
+        row = TongueRow(
             v=float(v[r]), low=low[own], high=high[own], inside=inside, kind=kind, clipped=clipped[own],
             unknown=unknown, by=by, of=of,
         )  # fmt: skip

@@ -64,7 +64,7 @@ def row_roots(series: Array, errors: Array, functions: Functions, degree: int) -
     left, right = at_edges[:, :, :-1].ravel(), at_edges[:, :, 1:].ravel()
     found: list[tuple[Array, ...]] = []
     touched: list[tuple[Array, ...]] = []
-    search = _Search(series, errors, functions, ROUNDING * coefficients.sum(axis=-1))
+    search = _RootSearch(series, errors, functions, ROUNDING * coefficients.sum(axis=-1))
     for _ in range(HALVINGS):
         small = bend[which, row] * h**2
         near = (np.minimum(np.abs(left), np.abs(right)) <= small / 8) | (left * right <= 0)
@@ -95,7 +95,7 @@ def values_at(series: Array, theta: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class _Search:
+class _RootSearch:
     series: Array
     errors: Array
     functions: Functions
@@ -127,7 +127,7 @@ class _Search:
         return total
 
 
-def _solved(search: _Search, found: list[tuple[Array, ...]]) -> tuple[Places, Places, Array]:
+def _solved(search: _RootSearch, found: list[tuple[Array, ...]]) -> tuple[Places, Places, Array]:
     """Zeros in cells that hold one each: (row, function, θ)."""
     own, function, begin, width = (np.concatenate(part) for part in zip(*found, strict=True)) if found else _NONE
     row, which = own.astype(np.intp), function.astype(np.intp)

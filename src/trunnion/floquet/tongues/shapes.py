@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.arrays import Array, Places
+from trunnion.floquet.tongues.boundary_traces import BoundaryTrace, Search
 from trunnion.floquet.tongues.bracketing import bracketed
-from trunnion.floquet.tongues.joining import Search, Strand
 from trunnion.floquet.tongues.region import FAINT, Region
 from trunnion.floquet.tongues.ridges import TIP, ridge, tips
 
-End = tuple[Strand, int]
+WindowEnd = tuple[BoundaryTrace, int]
 """A strand and which of its ends, 0 below and −1 above."""
 Point = tuple[float, float]
 NEAR_TIP = (1 / 64, 1 / 16, 1 / 4)
@@ -26,14 +26,14 @@ ACROSS_TIP = 0.02
 
 
 @dataclass
-class Shape:
+class ClosedTrace:
     """A strand with its tips (u, v) below and above, and its intervals with those near the tips added; rising in v.
 
     fades: ends at which it does not close: without damping the growth there has only become too small to be told from
     none.
     """
 
-    strand: Strand
+    trace: BoundaryTrace
     tips: tuple[Point | None, ...]
     fades: tuple[bool, ...]
     v: Array
@@ -42,7 +42,7 @@ class Shape:
     inside: Array
 
 
-class Lost(NamedTuple):
+class OpenEnd(NamedTuple):
     """An end of a strand without a tip: its last row, the next one, without it, and its interval in u on the last."""
 
     last: float
@@ -51,12 +51,12 @@ class Lost(NamedTuple):
     high: float
 
 
-def shapes(region: Region, search: Search, strands: list[Strand]) -> list[Shape]:
+def shapes(region: Region, search: Search, traces: list[BoundaryTrace]) -> list[ClosedTrace]:
     """Close every strand that ends inside the box at its tip, where rows on either side confirm it."""
-    ends = [(strand, end) for strand in strands for end in (0, -1) if _ends_alone(strand, end)]
+    ends = [(trace, end) for trace in traces for end in (0, -1) if _ends_alone(trace, end)]
     undamped = dict(zip(ends, _undamped(region, ends), strict=True))
     # Without damping one that was cut off by a side of the box before leaves through it.
-    fades = {(s, end): faint and not any(s.held[end].clipped) for (s, end), faint in undamped.items()}
+    fades = {(s, end): faint and not any(s.intervals[end].clipped) for (s, end), faint in undamped.items()}
     found = dict(zip(ends, _confirmed(region, search, ends, _tips(region, ends)), strict=True))
     found |= {end: None for end in ends if undamped[end] and not fades[end]}
     closed = {end: tip for end, tip in found.items() if tip is not None}
@@ -64,56 +64,58 @@ def shapes(region: Region, search: Search, strands: list[Strand]) -> list[Shape]
     near = dict(zip(closed, _near_tips(region, closed), strict=True))
     near |= dict(zip(at_sides, _corners(region, at_sides), strict=True))
     every = []
-    for strand in strands:
-        own = [(strand, end) for end in (0, -1)]
-        rows = np.array([(held.v, held.low, held.high, held.inside) for held in strand.held]).T
+    for trace in traces:
+        own = [(trace, end) for end in (0, -1)]
+        rows = np.array(
+            [(intervals.v, intervals.low, intervals.high, intervals.inside) for intervals in trace.intervals]
+        ).T
         whole = np.concatenate([rows, *(near[end] for end in own if end in near)], axis=1)
         faint = tuple(fades.get(end, False) for end in own)
         tops = tuple(None if fades.get(end) else found.get(end) for end in own)
-        every.append(Shape(strand, tops, faint, *whole[:, np.argsort(whole[0], kind="stable")]))
+        every.append(ClosedTrace(trace, tops, faint, *whole[:, np.argsort(whole[0], kind="stable")]))
     return [shape for shape in every if not _too_faint(region, shape)]
 
 
-def lost(shaped: list[Shape]) -> list[Lost]:
+def lost(shaped: list[ClosedTrace]) -> list[OpenEnd]:
     """Ends of strands inside the box at which no tip was found: the region goes on beyond, or is another one, joined or
     parted, that stands in its place. A row between tells."""
     found = []
     for shape in shaped:
         for end in (0, -1):
-            last, missing = shape.strand.held[end], shape.strand.beyond[end]
+            last, missing = shape.trace.intervals[end], shape.trace.beyond[end]
             closes = shape.tips[end] is not None or shape.fades[end] or any(last.clipped)
-            if missing is not None and _ends_alone(shape.strand, end) and not closes:
-                found.append(Lost(last.v, missing.v, last.low, last.high))
+            if missing is not None and _ends_alone(shape.trace, end) and not closes:
+                found.append(OpenEnd(last.v, missing.v, last.low, last.high))
     return found
 
 
-def _undamped(region: Region, ends: list[End]) -> list[bool]:
+def _undamped(region: Region, ends: list[WindowEnd]) -> list[bool]:
     """Whether nothing damps where strands end."""
-    u, v = (np.array([getattr(s.held[end], part) for s, end in ends]) for part in ("inside", "v"))
+    u, v = (np.array([getattr(s.intervals[end], part) for s, end in ends]) for part in ("inside", "v"))
     return region.undamped(u, v).tolist() if ends else []
 
 
-def _too_faint(region: Region, shape: Shape) -> bool:
+def _too_faint(region: Region, shape: ClosedTrace) -> bool:
     """Whether an undamped region grows nowhere by more than could be told from none: rows show shreds of it at most."""
     if not any(shape.fades):
         return False
     return bool(np.max(region.above_one((shape.low + shape.high) / 2, shape.v), initial=0.0) < FAINT)
 
 
-def _ends_alone(strand: Strand, end: int) -> bool:
+def _ends_alone(trace: BoundaryTrace, end: int) -> bool:
     """Whether the strand simply ends there: not at the box, and not in another tongue."""
-    return strand.beyond[end] is not None and strand.into[end] is None
+    return trace.beyond[end] is not None and trace.into[end] is None
 
 
-def _tips(region: Region, ends: list[End]) -> list[Point | None]:
+def _tips(region: Region, ends: list[WindowEnd]) -> list[Point | None]:
     if not ends:
         return []
     known = []
-    for strand, end in ends:
-        missing, last = strand.beyond[end], strand.held[end]
+    for trace, end in ends:
+        missing, last = trace.beyond[end], trace.intervals[end]
         assert missing is not None
-        step = min(1, len(strand.held) - 1)
-        further = strand.held[step if end == 0 else -1 - step]
+        step = min(1, len(trace.intervals) - 1)
+        further = trace.intervals[step if end == 0 else -1 - step]
         centre, run = (last.low + last.high) / 2, further.v - last.v
         slope = ((further.low + further.high) / 2 - centre) / run if run else 0.0
         left = max(missing.high[missing.high <= centre], default=region.box.u0)
@@ -127,7 +129,7 @@ def _tips(region: Region, ends: list[End]) -> list[Point | None]:
     return [(a, b) if ok else None for a, b, ok in zip(u.tolist(), v.tolist(), good.tolist(), strict=True)]
 
 
-def _confirmed(region: Region, search: Search, ends: list[End], found: list[Point | None]) -> list[Point | None]:
+def _confirmed(region: Region, search: Search, ends: list[WindowEnd], found: list[Point | None]) -> list[Point | None]:
     """Tips at which ρ is 1 to within its error, and above and below which rows differ by one interval.
 
     A ridge that leans more than its last rows tell may leave the stretch in which the tip is looked for: what is found
@@ -147,23 +149,23 @@ def _confirmed(region: Region, search: Search, ends: list[End], found: list[Poin
     return [tip if k in confirmed else None for k, tip in enumerate(found)]
 
 
-def _step_beyond(strand: Strand, end: int) -> float:
+def _step_beyond(trace: BoundaryTrace, end: int) -> float:
     """From the last row of a strand to the next row, in which it is missing."""
-    missing = strand.beyond[end]
+    missing = trace.beyond[end]
     assert missing is not None
-    return missing.v - strand.held[end].v
+    return missing.v - trace.intervals[end].v
 
 
-def _corners(region: Region, ends: list[End]) -> list[Array]:
+def _corners(region: Region, ends: list[WindowEnd]) -> list[Array]:
     """Where strands that leave through a side of the box cross it, beyond their last row; nothing for the others.
 
     As rows v, low, high and a point inside, all (4, points).
     """
-    sides = [(k, side) for k, (strand, end) in enumerate(ends) for side in (0, 1) if strand.held[end].clipped[side]]
+    sides = [(k, side) for k, (trace, end) in enumerate(ends) for side in (0, 1) if trace.intervals[end].clipped[side]]
     u = np.array([region.box.u1 if side else region.box.u0 for _, side in sides])
     leaving = [ends[k] for k, _ in sides]
-    inside = np.array([strand.held[end].v for strand, end in leaving])
-    missing = [strand.beyond[end] for strand, end in leaving]
+    inside = np.array([trace.intervals[end].v for trace, end in leaving])
+    missing = [trace.beyond[end] for trace, end in leaving]
     outside = np.array([row.v for row in missing if row is not None])
     exact = TIP * (region.box.v1 - region.box.v0)
     v = bracketed(lambda at, own: region.across(u[own], at), outside, inside, exact) if sides else inside
@@ -176,16 +178,18 @@ def _corners(region: Region, ends: list[End]) -> list[Array]:
     return found
 
 
-def _near_tips(region: Region, closed: dict[End, Point]) -> list[Array]:
+def _near_tips(region: Region, closed: dict[WindowEnd, Point]) -> list[Array]:
     """Edges between tips (u, v) and the rows next to them, where they can be bracketed; tip included.
 
     As rows v, low, high and a point inside, all (4, points).
     """
     if not closed:
         return []
-    beside = [strand.held[end] for strand, end in closed]
+    beside = [trace.intervals[end] for trace, end in closed]
     tip = np.repeat(np.array(list(closed.values())), len(NEAR_TIP), axis=0)
-    v, low, high = np.repeat(np.array([(held.v, held.low, held.high) for held in beside]), len(NEAR_TIP), axis=0).T
+    v, low, high = np.repeat(
+        np.array([(intervals.v, intervals.low, intervals.high) for intervals in beside]), len(NEAR_TIP), axis=0
+    ).T
     share = np.tile(NEAR_TIP, len(closed))
     at = tip[:, 1] + share * (v - tip[:, 1])
     middle = tip[:, 0] + share * ((low + high) / 2 - tip[:, 0])

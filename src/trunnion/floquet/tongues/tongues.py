@@ -20,15 +20,15 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.stability_chart import Task, chart_task
+from trunnion.floquet.tongues.boundary_traces import HALVINGS, BoundaryTrace, Search, joined
 from trunnion.floquet.tongues.from_resonances import followed, in_words
-from trunnion.floquet.tongues.joining import HALVINGS, Search, Strand, joined
 from trunnion.floquet.tongues.levels import levels_of, own_value
 from trunnion.floquet.tongues.naming import resonances
 from trunnion.floquet.tongues.region import FAINT, Region, patched
 from trunnion.floquet.tongues.result import Tongue, Tongues, Unknown
 from trunnion.floquet.tongues.ridges import ridge
-from trunnion.floquet.tongues.rows import Kind, Row, unstable_intervals
-from trunnion.floquet.tongues.shapes import Shape, lost, shapes
+from trunnion.floquet.tongues.rows import InstabilityKind, TongueRow, unstable_intervals
+from trunnion.floquet.tongues.shapes import ClosedTrace, lost, shapes
 from trunnion.modes.resonance_speeds import Resonance
 from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.words import Words
@@ -36,7 +36,7 @@ from trunnion.systems.family import PeriodicLinearFamily
 
 Range = Sequence[object]
 Progress = Callable[[float], None]
-Said = Callable[[str, list[Strand]], str]
+Said = Callable[[str, list[BoundaryTrace]], str]
 """How rows were searched, from how many there are and how far apart, and from the strands found."""
 
 ROWS = 65
@@ -77,14 +77,16 @@ def tongues(
     if isinstance(rows, bool) or not isinstance(rows, int | np.integer) or rows < 3:
         raise InputError("must be a whole number, 3 or more", key="rows", value=rows)
     task = task_of(line, x, y, speed, statically_twisted, "tongues")
-    workers, tell = threads or os.cpu_count() or 1, progress or (lambda share: None)
-    region = patched(task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: tell(0.3 * s))
+    workers, report_progress = threads or os.cpu_count() or 1, progress or (lambda share: None)
+    region = patched(
+        task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: report_progress(0.3 * s)
+    )
     own = own_value(task.family.assembly, task.y) if isinstance(task.family, LineFamily) else None
     levels = np.sort(task.family.to_patch(levels_of(task.y, int(rows), own), False))
     search, said = _search(region)
-    regions = regions_on(region, search, levels, lambda s: tell(0.3 + 0.6 * s))
+    regions = regions_on(region, search, levels, lambda s: report_progress(0.3 + 0.6 * s))
     found = described(task, region, search, regions, said)
-    tell(1.0)
+    report_progress(1.0)
     return found
 
 
@@ -92,45 +94,47 @@ def tongues(
 class Regions:
     """Regions as strands closed at their tips, and all ``rows`` that were searched for them."""
 
-    shaped: list[Shape]
-    rows: list[Row]
+    shaped: list[ClosedTrace]
+    rows: list[TongueRow]
 
 
-def regions_on(region: Region, search: Search, levels: Array, tell: Progress, known: Sequence[Row] = ()) -> Regions:
+def regions_on(
+    region: Region, search: Search, levels: Array, report_progress: Progress, known: Sequence[TongueRow] = ()
+) -> Regions:
     """Regions that meet the rows ``levels`` or those ``known``, with as many rows between as it takes to close them."""
-    strands, rows = joined(search, levels, lambda s: tell(0.9 * s), known)
-    shaped = shapes(region, search, strands)
+    traces, rows = joined(search, levels, lambda s: report_progress(0.9 * s), known)
+    shaped = shapes(region, search, traces)
     for _ in range(HALVINGS):
         if not len(open_ends := lost(shaped)):
             break
         between = np.unique([(end.last + end.beyond) / 2 for end in open_ends])
-        strands, rows = joined(search, between, lambda s: None, rows)
-        shaped = shapes(region, search, strands)
-    tell(1.0)
+        traces, rows = joined(search, between, lambda s: None, rows)
+        shaped = shapes(region, search, traces)
+    report_progress(1.0)
     return Regions(shaped, rows)
 
 
 def described(task: Task, region: Region, search: Search, regions: Regions, said: Said) -> Tongues:
     """The result: names, growth rates and what was searched."""
     shaped, searched = regions.shaped, regions.rows
-    places: dict[Strand | None, int] = {s.strand: k for k, s in enumerate(shaped)}
+    places: dict[BoundaryTrace | None, int] = {s.trace: k for k, s in enumerate(shaped)}
     growths, names = _growths(region, shaped), _names(region, shaped)
     find = _finder(region, search)
     found = [_tongue(task, region, find, s, g, n, places) for s, g, n in zip(shaped, growths, names, strict=True)]
     steps = np.diff([float(region.y(np.array(row.v))) for row in searched])
-    untold, open_ends = _unknown(region, searched), _open_ends(region, shaped)
+    undecided, open_ends = _unknown(region, searched), _open_ends(region, shaped)
     unit = speed_unit(task.line) if task.line else None
     across, up = (Words(unit).parameter(axis.label, axis.unit) for axis in (task.x, task.y))
     apart = float(np.abs(steps).max())
-    first = said(f"{len(searched)} rows, at most {up.number(apart, 3)} apart,", [shape.strand for shape in shaped])
+    first = said(f"{len(searched)} rows, at most {up.number(apart, 3)} apart,", [shape.trace for shape in shaped])
     return Tongues(
         tongues=_numbered(found), x_label=task.x.label, y_label=task.y.label, x_unit=task.x.unit, y_unit=task.y.unit,
         x_range=(float(task.x.values[0]), float(task.x.values[-1])),
         y_range=(float(task.y.values[0]), float(task.y.values[-1])), rate_unit="1/s" if task.line is not None else "1",
         rows=len(searched), row_step=apart,
-        complete=region.by_coefficients and not region.uncovered and not untold and not open_ends,
-        search=first + _faint_words(shaped) + _unknown_words(untold, across, up) + _open_words(open_ends, up),
-        unknown=tuple(sorted((*untold, *open_ends), key=lambda place: (place.y, place.x))), line=task.line,
+        complete=region.by_coefficients and not region.uncovered and not undecided and not open_ends,
+        search=first + _faint_words(shaped) + _unknown_words(undecided, across, up) + _open_words(open_ends, up),
+        unknown=tuple(sorted((*undecided, *open_ends), key=lambda place: (place.y, place.x))), line=task.line,
         remarks=task.remarks, find=find, unit=unit,
     )  # fmt: skip
 
@@ -164,7 +168,7 @@ def rows_in_words(region: Region, apart: str) -> str:
     return f"{apart} were searched completely; a region that lies wholly between two rows is not listed"
 
 
-def _unknown(region: Region, rows: list[Row]) -> tuple[Unknown, ...]:
+def _unknown(region: Region, rows: list[TongueRow]) -> tuple[Unknown, ...]:
     """Where rows could not be told, each with the rows next to it: what lies between is not known either."""
     found = []
     for k, row in enumerate(rows):
@@ -185,13 +189,13 @@ def _unknown_words(unknown: tuple[Unknown, ...], across: QuantityAxis, up: Quant
     )
 
 
-def _faint_words(shaped: list[Shape]) -> str:
+def _faint_words(shaped: list[ClosedTrace]) -> str:
     if not any(any(shape.fades) for shape in shaped):
         return ""
     return f"; without damping, what grows by less than {FAINT:g} a period cannot be told from what does not grow"
 
 
-def _open_ends(region: Region, shaped: list[Shape]) -> tuple[Unknown, ...]:
+def _open_ends(region: Region, shaped: list[ClosedTrace]) -> tuple[Unknown, ...]:
     """Ends of regions that were not found: between their last row and the next nothing is known."""
     found = []
     for end in lost(shaped):
@@ -216,12 +220,12 @@ def _search(region: Region) -> tuple[Search, Said]:
         if found is not None:
             return (
                 found.rows,
-                lambda apart, strands: f"{rows_in_words(region, apart)}; {in_words(found, [s.by for s in strands])}",
+                lambda apart, traces: f"{rows_in_words(region, apart)}; {in_words(found, [s.by for s in traces])}",
             )
         line = isinstance(region.family, LineFamily)
         why = "x is no speed" if line else "a family of your own has no straight line"
         alone = f"; resonances were not followed, as {why}"
-    return lambda v: unstable_intervals(region, v), lambda apart, strands: rows_in_words(region, apart) + alone
+    return lambda v: unstable_intervals(region, v), lambda apart, traces: rows_in_words(region, apart) + alone
 
 
 def _finder(region: Region, search: Search) -> Callable[[float], Array]:
@@ -233,7 +237,7 @@ def _finder(region: Region, search: Search) -> Callable[[float], Array]:
     return find
 
 
-def _growths(region: Region, shapes: list[Shape]) -> list[tuple[float, tuple[float, float]]]:
+def _growths(region: Region, shapes: list[ClosedTrace]) -> list[tuple[float, tuple[float, float]]]:
     """The largest growth rate on the rows of each tongue and where it is."""
     owner = np.concatenate([np.full(len(s.v), k) for k, s in enumerate(shapes)] or [np.zeros(0)])
     v, low, high = (
@@ -263,12 +267,12 @@ def _tongue(
     task: Task,
     region: Region,
     find: Callable[[float], Array],
-    shape: Shape,
+    shape: ClosedTrace,
     growth: tuple[float, tuple[float, float]],
     named: Resonance | None,
-    places: dict[Strand | None, int],
+    places: dict[BoundaryTrace | None, int],
 ) -> Tongue:
-    strand = shape.strand
+    trace = shape.trace
     y = _snapped(region.y(shape.v), task.y.values)
     ends = _snapped(np.sort(np.stack([region.x(shape.low), region.x(shape.high)]), axis=0), task.x.values)
     tip, top = (_point(region, t) for t in shape.tips)
@@ -277,14 +281,15 @@ def _tongue(
     if falling:
         tip, top = top, tip
     return Tongue(
-        number=places[strand], kind=str(Kind(strand.held[0].kind)), resonance=named, y=y[order], low=ends[0][order],
-        high=ends[1][order], tip=tip if tip is not None else top, top=top if tip is not None else None,
-        growth_rate=growth[0], growth_at=growth[1], joins=places.get(strand.into[1]), parts=places.get(strand.into[0]),
-        cut=_cut(task, region, strand), fades=_fades(shape, falling), find=find,
+        number=places[trace], kind=str(InstabilityKind(trace.intervals[0].kind)), resonance=named, y=y[order],
+        low=ends[0][order], high=ends[1][order], tip=tip if tip is not None else top,
+        top=top if tip is not None else None, growth_rate=growth[0],
+        growth_at=growth[1], joins=places.get(trace.into[1]), parts=places.get(trace.into[0]),
+        cut=_cut(task, region, trace), fades=_fades(shape, falling), find=find,
     )  # fmt: skip
 
 
-def _fades(shape: Shape, falling: bool) -> tuple[str, ...]:
+def _fades(shape: ClosedTrace, falling: bool) -> tuple[str, ...]:
     ends = shape.fades[::-1] if falling else shape.fades
     return tuple(name for name, fades in zip(("below", "above"), ends, strict=True) if fades)
 
@@ -300,24 +305,24 @@ def _point(region: Region, place: tuple[float, float] | None) -> tuple[float, fl
     return None if place is None else (float(region.x(np.array(place[0]))), float(region.y(np.array(place[1]))))
 
 
-def _cut(task: Task, region: Region, strand: Strand) -> tuple[str, ...]:
-    clipped = [any(held.clipped[side] for held in strand.held) for side in (0, 1)]
+def _cut(task: Task, region: Region, trace: BoundaryTrace) -> tuple[str, ...]:
+    clipped = [any(intervals.clipped[side] for intervals in trace.intervals) for side in (0, 1)]
     falling = float(region.x(np.array(region.box.u0))) > float(region.x(np.array(region.box.u1)))
     left, right = clipped[::-1] if falling else clipped
     sides = {
         f"low {task.x.label}": left, f"high {task.x.label}": right,
-        f"low {task.y.label}": strand.beyond[0] is None and strand.into[0] is None,
-        f"high {task.y.label}": strand.beyond[1] is None and strand.into[1] is None,
+        f"low {task.y.label}": trace.beyond[0] is None and trace.into[0] is None,
+        f"high {task.y.label}": trace.beyond[1] is None and trace.into[1] is None,
     }  # fmt: skip
     return tuple(name for name, is_cut in sides.items() if is_cut)
 
 
-def _names(region: Region, shapes: list[Shape]) -> list[Resonance | None]:
+def _names(region: Region, shapes: list[ClosedTrace]) -> list[Resonance | None]:
     """The resonance of each tongue, at its tip where it has one."""
     if not isinstance(region.family, LineFamily) or not shapes:
         return [None] * len(shapes)
-    begins = np.array([s.tips[0] or s.tips[1] or (s.strand.held[0].inside, s.strand.held[0].v) for s in shapes])
-    kinds = np.array([s.strand.held[0 if s.tips[0] or not s.tips[1] else -1].kind for s in shapes])
+    begins = np.array([s.tips[0] or s.tips[1] or (s.trace.intervals[0].inside, s.trace.intervals[0].v) for s in shapes])
+    kinds = np.array([s.trace.intervals[0 if s.tips[0] or not s.tips[1] else -1].kind for s in shapes])
     return resonances(region.family, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, region.threads)
 
 

@@ -19,13 +19,13 @@ from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.stability_chart import Task
 from trunnion.floquet.tongues.boundaries import MOST
-from trunnion.floquet.tongues.by_meetings import WORDS, AlongRows, rows_by_meetings, tops
+from trunnion.floquet.tongues.boundary_traces import Search
 from trunnion.floquet.tongues.columns import Column, ColumnSearch, complete_columns, sampled_columns
-from trunnion.floquet.tongues.joining import Search
 from trunnion.floquet.tongues.levels import levels_of, own_value
 from trunnion.floquet.tongues.region import Region, patched, unpatched
 from trunnion.floquet.tongues.result import Tongues
 from trunnion.floquet.tongues.rows import unstable_intervals
+from trunnion.floquet.tongues.rows_by_collisions import WORDS, RowFamily, rows_by_collisions, tops
 from trunnion.floquet.tongues.shapes import lost
 from trunnion.floquet.tongues.tongues import (
     PATCH_TOLERANCE,
@@ -57,7 +57,7 @@ UNNAMED, UNKNOWN = "a region that rows do not show", "no answer"
 
 
 @dataclass(frozen=True)
-class Seen:
+class SearchedColumn:
     """A column at the speed ``x`` [rad/s]; ``left_out``: from where to where, in y, it is unstable or unknown beyond
     the regions found, and which of the two."""
 
@@ -66,7 +66,7 @@ class Seen:
 
 
 @dataclass(frozen=True)
-class _Ways:
+class _SearchAxes:
     """How a box is searched along rows and along columns."""
 
     region: Region
@@ -75,7 +75,7 @@ class _Ways:
     words: Callable[[str, int], str]
 
 
-def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, list[Seen], str]:
+def searched(task: Task, rows: int | None, report_progress: Progress) -> tuple[Tongues, list[SearchedColumn], str]:
     """Regions over speed and a parameter of a line, the columns that confirm them, and what ended the search before it
     was done, as a clause: without columns nothing is confirmed.
 
@@ -89,15 +89,15 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
         rows = ROWS if _completely(task, family) else ROWS_OF_LONG_LINES
     values = levels_of(task.y, rows, own_value(family.assembly, task.y))
     levels = np.sort(family.to_patch(values, False))
-    ways = _ways(task, family, levels, lambda s: tell(0.3 * s))
+    ways = _ways(task, family, levels, lambda s: report_progress(0.3 * s))
     some = np.unique(np.append(levels[::AT_LEVELS], levels[-1]))
-    met = [AlongRows(family).met(float(y)) for y in ways.region.y(some)]
+    met = [RowFamily(family).met(float(y)) for y in ways.region.y(some)]
     # A sampled column costs far more than a row, and such rows look at every meeting themselves.
     resonances = np.concatenate(
         [speed for speed, _ in met[::AT_LEVELS] if ways.region.by_coefficients] or [np.zeros(0)]
     )
     levels = np.unique(np.concatenate([levels, tops(some, met)]))
-    regions = regions_on(ways.region, ways.rows, levels, lambda s: tell(0.3 + 0.3 * s))
+    regions = regions_on(ways.region, ways.rows, levels, lambda s: report_progress(0.3 + 0.3 * s))
     columns: list[Column] = []
     ended = ""
     try:
@@ -106,7 +106,7 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
                 columns += ways.columns(places)
             left_out = [part for column in columns for part in _left_out(ways.region, regions, column)]
             wanted = np.unique([(a + b) / 2 for a, b, _ in left_out])
-            tell(0.6 + 0.3 * (k + 1) / ROUNDS)
+            report_progress(0.6 + 0.3 * (k + 1) / ROUNDS)
             if not len(wanted):
                 break
             regions = regions_on(ways.region, ways.rows, wanted, lambda s: None, regions.rows)
@@ -114,9 +114,9 @@ def searched(task: Task, rows: int | None, tell: Progress) -> tuple[Tongues, lis
         ended = error.why
     words = ways.words
     with to_the_end():
-        found = described(task, ways.region, ways.rows, regions, lambda apart, strands: words(apart, len(columns)))
+        found = described(task, ways.region, ways.rows, regions, lambda apart, traces: words(apart, len(columns)))
         seen = [_seen(ways.region, regions, column) for column in columns]
-    tell(1.0)
+    report_progress(1.0)
     return found, seen, ended
 
 
@@ -127,17 +127,17 @@ def _completely(task: Task, family: LineFamily) -> bool:
     return 2 * family.size <= MOST and slowest >= QUICK_TURNS * lowest_speed(family.assembly)
 
 
-def _ways(task: Task, family: LineFamily, levels: Array, tell: Callable[[float], None]) -> _Ways:
+def _ways(task: Task, family: LineFamily, levels: Array, report_progress: Callable[[float], None]) -> _SearchAxes:
     threads = os.cpu_count() or 1
     if not _completely(task, family):
         region = unpatched(family, task.x.values, task.y.values, threads)
         finer = np.interp(np.arange(FINER * (len(levels) - 1) + 1) / FINER, np.arange(len(levels)), levels)
-        return _Ways(
-            region, rows_by_meetings(region, family), sampled_columns(region, finer),
+        return _SearchAxes(
+            region, rows_by_collisions(region, family), sampled_columns(region, finer),
             lambda apart, columns: f"{apart} {WORDS}; columns were sampled at {columns} speeds",
         )  # fmt: skip
-    region = patched(family, task.x.values, task.y.values, PATCH_TOLERANCE, threads, tell)
-    return _Ways(
+    region = patched(family, task.x.values, task.y.values, PATCH_TOLERANCE, threads, report_progress)
+    return _SearchAxes(
         region, partial(unstable_intervals, region), complete_columns(region),
         lambda apart, columns: _in_words(region, apart, columns),
     )  # fmt: skip
@@ -198,6 +198,6 @@ def _without(begin: float, end: float, covered: list[tuple[float, float]]) -> li
     return left
 
 
-def _seen(region: Region, regions: Regions, column: Column) -> Seen:
+def _seen(region: Region, regions: Regions, column: Column) -> SearchedColumn:
     parts = [(*sorted(region.y(np.array([a, b])).tolist()), name) for a, b, name in _left_out(region, regions, column)]
-    return Seen(float(region.x(np.array(column.u))), tuple(parts))
+    return SearchedColumn(float(region.x(np.array(column.u))), tuple(parts))

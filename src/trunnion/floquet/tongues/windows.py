@@ -22,7 +22,7 @@ from trunnion.errors import InputError
 from trunnion.floquet.tongues.levels import DAMPING
 from trunnion.floquet.tongues.result import Tongue, Tongues
 from trunnion.floquet.tongues.tongues import task_of
-from trunnion.floquet.tongues.window_search import UNKNOWN, Seen, searched
+from trunnion.floquet.tongues.window_search import UNKNOWN, SearchedColumn, searched
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, internal, labelled
 from trunnion.results.result import Result
@@ -35,7 +35,7 @@ COMPLETE = "whether rows and columns were searched for every zero and told every
 
 
 @dataclass(frozen=True)
-class End:
+class WindowEnd:
     """Where a window ends: the speed [rad/s] that turns unstable first, and the region it belongs to, or ``UNKNOWN``
     where it could not be told; None at the ends of the range asked for."""
 
@@ -52,7 +52,7 @@ class StableWindows(Result):
     parameter: str = attribute("what was searched")
     unit: str = internal("of the parameter")
     windows: Array = internal("rising ranges of the parameter in which every speed is stable", "{unit}", "window 2")
-    ends: tuple[tuple[End | None, End | None], ...] = internal("what begins beyond each end of each window")
+    ends: tuple[tuple[WindowEnd | None, WindowEnd | None], ...] = internal("what begins beyond each end of each window")
     speeds: tuple[float, float] = attribute("asked for", "rad/s")
     margin: float = attribute("share by which the speeds asked for were widened at either end")
     low: float = internal("end of the range searched")
@@ -118,7 +118,7 @@ class StableWindows(Result):
         yield from super().declared()
         yield Coordinate("window", np.arange(len(self.windows)), "window")
         for k, name in enumerate(("from", "to")):
-            ends = [pair[k] or End(float("nan"), "") for pair in self.ends]
+            ends = [pair[k] or WindowEnd(float("nan"), "") for pair in self.ends]
             yield Variable(name, self.windows[:, k], "window", self.unit, self.parameter)
             yield Variable(f"{name}_speed", np.array([end.speed for end in ends]), "window", "rad/s")
             yield Variable(f"{name}_region", [end.region for end in ends], "window")
@@ -236,15 +236,17 @@ def all_damping(assembly: Assembly) -> Parameter:
     return Parameter("factor of all damping", "1", tuple(terms))
 
 
-def _why(end: End | None, words: Words) -> str:
+def _why(end: WindowEnd | None, words: Words) -> str:
     return "" if end is None else f" (set by {end.region} at {words.speed(end.speed)})"
 
 
-def _free_of(found: Tongues, columns: list[Seen]) -> tuple[Array, tuple[tuple[End | None, End | None], ...]]:
+def _free_of(
+    found: Tongues, columns: list[SearchedColumn]
+) -> tuple[Array, tuple[tuple[WindowEnd | None, WindowEnd | None], ...]]:
     """What of the range no tongue and no unstable range of a column covers and is known, and what ends each part."""
     low, high = found.y_range
     windows: list[tuple[float, float]] = []
-    ends: list[tuple[End | None, End | None]] = []
+    ends: list[tuple[WindowEnd | None, WindowEnd | None]] = []
     at, below = low, None
     for begin, end, first, last in sorted([*_unfit(found), *_seen(columns)], key=lambda part: part[0]):
         if begin > at:
@@ -258,28 +260,28 @@ def _free_of(found: Tongues, columns: list[Seen]) -> tuple[Array, tuple[tuple[En
     return np.array(windows).reshape(-1, 2), tuple(ends)
 
 
-def _seen(columns: list[Seen]) -> Iterator[tuple[float, float, End, End]]:
+def _seen(columns: list[SearchedColumn]) -> Iterator[tuple[float, float, WindowEnd, WindowEnd]]:
     """Unstable and unknown ranges of columns that regions leave out."""
     for column in columns:
         for begin, end, name in column.left_out:
-            yield begin, end, End(column.x, name), End(column.x, name)
+            yield begin, end, WindowEnd(column.x, name), WindowEnd(column.x, name)
 
 
-def _unfit(found: Tongues) -> Iterator[tuple[float, float, End, End]]:
+def _unfit(found: Tongues) -> Iterator[tuple[float, float, WindowEnd, WindowEnd]]:
     """Ranges that a tongue covers or of which nothing is known, and what is at either end of each."""
     for tongue in found:
         yield float(tongue.y[0]), float(tongue.y[-1]), _end(tongue, 0), _end(tongue, -1)
     for place in found.unknown:
-        end = End(sum(place.x) / 2, UNKNOWN)
+        end = WindowEnd(sum(place.x) / 2, UNKNOWN)
         yield *place.between, end, end
     for tongue in found:
         # Without damping a region goes on, however little it grows.
         for side, at in (("below", 0), ("above", -1)):
             if side in tongue.fades:
-                end = End(_end(tongue, at).speed, UNKNOWN)
+                end = WindowEnd(_end(tongue, at).speed, UNKNOWN)
                 low, high = sorted((found.y_range[at], float(tongue.y[at])))
                 yield low, high, end, end
 
 
-def _end(tongue: Tongue, place: int) -> End:
-    return End(float(tongue.low[place] + tongue.high[place]) / 2, tongue.name)
+def _end(tongue: Tongue, place: int) -> WindowEnd:
+    return WindowEnd(float(tongue.low[place] + tongue.high[place]) / 2, tongue.name)

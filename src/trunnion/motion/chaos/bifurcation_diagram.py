@@ -18,7 +18,7 @@ from trunnion.errors import InputError
 from trunnion.motion.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, about, axis, over
+from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import axis_of_parameter
@@ -48,14 +48,16 @@ class BifurcationDiagram(Result):
     tolerance: float
     outcome: Outcome
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Every state over (direction, value, point), and after how many points the motion repeats."""
-        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
-        yield axis("direction", self.directions)
+        yield data_coordinate(
+            "value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter
+        )
+        yield data_coordinate("direction", self.directions)
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield over("direction value point", name, self.points[..., i], unit)
-        yield over("direction value", "repeat", self.repeat)
-        yield over("direction value", "settling", self.settling)
+            yield data_variable("direction value point", name, self.points[..., i], unit)
+        yield data_variable("direction value", "repeat", self.repeat)
+        yield data_variable("direction value", "settling", self.settling)
         remarks = {"section": self.section, "transient": self.transient, "tolerance": self.tolerance}
         yield from about(self.system, self.outcome, **remarks)
 
@@ -138,7 +140,7 @@ def bifurcation_diagram(
     needed = 8.0 * len(directions) * len(chosen) * points * system.size
     require_memory(needed, key="points", value=points, remedy="ask for fewer values, or fewer points of each")
     first = first_starts(system, start, 1)[0]
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
     found = np.full((len(directions), len(chosen), points, system.size), np.nan)
     repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
     settling = np.zeros(repeat.shape, dtype=bool)
@@ -150,7 +152,7 @@ def bifurcation_diagram(
         for done, i in enumerate(order):
             here = system.with_parameters({parameter: float(chosen[i])})
             mapped = poincare_map(here, points, section=section, start=state, transient=transient, tolerance=tolerance)
-            tell((d + (done + 1) / len(chosen)) / len(directions))
+            report_progress((d + (done + 1) / len(chosen)) / len(directions))
             if not mapped.outcome.ok:
                 told.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
                 state = first

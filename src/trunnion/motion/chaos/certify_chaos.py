@@ -49,8 +49,8 @@ from trunnion.motion.chaos.chaos_zero_one import ZeroOne, zero_one_test
 from trunnion.motion.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.motion.chaos.lyapunov_spectrum import FEWEST, FIRST, LyapunovSpectrum, lyapunov_spectrum, shear_bound
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
-from trunnion.numerics.integration.integration import End
-from trunnion.results.declared import Held, Result, remark, remarks
+from trunnion.numerics.integration.integration import IntegrationEnd
+from trunnion.results.declared import DatasetItem, Result, data_attribute, data_attributes
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.steady.shooting.repetition import modulo
@@ -152,7 +152,7 @@ def _divergences(system: System, spectrum: LyapunovSpectrum) -> tuple[float, flo
     return float(traces.min()), float(traces.max()), rounding
 
 
-class Verdict(StrEnum):
+class ChaosVerdict(StrEnum):
     """What a motion is."""
 
     REGULAR = "regular"
@@ -167,7 +167,7 @@ class Witness:
 
     map: PoincareMap | None
     test: ZeroOne | None
-    verdict: Verdict
+    verdict: ChaosVerdict
     kind: str
     reasons: tuple[str, ...]
 
@@ -183,7 +183,7 @@ class ChaosCertificate(Result):
     """
 
     system: System
-    verdict: Verdict
+    verdict: ChaosVerdict
     kind: str
     repeat: int
     period: float
@@ -194,10 +194,10 @@ class ChaosCertificate(Result):
     zero_one: ZeroOne | None
     sweep: LyapunovSweep | None
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """The exponents, with the verdict and its reasons."""
         yield from self.spectrum.declared()
-        yield from remarks(
+        yield from data_attributes(
             verdict=str(self.verdict),
             kind=self.kind,
             repeat=self.repeat,
@@ -205,9 +205,9 @@ class ChaosCertificate(Result):
             criteria="\n".join(map(str, self.criteria)),
         )
         if self.zero_one is not None:
-            yield remark("zero_one_test", self.zero_one.k)
+            yield data_attribute("zero_one_test", self.zero_one.k)
         if np.isfinite(self.period):
-            yield remark("period", self.period)
+            yield data_attribute("period", self.period)
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
@@ -280,13 +280,13 @@ def certify_chaos(
     """
     system = as_system(subject, speed)
     request = _sweep_request(system, sweep)
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
     last = SPECTRUM_SHARE if request is not None else 1.0
     spectrum = lyapunov_spectrum(
         system, periods, duration=duration, start=start, starts=starts, transient=transient, tolerance=tolerance,
-        progress=lambda share: tell(last * share),
+        progress=lambda share: report_progress(last * share),
     )  # fmt: skip
-    tell(last)
+    report_progress(last)
     states = np.concatenate([run.states[-8:] for run in spectrum.runs])
     running = clocks(system, states) if len(states) and np.all(np.isfinite(states)) else {}
     ended = time_is_up()
@@ -296,7 +296,7 @@ def certify_chaos(
     verdict, kind, reasons = first.verdict, first.kind, first.reasons
     if not same:
         told = "; ".join(f"start {i} {w.kind or w.verdict}" for i, w in enumerate(witnesses, start=1))
-        verdict, kind = Verdict.UNDECIDED, ""
+        verdict, kind = ChaosVerdict.UNDECIDED, ""
         each = (f"start {i}: {reason}" for i, w in enumerate(witnesses, start=1) for reason in w.reasons)
         reasons = (f"the starts do not agree ({told}): certify each with starts=1, or over a longer time", *each)
     elif not spectrum.agree:
@@ -306,14 +306,14 @@ def certify_chaos(
     if spectrum.samples >= 2:
         judged = criteria(
             system, spectrum, clock=bool(running), at_rest=any(w.kind in ("at rest", UNSTABLE) for w in witnesses),
-            bounded=all(w.verdict is not Verdict.UNBOUNDED for w in witnesses),
+            bounded=all(w.verdict is not ChaosVerdict.UNBOUNDED for w in witnesses),
         )  # fmt: skip
     swept = None
-    if request is not None and verdict is not Verdict.UNBOUNDED:
+    if request is not None and verdict is not ChaosVerdict.UNBOUNDED:
         try:
             swept = lyapunov_sweep(
                 system, request[0], request[1:], periods=SWEEP_PERIODS, start=first_starts(system, start, 1)[0],
-                tolerance=max(tolerance, 1e-9), progress=lambda share: tell(last + (1 - last) * share),
+                tolerance=max(tolerance, 1e-9), progress=lambda share: report_progress(last + (1 - last) * share),
             )  # fmt: skip
         except OutOfTime as error:
             reasons = (*reasons, f"no exponents over {request[0]}: {error.why}")
@@ -346,7 +346,7 @@ def _in_time(
     try:
         return _witness(system, spectrum, i, section, points, running)
     except OutOfTime as error:
-        return Witness(None, None, Verdict.UNDECIDED, "", (f"no map: {error.why}",))
+        return Witness(None, None, ChaosVerdict.UNDECIDED, "", (f"no map: {error.why}",))
 
 
 def _witness(
@@ -355,14 +355,14 @@ def _witness(
     run, interval = spectrum.runs[i], spectrum.interval
     ending = spectrum.outcome.kind
     # Another start's end is not this one's.
-    stopped = run.end is not End.REACHED
+    stopped = run.end is not IntegrationEnd.REACHED
     if stopped and ending in ("blow-up", "not finite", "step too small"):
         reason = f"the motion cannot be followed for ever: {spectrum.outcome}"
-        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+        return Witness(None, None, ChaosVerdict.UNBOUNDED, "", (reason,))
     if stopped:
-        return Witness(None, None, Verdict.UNDECIDED, "", (str(spectrum.outcome),))
+        return Witness(None, None, ChaosVerdict.UNDECIDED, "", (str(spectrum.outcome),))
     if len(run.growth) < FEWEST:
-        return Witness(None, None, Verdict.UNDECIDED, "", (_too_short(spectrum, i),))
+        return Witness(None, None, ChaosVerdict.UNDECIDED, "", (_too_short(spectrum, i),))
     size, turning = motion_size(system, run.states[-1], interval, spectrum.tolerance), turns(system, run.states)
     whole = modulo(run.states, turning, np.asarray(system.scale))
     scale = np.asarray(system.scale) + np.abs(whole[-64:]).max(axis=0)
@@ -375,17 +375,17 @@ def _witness(
     rests = not forced and not running and bool(np.all(size <= AT_REST * scale))
     if rests and exponent < 0:
         return Witness(
-            None, None, Verdict.REGULAR, "at rest",
+            None, None, ChaosVerdict.REGULAR, "at rest",
             (f"the motion has come to rest; disturbances die out at {-exponent:.4g} 1/s",),
         )  # fmt: skip
     if rests and exponent > width:
         return Witness(
-            None, None, Verdict.UNDECIDED, UNSTABLE,
+            None, None, ChaosVerdict.UNDECIDED, UNSTABLE,
             (f"the motion is {UNSTABLE}: disturbances grow at {exponent:.4g} 1/s; start beside it",),
         )  # fmt: skip
     mapped = _map(system, spectrum, i, section, points, running, turning, size)
     if not mapped.outcome.ok:
-        return Witness(mapped, None, Verdict.UNDECIDED, "", (f"no map: {mapped.outcome}",))
+        return Witness(mapped, None, ChaosVerdict.UNDECIDED, "", (f"no map: {mapped.outcome}",))
     test = _test(system, mapped, still, turning)
     return _judge(spectrum, i, mapped, test, exponent, width)
 
@@ -400,18 +400,18 @@ def _judge(
     if mapped.repeat and not parts:
         times = "point" if mapped.repeat == 1 else "points"
         return Witness(
-            mapped, test, Verdict.REGULAR, "periodic", (f"{told}; the map repeats after {mapped.repeat} {times}",)
+            mapped, test, ChaosVerdict.REGULAR, "periodic", (f"{told}; the map repeats after {mapped.repeat} {times}",)
         )
     if mapped.settling and not parts:
         longer = spectrum.transient + 4 * len(spectrum.runs[i].growth)
         reason = f"the map is {mapped.repetition} to {longer} periods or more"
-        return Witness(mapped, test, Verdict.UNDECIDED, "", (told, reason))
+        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (told, reason))
     if test is None:
         reason = f"{len(mapped.points)} points are too few for the 0–1 test; give {FEWEST_FOR_TEST} periods or more"
-        return Witness(mapped, test, Verdict.UNDECIDED, "", (told, reason))
+        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (told, reason))
     if parts and test.says == "chaotic":
         return Witness(
-            mapped, test, Verdict.CHAOTIC, "",
+            mapped, test, ChaosVerdict.CHAOTIC, "",
             (f"{told}: neighbours part exponentially, by e in {1 / exponent:.4g} s; the 0–1 test agrees",),
         )  # fmt: skip
     if not parts and test.says == "regular":
@@ -419,25 +419,25 @@ def _judge(
         if settling:
             longer = int(np.ceil(10 / (-exponent * spectrum.interval)))
             return Witness(
-                mapped, test, Verdict.UNDECIDED, "",
+                mapped, test, ChaosVerdict.UNDECIDED, "",
                 (f"{told}: it settles on a periodic motion and has not yet; raise transient by {longer} periods",),
             )  # fmt: skip
         damping = -spectrum.divergence
         if damping * spectrum.interval > UNDAMPED and width > VAGUE * damping:
             return Witness(
-                mapped, test, Verdict.UNDECIDED, "",
+                mapped, test, ChaosVerdict.UNDECIDED, "",
                 (
                     f"{told}: no exponent is known by that beside a damping of {damping:.4g} 1/s; "
                     f"average over {4 * len(spectrum.runs[i].growth)} periods or more",
                 ),
             )  # fmt: skip
         return Witness(
-            mapped, test, Verdict.REGULAR, "quasi-periodic",
+            mapped, test, ChaosVerdict.REGULAR, "quasi-periodic",
             (f"{told}: neighbours do not part; the map does not repeat, and the 0–1 test finds no diffusion",),
         )  # fmt: skip
     more = 4 * len(spectrum.runs[i].growth)
     return Witness(
-        mapped, test, Verdict.UNDECIDED, "",
+        mapped, test, ChaosVerdict.UNDECIDED, "",
         (
             f"{told} and the 0–1 test ({test.k:.2f}, {test.says}) do not agree: a long transient or weak chaos; "
             f"average over {more} periods or more",
@@ -481,13 +481,13 @@ def _growing(system: System, states: Array, running: dict[int, float], turning: 
     rates = np.array([[_largest_rates(system, x) for x in block] for block in few]).max(axis=1)
     if _rising(rates, np.zeros(system.size)).any():
         reason = "the largest state rises from block to block of the run and does not stop"
-        return Witness(None, None, Verdict.UNBOUNDED, "", (reason,))
+        return Witness(None, None, ChaosVerdict.UNBOUNDED, "", (reason,))
     names = ", ".join(system.states[free[k]] for k in np.flatnonzero(which))
     reason = (
         f"{names} runs on while no rate grows, and nothing was found that repeats in it: if it is an angle, count it "
         "in radians"
     )
-    return Witness(None, None, Verdict.UNDECIDED, "", (reason,))
+    return Witness(None, None, ChaosVerdict.UNDECIDED, "", (reason,))
 
 
 def _rising(largest: Array, least: Array) -> Flags:

@@ -46,7 +46,7 @@ def as_system(subject: System | Driveline, speed: float | str | None = None) -> 
 
     Raises
     ------
-    InputError : neither, a speed given for a system, or a line that starts free: it has no period to strobe at,
+    InputError : neither, a speed given for a system, or a free–free line: it has no period to strobe at,
         and its rotation is not bounded.
     """
     if isinstance(subject, System):
@@ -65,7 +65,7 @@ def as_system(subject: System | Driveline, speed: float | str | None = None) -> 
         refuse_dragged(prepared.assembly)
         if prepared.assembly.topology.free:
             raise InputError(
-                "starts free: its speed follows from its torques and is not periodic in time", element="driveline",
+                "is free–free: its speed follows from its torques and is not periodic in time", element="driveline",
                 remedy="put a ConstantSpeed in front, or simulate it",
             )  # fmt: skip
         return prepared.system

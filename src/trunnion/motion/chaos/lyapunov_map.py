@@ -24,9 +24,9 @@ from trunnion.motion.chaos.chaos_subject import (
 )
 from trunnion.motion.chaos.lyapunov_spectrum import shear_bound
 from trunnion.numerics.averages import average
-from trunnion.numerics.integration.integration import End
+from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, about, axis, fields_over, over
+from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable, data_variables
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import axis_of_parameter
@@ -55,12 +55,14 @@ class LyapunovSweep(Result):
         """Where (values,) the largest exponent is above 0 by more than its interval."""
         return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Exponents [1/s] and their half-widths over (value, order)."""
-        yield axis("value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter)
-        yield axis("order", np.arange(1, self.exponents.shape[1] + 1))
-        yield over("value order", "exponent", self.exponents, "1/s")
-        yield over("value order", "half_width", self.half_width, "1/s")
+        yield data_coordinate(
+            "value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter
+        )
+        yield data_coordinate("order", np.arange(1, self.exponents.shape[1] + 1))
+        yield data_variable("value order", "exponent", self.exponents, "1/s")
+        yield data_variable("value order", "half_width", self.half_width, "1/s")
         effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
         yield from about(self.system, self.outcome, **effort)
 
@@ -105,11 +107,11 @@ class LyapunovMap(Result):
         """Where (y, x) the exponent is above 0 by more than its interval."""
         return np.asarray(self.exponent - self.half_width > 0)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Largest exponent [1/s] and its half-width over (y, x)."""
         for name, values, parameter in zip("xy", (self.x, self.y), self.parameters, strict=True):
-            yield axis(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
-        yield from fields_over("y x", self, exponent="1/s", half_width="1/s")
+            yield data_coordinate(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
+        yield from data_variables("y x", self, exponent="1/s", half_width="1/s")
         effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
         yield from about(self.system, self.outcome, **effort)
 
@@ -258,16 +260,16 @@ def _all(
     state = first_starts(system, start, 1)[0]
     mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
     told: list[str] = []
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
 
     def one(place: int) -> None:
         here = system.with_parameters(points[place])
         length = interval or here.forcing_period or usual_time(here, state, tolerance)
         motion = TimedMap.over(here, length, tolerance=tolerance).motion(state, tilted_frame(system, count))
         found = motion.run(transient)
-        if found.end is End.REACHED:
+        if found.end is IntegrationEnd.REACHED:
             found = motion.run(periods)
-        if found.end is not End.REACHED:
+        if found.end is not IntegrationEnd.REACHED:
             told.append(str(points[place]))
             return
         result, bound = average(found.growth / length), shear_bound(periods, length)
@@ -280,7 +282,7 @@ def _all(
         try:
             for done, each in enumerate(waiting, start=1):
                 each.result()
-                tell(done / len(points))
+                report_progress(done / len(points))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
     return mean, width, told

@@ -36,9 +36,9 @@ from trunnion.motion.chaos.chaos_subject import (
     whole_number,
 )
 from trunnion.numerics.averages import BATCHES, CONFIDENCE, average, batch_means, pooled
-from trunnion.numerics.integration.integration import End
+from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.integration.tangents import Motion, Samples
-from trunnion.results.declared import Held, Result, about, axis, over
+from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.maps import TimedMap
@@ -86,7 +86,7 @@ class Run:
     growth: Array
     divergence: Array
     states: Array
-    end: End
+    end: IntegrationEnd
     wanted: int
 
 
@@ -179,18 +179,18 @@ class LyapunovSpectrum(Result):
         ]
         return places * self.interval, np.array(means)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Exponents [1/s] with half-widths, of each start too, their running means over time, and the sum rule."""
         time, history = self.histories
-        yield axis("order", np.arange(1, len(self.exponents) + 1))
-        yield axis("time", time, "s")
-        yield axis("state", self.system.states)
-        yield over("order", "exponent", self.exponents, "1/s")
-        yield over("order", "half_width", self.half_width, "1/s")
-        yield over("start order", "exponent_of_start", self.by_start, "1/s")
-        yield over("start order", "half_width_of_start", self.by_start_half_width, "1/s")
-        yield over("start time order", "running_mean", history, "1/s")
-        yield over("start state", "start_state", self.starts)
+        yield data_coordinate("order", np.arange(1, len(self.exponents) + 1))
+        yield data_coordinate("time", time, "s")
+        yield data_coordinate("state", self.system.states)
+        yield data_variable("order", "exponent", self.exponents, "1/s")
+        yield data_variable("order", "half_width", self.half_width, "1/s")
+        yield data_variable("start order", "exponent_of_start", self.by_start, "1/s")
+        yield data_variable("start order", "half_width_of_start", self.by_start_half_width, "1/s")
+        yield data_variable("start time order", "running_mean", history, "1/s")
+        yield data_variable("start state", "start_state", self.starts)
         rule = {} if np.isnan(self.divergence) else {"divergence": self.divergence, "sum_error": self.sum_error}
         yield from about(
             self.system, self.outcome, sum=self.sum, **rule, confidence=CONFIDENCE, interval=self.interval,
@@ -279,12 +279,12 @@ def lyapunov_spectrum(
     asked, interval = _effort(system, states[0], periods, duration, tolerance)
     motions = [_motion(system, x, count, interval, tolerance) for x in states]
     traced = count == system.size and system.divergence is None
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
 
     with ThreadPoolExecutor(len(motions) if system.compiled else 1) as pool:
         waiting = [pool.submit(copy_context().run, motion.run, skipped) for motion in motions]
         early = [one.result() for one in waiting]
-        if any(e.end is not End.REACHED for e in early):
+        if any(e.end is not IntegrationEnd.REACHED for e in early):
             # What does not outlive its transient is measured from the start.
             skipped, motions = 0, [_motion(system, x, count, interval, tolerance) for x in states]
             early = [m.run(0) for m in motions]
@@ -296,8 +296,8 @@ def lyapunov_spectrum(
                 if ended := time_is_up():
                     break
                 runs = list(pool.map(_carry_on, motions, runs, repeat(part), repeat(traced)))
-                tell(runs[0].wanted / (asked or LAST))
-            whole = all(r.end is End.REACHED for r in runs)
+                report_progress(runs[0].wanted / (asked or LAST))
+            whole = all(r.end is IntegrationEnd.REACHED for r in runs)
             late = 0 if asked or ended or not whole else total // LEFT_OUT
             result = _result(
                 system, states, [_later(r, late) for r in runs], interval, skipped + late, tolerance, count
@@ -356,7 +356,7 @@ def _begun(early: Samples, count: int) -> Run:
 
 
 def _carry_on(motion: Motion, run: Run, samples: int, traced: bool) -> Run:
-    if run.end is not End.REACHED:
+    if run.end is not IntegrationEnd.REACHED:
         return run
     more = motion.run(samples, traced=traced)
     return Run(
@@ -456,7 +456,7 @@ def _more(result: LyapunovSpectrum, precision: float) -> float:
 def _outcome(
     system: System, motions: list[Motion], result: LyapunovSpectrum, runs: list[Run], precision: float | None
 ) -> Outcome:
-    failed = next((i for i, r in enumerate(runs) if r.end is not End.REACHED), None)
+    failed = next((i for i, r in enumerate(runs) if r.end is not IntegrationEnd.REACHED), None)
     if failed is not None:
         return failure(
             system,

@@ -26,9 +26,9 @@ from trunnion.motion.chaos.chaos_subject import (
     usual_time,
     whole_number,
 )
-from trunnion.numerics.integration.integration import End
+from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, about, over
+from trunnion.results.declared import DatasetItem, Result, about, data_variable
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
@@ -82,11 +82,11 @@ class PoincareMap(Result):
         """The points modulo their turns; angles lie between −π and π."""
         return modulo(self.points, self.turns, np.asarray(self.system.scale))
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Every state and the time over the points."""
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield over("point", name, self.points[:, i], unit)
-        yield over("point", "time", self.time, "s")
+            yield data_variable("point", name, self.points[:, i], unit)
+        yield data_variable("point", "time", self.time, "s")
         yield from about(
             self.system, self.outcome, section=self.section, repeat=self.repeat, settling=int(self.settling),
             transient=self.transient, tolerance=self.tolerance,
@@ -176,11 +176,11 @@ def poincare_map(
     over_interval = TimedMap.over(system, interval, phase=phase, tolerance=tolerance)
     motion = over_interval.motion(state, np.empty((0, system.size)))
     early = motion.run(transient)
-    found = motion.run(points) if early.end is End.REACHED else early
-    settled = found.states if early.end is End.REACHED else found.states[:0]
+    found = motion.run(points) if early.end is IntegrationEnd.REACHED else early
+    settled = found.states if early.end is IntegrationEnd.REACHED else found.states[:0]
     words = f"every {interval:.6g} s" if every is not None else f"every forcing period of {interval:.6g} s"
     outcome = Outcome(True, "reached", f"{len(settled)} points after {transient} left out")
-    if found.end is not End.REACHED:
+    if found.end is not IntegrationEnd.REACHED:
         outcome = failure(
             system, motion, 2 * interval, f"after {early.finished + len(settled)} points, time counted from there: "
         )
@@ -197,7 +197,7 @@ def _sectioned(
     met = cut.crossings(state, points + transient)
     found, at, have = met.points[transient:], met.time[transient:], len(met.points)
     outcome = Outcome(True, "reached", f"{points} points after {transient} left out")
-    if met.run.end is not End.REACHED:
+    if met.run.end is not IntegrationEnd.REACHED:
         guards = (*(system.regimes.guards if system.regimes else ()), section.label)
         outcome = outcome_of(system, met.run, tolerance, guards)
     elif have < points + transient:

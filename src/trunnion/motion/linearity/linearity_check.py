@@ -31,7 +31,15 @@ from trunnion.numerics.curves import extremes, fourier
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.response.speed_sweep import sweep_speeds
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Result,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.speeds import show_acceleration, show_speed
@@ -71,12 +79,12 @@ class LinearShaft:
 
 
 @dataclass(frozen=True)
-class Passage:
+class ResonancePassage:
     """A run from speed ``low`` to ``high`` [rad/s] at ``acceleration`` [rad/s²].
 
     vibration (spring,) [N m]: largest distance of the torque from the quasi-static one, at ``vibration_speed``
     [rad/s]; linear (spring,) [N m]: largest linear vibratory torque in that range, at ``linear_speed`` [rad/s]; ending:
-    how a line that starts free came through, None where the speed is prescribed.
+    how a free–free line came through, None where the speed is prescribed.
     """
 
     springs: tuple[str, ...]
@@ -113,7 +121,7 @@ class LinearityCheck(Result):
     nonlinear_torque: Complex
     stand_ins: tuple[LinearShaft, ...]
     allowed: float
-    passage: Passage | None
+    passage: ResonancePassage | None
 
     @property
     def springs(self) -> tuple[str, ...]:
@@ -190,21 +198,21 @@ class LinearityCheck(Result):
         said = self.linear.remarks if self.linear is not None else ()
         return by_gravity([*_findings(self, unit), *said])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Both responses by order and spring, their difference, and their sums over the cycle."""
-        yield axis("order", self.order, "1", "cycles per turn of the input")
-        yield axis("spring", self.springs)
-        yield axis("response", ("linear", "nonlinear"))
-        yield from fields_over("order spring", self, linear_torque="N*m", nonlinear_torque="N*m", difference="N*m")
-        yield over("spring", "relative_difference", self.relative_difference, "1")
-        yield from fields_over("response spring", self, peak_torque="N*m", vibratory_torque="N*m")
-        yield from fields_over("", self, departure="1", speed="rad/s")
+        yield data_coordinate("order", self.order, "1", "cycles per turn of the input")
+        yield data_coordinate("spring", self.springs)
+        yield data_coordinate("response", ("linear", "nonlinear"))
+        yield from data_variables("order spring", self, linear_torque="N*m", nonlinear_torque="N*m", difference="N*m")
+        yield data_variable("spring", "relative_difference", self.relative_difference, "1")
+        yield from data_variables("response spring", self, peak_torque="N*m", vibratory_torque="N*m")
+        yield from data_variables("", self, departure="1", speed="rad/s")
         if self.passage is not None:
-            yield over("spring", "passing_vibration", self.passage.vibration, "N*m")
-            yield over("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
-            yield over("spring", "passing_linear", self.passage.linear, "N*m")
-            yield from remarks(passing_outcome=self.passage.kind)
-        yield from remarks(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
+            yield data_variable("spring", "passing_vibration", self.passage.vibration, "N*m")
+            yield data_variable("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
+            yield data_variable("spring", "passing_linear", self.passage.linear, "N*m")
+            yield from data_attributes(passing_outcome=self.passage.kind)
+        yield from data_attributes(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
         yield from ending(self.nonlinear.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str | None = None, unit: str | None = None) -> Axes:
@@ -336,7 +344,7 @@ def _sentence(result: LinearityCheck, at: str) -> Finding:
     )
 
 
-def _passing(passage: Passage, unit: str) -> Finding:
+def _passing(passage: ResonancePassage, unit: str) -> Finding:
     share = np.where(passage.linear > 0, passage.vibration / np.where(passage.linear > 0, passage.linear, 1.0), 0.0)
     s, rate = int(np.argmax(passage.vibration)), show_acceleration(passage.acceleration, unit)
     way = f"from {show_speed(passage.low, unit)} to {show_speed(passage.high, unit)}"
@@ -468,14 +476,14 @@ def _without_friction(line: Driveline, stand_ins: tuple[LinearShaft, ...]) -> Dr
     return line.model_copy(update={"elements": tuple(elements)})
 
 
-def _passed(line: Driveline, linear_line: Driveline, speed: float, acceleration: float) -> Passage:
+def _passed(line: Driveline, linear_line: Driveline, speed: float, acceleration: float) -> ResonancePassage:
     """A run through the speed, and the largest linear response on its way."""
     low, high = speed * (1 - WIDTH), speed * (1 + WIDTH)
     run = run_up(line, low, high, acceleration=acceleration, steady=0)
     run.outcome.require()
     speeds = sweep_speeds(linear_line, low, high, PASSED)
     steady = order_response(linear_line, speeds).vibratory_torque
-    return Passage(
+    return ResonancePassage(
         run.shafts, low, high, run.acceleration, run.peak_vibration, run.vibration_speed,
         np.nanmax(steady, axis=0), speeds[np.nanargmax(steady, axis=0)], run.ending,
     )  # fmt: skip

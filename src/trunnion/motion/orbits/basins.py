@@ -12,7 +12,7 @@ from trunnion.arrays import Array, Integers
 from trunnion.motion.orbits.exact_map import OscillatorMap
 from trunnion.motion.orbits.exact_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Held, Result, axis, over
+from trunnion.results.declared import DatasetItem, Result, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -38,15 +38,17 @@ class Basins(Result):
         """Share of the starts that each attractor draws (attractors,)."""
         return np.array([np.mean(self.number == i) for i in range(len(self.attractors))])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """The number of the attractor over the starts, and what each attractor does."""
-        yield axis("position", self.position)
-        yield axis("velocity", self.velocity)
-        yield over("position velocity", "attractor", self.number, about="number of the attractor, -1 for none")
-        yield over("attractor_number", "share", self.shares, "1")
+        yield data_coordinate("position", self.position)
+        yield data_coordinate("velocity", self.velocity)
+        yield data_variable("position velocity", "attractor", self.number, about="number of the attractor, -1 for none")
+        yield data_variable("attractor_number", "share", self.shares, "1")
         for name in ("peak_to_peak", "mean"):
-            yield over("attractor_number", name, np.array([getattr(orbit, name) for orbit in self.attractors]))
-        yield over("attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str))
+            yield data_variable("attractor_number", name, np.array([getattr(orbit, name) for orbit in self.attractors]))
+        yield data_variable(
+            "attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str)
+        )
 
     def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
         """Map of the starts; see ``pictures.frequency_response``."""

@@ -19,10 +19,10 @@ from typing import Any, Protocol, TypeVar
 import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
-from trunnion.numerics.continuation.arclength import Curve, CurvePoint, Ending, follow, locate
+from trunnion.numerics.continuation.arclength import CurvePoint, Ending, SolutionCurve, follow, locate
 from trunnion.numerics.continuation.newton import solve
-from trunnion.numerics.curves import at_place, meetings
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over
+from trunnion.numerics.curves import at_place, places_at
+from trunnion.results.declared import DatasetItem, Result, data_coordinate, data_variable, data_variables, ending
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.parameter_names import Names
@@ -44,7 +44,7 @@ BOUNDLESS = 30.0
 """Growth of the motion over the branch from which, while the parameter hardly moves, it is said to have no bound."""
 
 
-class Problem(Protocol):
+class BranchProblem(Protocol):
     """What is followed: equations of a curve z = (unknowns, parameter), and what its points tell."""
 
     @property
@@ -101,7 +101,7 @@ class SpecialPoint:
 class PeriodicBranch(Result):
     """Periodic motions along a branch.
 
-    parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a line which starts free
+    parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a free–free line
     sets aside; verdict (points,) codes; peak_to_peak (points, curves): of the shaft torques [N m] of a line, or of the
     states of a system, named by ``curves``; largest: their largest absolute values; amplitude (points, n): of the
     fundamental of every state; special: folds and other special points in order; outcome: where the branch ended and
@@ -122,7 +122,7 @@ class PeriodicBranch(Result):
     curve_unit: str
     special: tuple[SpecialPoint, ...]
     outcome: Outcome
-    problem: Problem = field(repr=False)
+    problem: BranchProblem = field(repr=False)
     unknowns: Array = field(repr=False)
 
     @property
@@ -148,19 +148,19 @@ class PeriodicBranch(Result):
         return [(self.problem.observed(point)[0], verdict) for point, verdict in self._points_at(value)]
 
     def _points_at(self, value: float) -> list[tuple[CurvePoint, Verdict]]:
-        guesses = [at_place(self.unknowns, place) for place in meetings(self.parameter, value)]
+        guesses = [at_place(self.unknowns, place) for place in places_at(self.parameter, value)]
         return [_motion_at(self.problem, guess, value) for guess in guesses]
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Size, period and multipliers over the points of the branch, and its special points."""
-        yield axis("curve", self.curves)
-        yield over("point", "parameter", self.parameter, self.unit, self.label)
-        yield over("point", "period", self.period, "s")
-        yield from fields_over("point curve", self, peak_to_peak=self.curve_unit, largest=self.curve_unit)
-        yield over("point multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("point", "verdict", self.verdict, **flag_attributes())
-        yield over("special", "special_kind", np.array([p.kind for p in self.special], dtype=str))
-        yield over("special", "special_parameter", np.array([p.parameter for p in self.special]), self.unit)
+        yield data_coordinate("curve", self.curves)
+        yield data_variable("point", "parameter", self.parameter, self.unit, self.label)
+        yield data_variable("point", "period", self.period, "s")
+        yield from data_variables("point curve", self, peak_to_peak=self.curve_unit, largest=self.curve_unit)
+        yield data_variable("point multiplier_number", "multiplier", self.multipliers, "1")
+        yield data_variable("point", "verdict", self.verdict, **flag_attributes())
+        yield data_variable("special", "special_kind", np.array([p.kind for p in self.special], dtype=str))
+        yield data_variable("special", "special_parameter", np.array([p.parameter for p in self.special]), self.unit)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
@@ -187,7 +187,7 @@ B = TypeVar("B", bound=PeriodicBranch)
 
 
 def followed(
-    problem: Problem,
+    problem: BranchProblem,
     first: Array,
     low: float,
     high: float,
@@ -206,7 +206,7 @@ def followed(
 
 
 def follow_both_ways(
-    problem: Problem,
+    problem: BranchProblem,
     first: Array,
     low: float,
     high: float,
@@ -220,12 +220,12 @@ def follow_both_ways(
     ``stop`` ends the branch at the first point it is true of; that end is an outcome of kind "stopped".
     ``progress`` is called with the share done.
     """
-    tell = progress or (lambda share: None)
+    report_progress = progress or (lambda share: None)
     begin = float(first[-1])
-    curves: list[Curve] = []
+    curves: list[SolutionCurve] = []
     ways = [(d, end) for d, end in ((-1.0, low), (1.0, high)) if (end - begin) * d > 0]
     for i, (direction, end) in enumerate(ways):
-        told = _part(tell, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
+        told = _part(report_progress, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
         curves.append(
             follow(
                 problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
@@ -242,7 +242,7 @@ def follow_both_ways(
     count, walks = len(curves), []
     for i, curve in enumerate(curves):
         ahead = FOLLOWING + (1 - FOLLOWING) * np.array([i, i + 1]) / count
-        walks.append(_special_points(problem, curve, _part(tell, *ahead)))
+        walks.append(_special_points(problem, curve, _part(report_progress, *ahead)))
     whole = walks[-1]
     if len(walks) == 2 and walks[1]:
         whole = [*reversed(walks[0][1:]), *walks[1]]
@@ -250,13 +250,13 @@ def follow_both_ways(
     return whole, failed[0] if failed else Outcome(True, "followed", "; ".join(o.sentence for o in outcomes))
 
 
-def _part(tell: Progress, first: float, last: float) -> Progress:
+def _part(report_progress: Progress, first: float, last: float) -> Progress:
     """Progress of one stage of the work, which takes it from share ``first`` to ``last``."""
-    return lambda share: tell(float(first + (last - first) * share))
+    return lambda share: report_progress(float(first + (last - first) * share))
 
 
 def _watched(
-    stop: Callable[[CurvePoint], bool] | None, tell: Progress, begin: float, end: float
+    stop: Callable[[CurvePoint], bool] | None, report_progress: Progress, begin: float, end: float
 ) -> Callable[[CurvePoint], bool]:
     """``stop``, telling of every point how far the curve has come; it turns back at folds, what is told does not."""
     farthest = 0.0
@@ -264,13 +264,13 @@ def _watched(
     def on_point(point: CurvePoint) -> bool:
         nonlocal farthest
         farthest = max(farthest, (point.parameter - begin) / (end - begin))
-        tell(farthest)
+        report_progress(farthest)
         return stop is not None and stop(point)
 
     return on_point
 
 
-def _ending(problem: Problem, curve: Curve) -> Outcome:
+def _ending(problem: BranchProblem, curve: SolutionCurve) -> Outcome:
     """The end of a curve as a sentence."""
     count = len(curve.points)
     at = problem.over.said(curve.points[-1].parameter) if count else "its start"
@@ -293,7 +293,7 @@ def _ending(problem: Problem, curve: Curve) -> Outcome:
     )
 
 
-def _boundless(problem: Problem, curve: Curve) -> bool:
+def _boundless(problem: BranchProblem, curve: SolutionCurve) -> bool:
     """Whether the last half of the curve does nothing but grow at nearly one value of the parameter."""
     if len(curve.points) < 8:
         return False
@@ -305,7 +305,9 @@ def _boundless(problem: Problem, curve: Curve) -> bool:
     return growing and float(np.ptp(parameter)) < 0.02 * float(np.ptp(z[:, -1]))
 
 
-def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tuple[CurvePoint, str]]:
+def _special_points(
+    problem: BranchProblem, curve: SolutionCurve, report_progress: Progress
+) -> list[tuple[CurvePoint, str]]:
     """The points of a curve with the special ones put between their neighbours, each with its kind or ""."""
     folds = dict(curve.folds)
     tests: tuple[tuple[str, Callable[[Complex], float]], ...] = (
@@ -334,12 +336,12 @@ def _special_points(problem: Problem, curve: Curve, tell: Progress) -> list[tupl
         chord = (there.z - here.z) / problem.scale
         points += sorted(found, key=lambda f: float(chord @ ((f[0].z - here.z) / problem.scale)))
         points.append((there, ""))
-        tell(float(ahead[i] / ahead[-1]))
+        report_progress(float(ahead[i] / ahead[-1]))
     return points
 
 
 def _located(
-    problem: Problem, here: CurvePoint, there: CurvePoint, test: Callable[[CurvePoint], float]
+    problem: BranchProblem, here: CurvePoint, there: CurvePoint, test: Callable[[CurvePoint], float]
 ) -> CurvePoint | None:
     return locate(problem.equations, here, there, test, scale=problem.scale, tolerance=CLOSE)
 
@@ -356,7 +358,7 @@ def _on_circle(values: Complex) -> bool:
 
 
 def collect(
-    problem: Problem,
+    problem: BranchProblem,
     walk: list[tuple[CurvePoint, str]],
     outcome: Outcome,
     kind: Callable[..., B] = PeriodicBranch,  # type: ignore[assignment]
@@ -398,7 +400,7 @@ def collect(
     )
 
 
-def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[CurvePoint, Verdict]:
+def _motion_at(problem: BranchProblem, guess: Array, value: float) -> tuple[CurvePoint, Verdict]:
     """Point and verdict of the motion near ``guess`` (unknowns and parameter) at a value of the parameter."""
     n = len(guess) - 1
     scale = problem.scale[:n]
@@ -416,7 +418,7 @@ def _motion_at(problem: Problem, guess: Array, value: float) -> tuple[CurvePoint
     return point, _verdict(problem, point, radius)
 
 
-def _verdict(problem: Problem, point: CurvePoint, radius: float) -> Verdict:
+def _verdict(problem: BranchProblem, point: CurvePoint, radius: float) -> Verdict:
     error = problem.radius_error(point, radius)
     undamped = abs(radius - 1) <= error and problem.undamped(point)
     return Verdict(int(verdicts(radius, error, undamped)))

@@ -22,7 +22,7 @@ from trunnion.equations.clutch_capacity import bounded_clutches
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import PlacedSlider
 from trunnion.results.outcome import Outcome
-from trunnion.steady.shooting.closing import Closing
+from trunnion.steady.shooting.shooting_problem import ShootingProblem
 from trunnion.systems.maps import RubbingMap
 
 STEADY = 0.05
@@ -88,8 +88,8 @@ Watch = Callable[[Any, Array], Watched]
 
 def continuum(
     assembly: Assembly,
-    rubbing: tuple[PlacedSlider, ...],
-    closing: Closing[Any],
+    friction_sliders: tuple[PlacedSlider, ...],
+    problem: ShootingProblem[Any],
     start: Array,
     watch: Watch,
     shifts_alike: bool,
@@ -102,22 +102,26 @@ def continuum(
     closing : of motions in which those that never slip are kept from it.
     shifts_alike : whether the motion only shifts with the mean twist of these clutches.
     """
-    here, found = _Sticking(closing, start, watch), []
-    stuck = closing.map.held
-    for e in dict.fromkeys(rubbing[i].compliance for i in stuck):
-        own = [i for i in stuck if rubbing[i].compliance == e]
+    here, found = _Sticking(problem, start, watch), []
+    stuck = problem.map.fixed
+    for e in dict.fromkeys(friction_sliders[i].compliance for i in stuck):
+        own = [i for i in stuck if friction_sliders[i].compliance == e]
         place = assembly.topology.compliances[e].shafts[0]
         clutch, mean = assembly.line.elements[place], float(here.seen.twist_mean[e])
         assert isinstance(clutch, Clutch)
         spring = assembly.packed.values[assembly.packed.column(place, "stiffness 1")]
         if shifts_alike:
-            up = sum(rubbing[i].stiffness * max(rubbing[i].reach + here.seen.low[i], 0.0) for i in own)
-            down = sum(rubbing[i].stiffness * max(rubbing[i].reach - here.seen.high[i], 0.0) for i in own)
+            up = sum(
+                friction_sliders[i].stiffness * max(friction_sliders[i].reach + here.seen.low[i], 0.0) for i in own
+            )
+            down = sum(
+                friction_sliders[i].stiffness * max(friction_sliders[i].reach - here.seen.high[i], 0.0) for i in own
+            )
             ends = (mean - down / spring, mean + up / spring) if spring else (-np.inf, np.inf)
         else:  # the further up the sliders of a clutch stand, the less its spring carries, and the lower is its twist
-            reach = np.array([rubbing[i].reach for i in own])
+            reach = np.array([friction_sliders[i].reach for i in own])
             ends = (here.end(own, reach, e, 1), here.end(own, reach, e, -1))
-        names = tuple(rubbing[i].name for i in own)
+        names = tuple(friction_sliders[i].name for i in own)
         found.append(StuckClutch(assembly.line.names[place], names, mean, *ends))
     return tuple(found)
 
@@ -126,14 +130,14 @@ def continuum(
 class _Sticking:
     """A periodic motion of a map that keeps some sliders from slipping, from its start (n,)."""
 
-    closing: Closing[RubbingMap]
+    problem: ShootingProblem[RubbingMap]
     start: Array
     watch: Watch
 
     @cached_property
     def seen(self) -> Watched:
         """What it shows."""
-        return self.watch(self.closing.map, self.start)
+        return self.watch(self.problem.map, self.start)
 
     def end(self, own: list[int], reach: Array, compliance: int, side: int) -> float:
         """Mean twist [rad] of a clutch in the motion of the continuum in which its sliders ``own`` all just reach where
@@ -141,7 +145,7 @@ class _Sticking:
         now, shift, flat = self, reach.min() / LONGER, 0
         for _ in range(TRIES):
             room = reach - now.seen.high[own] if side > 0 else -reach - now.seen.low[own]
-            if np.abs(room / reach).max() <= REACHED * self.closing.tolerance:
+            if np.abs(room / reach).max() <= REACHED * self.problem.tolerance:
                 return float(now.seen.twist_mean[compliance])
             moves, taken = now._directions(own)
             if np.linalg.svd(taken, compute_uv=False)[-1] > FLAT:
@@ -161,26 +165,26 @@ class _Sticking:
     def _directions(self, own: list[int]) -> tuple[Array, Array]:
         """How the start (n, own) of the motions of the continuum changes with what each of the sliders ``own`` has
         beside the twist that it follows, and their deflections (own, own) with it."""
-        place, scale = self.closing.map, self.closing.scale
+        place, scale = self.problem.map, self.problem.scale
         closes = place(self.start).tangents * scale / scale[:, None] - np.eye(place.size)
-        # Directions that nothing drives: of a line that starts free its rotation is one as well.
+        # Directions that nothing drives: of a free–free line its rotation is one as well.
         _, sizes, directions = np.linalg.svd(closes)
-        count = max(len(place.held), int(np.sum(sizes <= UNDRIVEN * sizes[0])))
+        count = max(len(place.fixed), int(np.sum(sizes <= UNDRIVEN * sizes[0])))
         alike = scale[:, None] * directions[-count:].T
-        moves = alike @ np.linalg.pinv(place.conserved(self.start, place.held) @ alike)
-        moves = moves[:, [place.held.index(one) for one in own]]
+        moves = alike @ np.linalg.pinv(place.conserved(self.start, place.fixed) @ alike)
+        moves = moves[:, [place.fixed.index(one) for one in own]]
         return moves, moves[place.deflections[own]]
 
     def _moved(self, step: Array) -> Self | None:
         """The motion of the continuum near a step (n,) from the start."""
-        root = self.closing.solve(self.start + step)
+        root = self.problem.solve(self.start + step)
         return replace(self, start=root.x) if root.converged else None
 
 
 def slipping_on(
     assembly: Assembly,
     speed: float,
-    rubbing: tuple[PlacedSlider, ...],
+    friction_sliders: tuple[PlacedSlider, ...],
     place: RubbingMap,
     start: Array,
     twists: Callable[[Array], Array],
@@ -196,7 +200,7 @@ def slipping_on(
     first, second = np.diff(twists(np.array(states[1:])), axis=0)
     for clutch in bounded_clutches(assembly, speed):
         e = clutch.compliance
-        least = LEAST * min(slider.reach for slider in rubbing if slider.compliance == e)
+        least = LEAST * min(slider.reach for slider in friction_sliders if slider.compliance == e)
         if abs(second[e]) > least and abs(second[e] - first[e]) <= STEADY * abs(second[e]):
             load = f"its load of {clutch.load:.6g} N·m and the excitation together" if clutch.load else "the excitation"
             words = (

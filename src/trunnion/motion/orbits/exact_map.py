@@ -22,8 +22,8 @@ from trunnion.laws.stages import STICKS
 from trunnion.motion.orbits.spring_contacts import SpringContact, contact_state
 from trunnion.motion.simulation.exact_motion import stage_events
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
-from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedPassage, kernel, stages_of
-from trunnion.systems.maps import MOMENT, Observed, Passage
+from trunnion.numerics.piecewise_linear.staged_flow import StagedFlow, StagedSegment, kernel, stages_of
+from trunnion.systems.maps import MOMENT, MapEvaluation, Observed
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.regimes import SLACK
 
@@ -37,7 +37,7 @@ REPEATS = 3
 """Periods that must repeat, one after the other, before a motion counts as settled."""
 
 
-class Settled(NamedTuple):
+class DecayedTransient(NamedTuple):
     """Where a motion is at phase zero (n,) after so many periods, whether they repeat, and whether it got there."""
 
     state: Array
@@ -67,10 +67,10 @@ class ExactMap(ABC):
     def size(self) -> int:
         """Number of states."""
 
-    def nowhere(self, values: int = 0) -> Passage:
+    def nowhere(self, values: int = 0) -> MapEvaluation:
         """A motion that changes its pieces too often to come to an end; its derivatives by so many values."""
         nothing = np.full((self.size, self.size + values), np.nan)
-        return Passage(nothing[:, 0], nothing[:, : self.size], nothing[:, self.size :], -1, False, None)
+        return MapEvaluation(nothing[:, 0], nothing[:, : self.size], nothing[:, self.size :], -1, False, None)
 
     @property
     @abstractmethod
@@ -82,7 +82,7 @@ class ExactMap(ABC):
         """What the motion from x does, by the names of results, and where it ends; None where it cannot be followed."""
 
     @abstractmethod
-    def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
+    def steady(self, x: Array, least: int, most: int, same: float) -> DecayedTransient:
         """The motion after ``least`` to ``most`` periods of the excitation, until it changes by less than ``same``."""
 
 
@@ -110,16 +110,18 @@ class OscillatorMap(ExactMap):
         ends = map(abs, self.oscillator.breakpoints)
         return np.array([1.0, self.value]) * max(float(np.abs(start).max()), *ends, 1e-300)
 
-    def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
+    def __call__(
+        self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False
+    ) -> MapEvaluation:
         o = self.oscillator
         try:
             run = piecewise.period(o.regimes, o.coefficients, self.value, x, self.periods)
         except piecewise.TooManyEventsError:
             return self.nowhere(len(by))
         changes = int((run.events[:, 3] >= 0).sum())
-        return Passage(run.state, run.tangents[:, :2], run.tangents[:, 2 : 2 + len(by)], changes, True, run)
+        return MapEvaluation(run.state, run.tangents[:, :2], run.tangents[:, 2 : 2 + len(by)], changes, True, run)
 
-    def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
+    def steady(self, x: Array, least: int, most: int, same: float) -> DecayedTransient:
         o, k = self.oscillator, piecewise.kernel()
         state, tables = np.array(x, dtype=float), o.regimes
         regime = k.regime_at(state[0], state[1], tables.guards, tables.then)
@@ -127,7 +129,7 @@ class OscillatorMap(ExactMap):
             state, regime, least, most, same, self.value, o.coefficients, tables.pieces, tables.guards, tables.then,
             np.empty((piecewise.MOST_EVENTS, k.RECORDED)),
         )  # fmt: skip
-        return Settled(state, int(periods), bool(repeats), ended == k.DONE)
+        return DecayedTransient(state, int(periods), bool(repeats), ended == k.DONE)
 
     def steady_from(self, starts: Array, least: int, most: int, same: float) -> Array:
         """As ``steady`` from many starts (m, 2): where they settle, NaN where they do not."""
@@ -165,7 +167,7 @@ class OscillatorMap(ExactMap):
         o = self.oscillator
         return piecewise.measure(o.regimes, o.coefficients, self.value, x, self.periods)
 
-    def observe(self, x: Array, passage: Passage) -> Observed:
+    def observe(self, x: Array, passage: MapEvaluation) -> Observed:
         found = self._measured(x)
         low, high = found["low"], found["high"]
         # At the forcing frequency, of a subharmonic motion too.
@@ -177,14 +179,14 @@ class OscillatorMap(ExactMap):
 
 @dataclass(frozen=True)
 class LineMap(ExactMap):
-    """Twists and rates over ``periods`` of the excitation; sliders ``held`` are kept from slipping.
+    """Twists and rates over ``periods`` of the excitation; sliders ``fixed`` are kept from slipping.
 
-    Of a line that starts free with a viscous load the rotation itself need not close, only its rate: it is no state of
+    Of a free–free line with a viscous load the rotation itself need not close, only its rate: it is no state of
     the map, whose states stand at the places ``kept`` of the line's.
     """
 
     line: StagedLine
-    held: tuple[int, ...] = ()
+    fixed: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
@@ -202,14 +204,14 @@ class LineMap(ExactMap):
     @cached_property
     def flow(self) -> StagedFlow:
         """The line's flow at the value."""
-        return self.line.holding([self.line.slider_rows[i] for i in self.held], self.value)
+        return self.line.holding([self.line.slider_rows[i] for i in self.fixed], self.value)
 
     def whole(self, part: Array) -> Array:
         """The line's state (2m,) from the map's, deflections beyond what sliders hold brought back to it."""
         state = np.zeros(2 * self.line.size)
         state[self.kept] = part
         free = self.line.within_limits(state)
-        rows = [self.line.slider_rows[i] for i in self.held]
+        rows = [self.line.slider_rows[i] for i in self.fixed]
         free[rows] = state[rows]
         return free
 
@@ -222,7 +224,7 @@ class LineMap(ExactMap):
         return np.searchsorted(self.kept, self.line.slider_rows)
 
     def holding(self, which: tuple[int, ...]) -> Self:
-        return replace(self, held=which)
+        return replace(self, fixed=which)
 
     def idle(self, x: Array) -> tuple[int, ...]:
         k, passage = kernel(), self.watched(x)
@@ -250,7 +252,9 @@ class LineMap(ExactMap):
         turning = 2 * np.pi / self.line.period(self.value)
         return np.concatenate([size, np.maximum(np.abs(start[m:]), size * turning)])[self.kept]
 
-    def __call__(self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False) -> Passage:
+    def __call__(
+        self, x: Array, *, tangents: bool = True, by: Sequence[int] = (), watch: bool = False
+    ) -> MapEvaluation:
         slope = self.length * self.line.period_slope(self.value)
         start = self.whole(x)
         run = staged_flow.period(self.flow, start, self.length, slope, watch=watch)
@@ -259,22 +263,22 @@ class LineMap(ExactMap):
         within = start[self.kept] == x  # beyond what it holds a deflection is brought back
         matrix = run.tangents[self.kept][:, self.kept] * within
         by_value = run.tangents[self.kept, 2 * self.line.size :][:, : len(by)]
-        return Passage(run.state[self.kept], matrix, by_value, len(run.events), True, run)
+        return MapEvaluation(run.state[self.kept], matrix, by_value, len(run.events), True, run)
 
-    def steady(self, x: Array, least: int, most: int, same: float) -> Settled:
+    def steady(self, x: Array, least: int, most: int, same: float) -> DecayedTransient:
         length, state, repeated = self.line.period(self.value), self.whole(x), 0
         for count in range(1, most + 1):
             run = staged_flow.move(self.flow, state, 0.0, length)
             change = np.abs(run.state - state)[self.kept] / self.scale(run.state)
             state = run.state
             if not (run.done and np.isfinite(state).all()):
-                return Settled(np.full(self.size, np.nan), count, False, False)
+                return DecayedTransient(np.full(self.size, np.nan), count, False, False)
             repeated = repeated + 1 if np.max(change) < same else 0
             if count >= least and repeated >= REPEATS:
-                return Settled(state[self.kept], count, True, True)
-        return Settled(state[self.kept], most, False, True)
+                return DecayedTransient(state[self.kept], count, True, True)
+        return DecayedTransient(state[self.kept], most, False, True)
 
-    def watched(self, x: Array) -> StagedPassage:
+    def watched(self, x: Array) -> StagedSegment:
         """The motion from x with what it shows of every spring."""
         return staged_flow.move(self.flow, self.whole(x), 0.0, self.length, watch=True)
 
@@ -288,7 +292,7 @@ class LineMap(ExactMap):
         run = self.watched(x)
         return (self.told_of(x, run), run.state[self.kept]) if run.done else None
 
-    def told_of(self, x: Array, run: StagedPassage) -> dict[str, Any]:
+    def told_of(self, x: Array, run: StagedSegment) -> dict[str, Any]:
         """What a watched passage from x shows.
 
         An impact is a passage from the softest stage of a spring to another, its energy ½ m q̇² with the inertia m that
@@ -319,7 +323,7 @@ class LineMap(ExactMap):
             "state": start,
         }
 
-    def observe(self, x: Array, passage: Passage) -> Observed:
+    def observe(self, x: Array, passage: MapEvaluation) -> Observed:
         k, count = staged_flow.kernel(), SAMPLES * self.periods
         seen = passage.run.seen[: len(self.line.springs)]
         low, high = seen[:, k.TORQUE_LOW], seen[:, k.TORQUE_HIGH]

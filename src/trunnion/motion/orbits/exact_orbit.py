@@ -30,12 +30,21 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
 from trunnion.numerics.piecewise_linear.staged_flow import kernel
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Result,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+)
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, show_speed
 from trunnion.results.verdict import MEANING
-from trunnion.steady.shooting.closing import (
-    Closing,
+from trunnion.steady.shooting.periodic_orbit import Orbit
+from trunnion.steady.shooting.shooting_problem import (
+    ShootingProblem,
     beside_sticking,
     by_modulus,
     close,
@@ -44,7 +53,6 @@ from trunnion.steady.shooting.closing import (
     refuse_speed,
     sticking,
 )
-from trunnion.steady.shooting.periodic_orbit import Orbit
 from trunnion.systems.maps import checked_periods
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -129,16 +137,16 @@ class PiecewiseOrbit(Displacement[float], Orbit, Result):
         cuts = np.unique(np.concatenate([[0.0], self.crossings[:, 0], [self.periods * o.period]]))
         return fourier(x, cuts, highest)[:, 0]
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """The motion over its period, its crossings and multipliers, and the numbers read off it."""
         times, motion = self.motion() if self.outcome.ok else (np.zeros(0), np.zeros((0, 2)))
-        yield axis("time", times, "s")
-        yield over("time", "x", motion[:, 0])
-        yield over("time", "v", motion[:, 1])
-        yield over("crossing", "crossing_time", self.crossings[:, 0], "s")
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield from fields_over("", self, **dict.fromkeys((*NUMBERS, "clearance"), ""))
-        yield from remarks(
+        yield data_coordinate("time", times, "s")
+        yield data_variable("time", "x", motion[:, 0])
+        yield data_variable("time", "v", motion[:, 1])
+        yield data_variable("crossing", "crossing_time", self.crossings[:, 0], "s")
+        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
+        yield from data_variables("", self, **dict.fromkeys((*NUMBERS, "clearance"), ""))
+        yield from data_attributes(
             oscillator=self.oscillator.name, verdict=str(self.verdict), contact=self.contact, periods=self.periods
         )
         yield from ending(self.outcome)
@@ -162,7 +170,7 @@ class ExactOrbit(TorqueRange, Orbit, Result):
 
     value: speed or common frequency of the excitation [rad/s], whichever turns the line's excitation; start (2m,):
     twists [rad], then rates [rad/s], at t = 0; period [s], ``periods`` times that of the excitation; multipliers and
-    monodromy without the rotation of a line that starts free; events: its changes of stage; twist_low, twist_high,
+    monodromy without the rotation of a free–free line; events: its changes of stage; twist_low, twist_high,
     twist_mean [rad], torque_mean [N m] (spring,); contacts: sides, impacts and their energy, per spring with stages;
     clearance [rad]: least distance of an extremum of a twist from an end of its stage, before it or behind it, inf
     without one; slowest_crossing [rad/s]: smallest rate at a change of stage, inf without one; continuum: the clutches
@@ -199,31 +207,33 @@ class ExactOrbit(TorqueRange, Orbit, Result):
         run = staged_flow.move(flow, self.start, 0.0, self.period, times=times)
         return times, run.states, flow.torque(run.states, run.shown_stages)[:, : len(self.springs)]
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Twist and torque over the period, extremes and means of every spring, changes of stage and multipliers."""
         count = len(self.springs)
         times, states, torque = np.zeros(0), np.zeros((0, count)), np.zeros((0, count))
         if self.outcome.ok:
             times, states, torque = self.motion()
-        yield axis("time", times, "s")
-        yield axis("spring", self.springs)
-        yield over("time spring", "twist", states[:, :count], "rad")
-        yield over("time spring", "torque", torque, "N*m")
-        yield from fields_over(
+        yield data_coordinate("time", times, "s")
+        yield data_coordinate("spring", self.springs)
+        yield data_variable("time spring", "twist", states[:, :count], "rad")
+        yield data_variable("time spring", "torque", torque, "N*m")
+        yield from data_variables(
             "spring", self, twist_low="rad", twist_high="rad", twist_mean="rad", torque_low="N*m", torque_high="N*m",
             torque_mean="N*m", torque_peak_to_peak="N*m",
         )  # fmt: skip
-        yield over("event", "event_time", self.events.time, "s")
-        yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield from fields_over("", self, period="s", clearance="rad", slowest_crossing="rad/s")
-        yield from remarks(driveline=self.line.name, verdict=str(self.verdict), value=self.value)
-        yield from remarks(continuum="; ".join(map(str, self.continuum)))
+        yield data_variable("event", "event_time", self.events.time, "s")
+        yield data_variable(
+            "event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str)
+        )
+        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
+        yield from data_variables("", self, period="s", clearance="rad", slowest_crossing="rad/s")
+        yield from data_attributes(driveline=self.line.name, verdict=str(self.verdict), value=self.value)
+        yield from data_attributes(continuum="; ".join(map(str, self.continuum)))
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
         unit = speed_unit(self.line.assembly.line)
-        by_speed, frequencies = self.line.clock == "speed", frequency_unit(unit)
+        by_speed, frequencies = self.line.independent_variable == "speed", frequency_unit(unit)
         at = f"Ω = {show_speed(self.value, unit)}" if by_speed else f"ω = {show_speed(self.value, frequencies)}"
         if not self.outcome.ok:
             return f"no periodic motion of {self.line.name} at {at}: {self.outcome}"
@@ -328,7 +338,8 @@ def piecewise_orbit(
     refuse_unbounded(oscillator)
     over_period = OscillatorMap.of(oscillator, periods)
     return _of_mass(
-        over_period, close(first, lambda guess: Closing(over_period, over_period.scale(first)), settle=settle)[1]
+        over_period,
+        close(first, lambda guess: ShootingProblem(over_period, over_period.scale(first)), settle=settle)[1],
     )
 
 
@@ -391,9 +402,9 @@ def refuse_found_speed(line: StagedLine) -> None:
     ------
     InputError : so.
     """
-    if line.turns and line.clock in ("speed", "both"):
+    if line.turns and line.independent_variable in ("speed", "both"):
         raise InputError(
-            "starts free under viscous loads, so the speed that its excitation turns with is a result, not given",
+            "is free–free under viscous loads, so the speed that its excitation turns with is a result, not given",
             element="driveline", key="viscous_load",
             remedy="put a ConstantSpeed in front, or use tn.periodic_response, which finds the speed",
         )  # fmt: skip
@@ -424,41 +435,41 @@ def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settl
 def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
     """The motion near ``start`` (2m,). Which sliders stick is told by the motion once it has settled, and again by
     every motion that closes."""
-    begin, held = start[place.kept], tuple[int, ...]()
+    begin, fixed = start[place.kept], tuple[int, ...]()
     if place.sliders:
         settled = place.settle(begin, SETTLED) if settle else begin
         if settled is None:
             words = "stages change too often in a period; raise damping"
             return _of_line(place, start, Outcome(False, "chatter", words))
-        begin, held = settled, place.idle(settled)
+        begin, fixed = settled, place.idle(settled)
 
-    def closing_of(guess: Array) -> Closing[LineMap]:
-        return Closing(place, place.scale(place.whole(guess)))
+    def problem_at(guess: Array) -> ShootingProblem[LineMap]:
+        return ShootingProblem(place, place.scale(place.whole(guess)))
 
-    closing, root = close(begin, lambda guess: holding(closing_of(guess), held), settle=settle)
+    problem, root = close(begin, lambda guess: holding(problem_at(guess), fixed), settle=settle)
     if not root.converged:
         return _of_line(place, place.whole(begin), _not_converged(root, "the final state of a longer tn.exact_motion"))
-    found = sticking(replace(closing, map=place), root, held)
+    found = sticking(replace(problem, map=place), root, fixed)
     if found is None:
         words = (
             "no motion agrees with which of its sliders stick; start closer, from the end of a longer tn.exact_motion"
         )
         return _of_line(place, place.whole(root.x), Outcome(False, "not converged", words))
-    closing, root, held = found
-    if not _determined(root, closing.scale, len(held)):
+    problem, root, fixed = found
+    if not _determined(root, problem.scale, len(fixed)):
         words = (
             "no one motion closes: some disturbance returns unchanged, as where an undamped line is driven at its "
             "own frequency; give some damping or another frequency"
         )
         return _of_line(place, place.whole(root.x), Outcome(False, UNDETERMINED, words))
-    return _of_line(closing.map, closing.map.whole(root.x), None, root.iterations)
+    return _of_line(problem.map, problem.map.whole(root.x), None, root.iterations)
 
 
-def _determined(root: Root, scale: Array, held: int) -> bool:
-    """Whether the closing condition fixes the motion, but for what ``held`` sliders leave open: its derivative has no
+def _determined(root: Root, scale: Array, fixed: int) -> bool:
+    """Whether the closing condition fixes the motion, but for what ``fixed`` sliders leave open: its derivative has no
     further direction in which it is singular."""
     sizes = np.linalg.svd(root.derivative * scale[None, :] / scale[:, None], compute_uv=False)
-    return bool(sizes[-1 - held] > SINGULAR * max(sizes[0], 1.0))
+    return bool(sizes[-1 - fixed] > SINGULAR * max(sizes[0], 1.0))
 
 
 def _of_line(place: LineMap, start: Array, failed: Outcome | None, iterations: int = 0) -> ExactOrbit:
@@ -468,10 +479,10 @@ def _of_line(place: LineMap, start: Array, failed: Outcome | None, iterations: i
     seen = place.unmeasured if failed else place.told_of(part, passage.run)
     events, matrix = np.zeros((0, 5)) if failed else passage.run.events, passage.tangents
     rates = events[events[:, 1] < len(line.springs), 4]
-    if place.held:
+    if place.fixed:
         matrix = beside_sticking(place, part, matrix * scale / scale[:, None], scale)[0]
     values = by_modulus(matrix)
-    alike = not any(line.counts[line.source[line.slider_rows[i]]] > 1 for i in place.held)
+    alike = not any(line.counts[line.source[line.slider_rows[i]]] > 1 for i in place.fixed)
     return ExactOrbit(
         start=start,
         period=place.length,
@@ -485,7 +496,7 @@ def _of_line(place: LineMap, start: Array, failed: Outcome | None, iterations: i
         periods=place.periods,
         events=stage_events(line, events),
         slowest_crossing=float("nan") if failed else float(np.abs(rates).min(initial=np.inf)),
-        continuum=continuum(line.assembly, line.placed, Closing(place, scale), part, _watched, alike),
+        continuum=continuum(line.assembly, line.placed, ShootingProblem(place, scale), part, _watched, alike),
         **fields_of(ExactOrbit, seen),
     )
 

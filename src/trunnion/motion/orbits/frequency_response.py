@@ -37,8 +37,8 @@ from trunnion.motion.perturbation.describing_function import DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse, ResponseCurves, largest_stable
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.curves import at_place, meetings
-from trunnion.results.declared import Described, Held, ending, fields_over, over, remarks
+from trunnion.numerics.curves import at_place, places_at
+from trunnion.results.declared import DatasetItem, Described, data_attributes, data_variable, data_variables, ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.verdict import Verdict
@@ -106,16 +106,16 @@ class FrequencyResponse(ResponseCurves, Described):
             i = place_of(branch.curves, self.curve)
             seen = branch.swings_at(frequency)
             return sorted(((float(swing[i]) / 2, verdict is Verdict.STABLE) for swing, verdict in seen), reverse=True)
-        places = meetings(self.frequency, frequency)
+        places = places_at(self.frequency, frequency)
         size = self.half_peak_to_peak
         return sorted(((float(at_place(size, p)), bool(self.stable[int(p)])) for p in places), reverse=True)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Half peak-to-peak and stability over the points of the curve, and its marks."""
-        yield from fields_over("point", self, frequency="rad/s", half_peak_to_peak="", stable="")
-        yield over("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
-        yield over("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
-        yield from remarks(method=self.method, curve=self.curve)
+        yield from data_variables("point", self, frequency="rad/s", half_peak_to_peak="", stable="")
+        yield data_variable("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
+        yield data_variable("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
+        yield from data_attributes(method=self.method, curve=self.curve)
         yield from ending(self.outcome)
 
     def describe(self, unit: str | None = None) -> str:
@@ -166,13 +166,13 @@ class ResponseComparison(ResponseCurves, Described):
             rows.append((name, f"{size:#.5g}", f"{at * factor:#.6g}", folds, *motions, f"{r.seconds:.2g}"))
         return rows
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """The points of all curves one after the other, each with its method."""
         found = list(self.responses.values())
-        yield over("point", "method", np.array([r.method for r in found for _ in r.frequency], dtype=str))
-        yield over("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
-        yield over("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
-        yield over("point", "stable", np.concatenate([r.stable for r in found]))
+        yield data_variable("point", "method", np.array([r.method for r in found for _ in r.frequency], dtype=str))
+        yield data_variable("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
+        yield data_variable("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
+        yield data_variable("point", "stable", np.concatenate([r.stable for r in found]))
 
     def describe(self, unit: str | None = None) -> str:
         """The table as text."""
@@ -241,7 +241,7 @@ def frequency_response(
         parameter ``frequency``; or a ``Driveline`` over its input speed.
     low, high : ends of the range [rad/s].
     method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
-        "shooting" (default of drivelines with backlash or stages, the only one of those that start free) for the
+        "shooting" (default of drivelines with backlash or stages, the only one of those that are free–free) for the
         others; "exact" also for a driveline that ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.

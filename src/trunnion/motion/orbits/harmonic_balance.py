@@ -30,7 +30,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.motion.orbits.branch import STEP, PeriodicBranch, Problem, collect, follow_both_ways
+from trunnion.motion.orbits.branch import STEP, BranchProblem, PeriodicBranch, collect, follow_both_ways
 from trunnion.motion.orbits.periodic_branch import SystemOver, system_over
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.arclength import CurvePoint
@@ -38,10 +38,10 @@ from trunnion.numerics.curves import extremes
 from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.threads import on_one_thread
-from trunnion.results.declared import Held, over, remarks
+from trunnion.results.declared import DatasetItem, data_attributes, data_variable
 from trunnion.results.outcome import Outcome
-from trunnion.steady.shooting.closing import CLEAR, IntegratedClosing
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
+from trunnion.steady.shooting.shooting_problem import CLEAR, IntegratedShooting
 from trunnion.systems.system import System
 
 FEWEST, MOST = 8, 256
@@ -76,12 +76,12 @@ class SeriesBranch(PeriodicBranch):
         """The branch alone, as other methods give it."""
         return PeriodicBranch(**{name: getattr(self, name) for name in PeriodicBranch.__dataclass_fields__})
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """What every branch has, and the series."""
         yield from super().declared()
-        yield over("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
-        yield over("point", "tail", self.tail)
-        yield from remarks(harmonics=self.harmonics, periods=self.periods)
+        yield data_variable("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
+        yield data_variable("point", "tail", self.tail)
+        yield from data_attributes(harmonics=self.harmonics, periods=self.periods)
 
     @property
     def _worst(self) -> str:
@@ -95,7 +95,7 @@ class SeriesBranch(PeriodicBranch):
 S = TypeVar("S", bound=SeriesBranch)
 
 
-class Balance(Problem, Protocol):
+class Balance(BranchProblem, Protocol):
     """The balance of h harmonics as equations of a curve z = (series, parameter)."""
 
     h: int
@@ -108,7 +108,7 @@ class Balance(Problem, Protocol):
         """The series at a point of the curve, (n, 2h + 1)."""
 
 
-class Series:
+class HarmonicSeries:
     """What every balance shares."""
 
     h: int
@@ -188,13 +188,13 @@ class HarmonicBalance(SeriesBranch):
     def defect(self) -> Array:
         """Distance (points,) between start and end of the true motion through the series' start, in units of the
         states' scales; NaN where that motion cannot be computed (at a grazing)."""
-        assert isinstance(self.problem, _Balance)
+        assert isinstance(self.problem, _LineBalance)
         return np.array([self.problem.defect(CurvePoint(z, z, 0)) for z in self.unknowns])
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """What the branch holds, with the series and how far it is off."""
         yield from super().declared()
-        yield over("point", "defect", self.defect)
+        yield data_variable("point", "defect", self.defect)
 
     def motion(self, point: int, count: int = 1024) -> Array:
         """States (count, n) at equidistant times of the period of one point."""
@@ -263,7 +263,7 @@ def harmonic_balance(
     limit = tail or (TAIL if family.at(family.begin).regimes is None else KINKED_TAIL)
     begun = _first_rows(family, start, periods, harmonics or FEWEST * periods)
     return balanced(
-        HarmonicBalance, lambda h: _Balance(family, periods, h, begun), harmonics, FEWEST * periods, MOST, limit,
+        HarmonicBalance, lambda h: _LineBalance(family, periods, h, begun), harmonics, FEWEST * periods, MOST, limit,
         family.begin, low, high, most_points,
     )  # fmt: skip
 
@@ -281,7 +281,7 @@ def _first_rows(family: SystemOver, start: ArrayLike | None, periods: int, h: in
 
 
 @dataclass
-class _Balance(Series):
+class _LineBalance(HarmonicSeries):
     """The balance of h harmonics as equations of a curve z = (series, value), and what its points tell."""
 
     over: SystemOver
@@ -341,9 +341,9 @@ class _Balance(Series):
         return left.ravel(), slope.reshape(n * wide, n * wide) / omega
 
     @cached_property
-    def true(self) -> IntegratedClosing:
+    def true(self) -> IntegratedShooting:
         """The true motions through the starts of the series."""
-        return IntegratedClosing(self.over.map(self.periods, TOLERANCE), self.over.scale)
+        return IntegratedShooting(self.over.map(self.periods, TOLERANCE), self.over.scale)
 
     def first(self) -> Array:
         return fourier.resized(self.begun, self.h)

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.motion.orbits.branch import STEP
-from trunnion.motion.orbits.harmonic_balance import Series, SeriesBranch, balanced
+from trunnion.motion.orbits.harmonic_balance import HarmonicSeries, SeriesBranch, balanced
 from trunnion.motion.orbits.periodic_branch import begun_within
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.chain.exponential_monodromy import exponential
@@ -29,7 +29,7 @@ from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow,
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
 from trunnion.results.parameter_names import Names
-from trunnion.steady.shooting.closing import by_modulus
+from trunnion.steady.shooting.shooting_problem import by_modulus
 from trunnion.systems.second_order import SecondOrder, Spring
 
 FEWEST, MOST = 10, 160
@@ -115,13 +115,13 @@ def balance_springs(
         raise InputError(f"must be series of {system.size} unknowns", key="start", value=rows.shape)
     width = (high - low) * longest_step / STEP
     return balanced(
-        SpringBalance, lambda h: _Balance(system, h, periods, width, first, rows), harmonics,
+        SpringBalance, lambda h: _SpringSystemBalance(system, h, periods, width, first, rows), harmonics,
         max(FEWEST * periods, needed), MOST, tail, first, low, high, most_points,
     )  # fmt: skip
 
 
 @dataclass
-class _Balance(Series):
+class _SpringSystemBalance(HarmonicSeries):
     """The balance as equations of a curve z = (series, ω), from a frequency and a series, if one is given."""
 
     system: SecondOrder
@@ -343,7 +343,7 @@ class _Balance(Series):
         return out
 
     @cached_property
-    def finer(self) -> _Balance:
+    def finer(self) -> _SpringSystemBalance:
         """Of twice the harmonics."""
         return replace(self, h=2 * self.h)
 

@@ -2,7 +2,7 @@
 
 The branch is the curve P(x; λ) = x in the space of z = (x, λ), followed by pseudo-arclength
 (``numerics.arclength``) with the exact ∂P/∂x. Lengths are measured in the scale of the states and in the range of
-the parameter. A line that starts free keeps its mean speed by its drives, as in ``periodic_response``.
+the parameter. A free–free line keeps its mean speed by its drives, as in ``periodic_response``.
 
 Exact motions of a piecewise linear oscillator, or of a driveline with stages, are followed over their frequency or
 speed with the exact derivative by that as well: what other methods are measured against.
@@ -34,9 +34,9 @@ from trunnion.motion.orbits.periodic_response import require_forced
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.results.outcome import Outcome
 from trunnion.results.parameter_names import Names
-from trunnion.steady.shooting.closing import Closing, IntegratedClosing, Phase, refuse_speed
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit, neutral_motions, require_kept_speed, torque_scale
 from trunnion.steady.shooting.periodic_orbit import MOST_STEPS, TOLERANCE, PeriodicOrbit, periodic_orbit
+from trunnion.steady.shooting.shooting_problem import IntegratedShooting, Phase, ShootingProblem, refuse_speed
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.system import System
@@ -52,7 +52,7 @@ MOST_POINTS = 2000
 class SystemOver(Names):
     """Systems by the value of a parameter.
 
-    at : value → system, and of a line that starts free (value, torque [N m] beyond the balance of its loads) → system;
+    at : value → system, and of a free–free line (value, torque [N m] beyond the balance of its loads) → system;
     scale (n + 1,) : size of each state and of the parameter that counts as one; begin : the value to begin with; curves
     : the states of a system, the shafts of a line, of which the torques [N m] are looked at.
     """
@@ -64,11 +64,11 @@ class SystemOver(Names):
 
     @property
     def free(self) -> bool:
-        """Whether it is a line that starts free."""
+        """Whether it is a free–free line."""
         return self.line is not None and self.line.assembly.topology.free
 
     def map(self, periods: int, tolerance: float, torque: float = 0.0) -> IntegratedMap:
-        """The map over ``periods`` of the forcing, its value the parameter; of a line that starts free its values are
+        """The map over ``periods`` of the forcing, its value the parameter; of a free–free line its values are
         the torque beyond the balance, in steps of a size of ``torque``, and the parameter."""
         before, sizes = ((0.0,), (torque,)) if self.free else ((), ())
         steps = tuple(BESIDE * size for size in (*sizes, float(self.scale[-1])))
@@ -96,7 +96,7 @@ def system_over(
 ) -> SystemOver:
     """The systems of ``line`` over a parameter, whose range times ``width`` is its scale.
 
-    ``free`` : whether lines that start free are taken, at the mean speed that their drives keep.
+    ``free`` : whether free–free lines are taken, at the mean speed that their drives keep.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def system_over(
         require_kept_speed(prepared)
     else:
         raise InputError(
-            "starts free, which a series of harmonics at a given speed does not take", element="driveline",
+            "is free–free, which a series of harmonics at a given speed does not take", element="driveline",
             remedy='use periodic_branch or method = "shooting", or put a ConstantSpeed in front',
         )  # fmt: skip
     columns = prepared.assembly.packed.resolve_axis(parameter)
@@ -184,7 +184,7 @@ def periodic_branch(
 
     Raises
     ------
-    InputError : an unknown parameter, a reversed range, an autonomous system; a line that starts free whose torques do
+    InputError : an unknown parameter, a reversed range, an autonomous system; a free–free line whose torques do
         not balance, or for motions of several periods.
 
     Examples
@@ -201,14 +201,14 @@ def periodic_branch(
         problem, orbit = _free(over, start, periods, tolerance)
     else:
         orbit = periodic_orbit(over.at(over.begin), start=start, periods=periods, tolerance=tolerance)
-        problem = IntegratedClosing(over.map(periods, tolerance), over.scale, over=over)
+        problem = IntegratedShooting(over.map(periods, tolerance), over.scale, over=over)
     first = np.concatenate([orbit.start, orbit.values, [over.begin]])
     return followed(problem, first, low, high, most_points, orbit.outcome, progress=progress)
 
 
 def _free(
     over: SystemOver, start: ArrayLike | None, periods: int, tolerance: float
-) -> tuple[IntegratedClosing, PeriodicOrbit]:
+) -> tuple[IntegratedShooting, PeriodicOrbit]:
     if periods != 1:
         raise InputError(
             "are followed of a line with a prescribed speed only", element="driveline", key="periods", value=periods,
@@ -217,10 +217,10 @@ def _free(
     assert over.line is not None
     found = kept_speed_orbit(over.line, start, tolerance=tolerance, driven=lambda torque: over.at(over.begin, torque))
     torque = LINE_SCALE * torque_scale(over.line)
-    problem = IntegratedClosing(
+    problem = IntegratedShooting(
         over.map(periods, tolerance, torque),
         np.concatenate([over.scale[:-1], [torque, over.scale[-1]]]),
-        Phase.held(0, float(found.start[0]), over.scale[:-1]),
+        Phase.fixed(0, float(found.start[0]), over.scale[:-1]),
         over=over,
         neutral=neutral_motions(over.line),
     )
@@ -307,7 +307,7 @@ def piecewise_branch(
         begun = _line_begun(oscillator, first, start, speed, periods)
     else:
         begun = _oscillator_begun(oscillator, first, start, speed, periods)
-    problem = Closing(begun.map, np.append(begun.size, (high - low) * longest_step / STEP), over=begun.over)
+    problem = ShootingProblem(begun.map, np.append(begun.size, (high - low) * longest_step / STEP), over=begun.over)
     return followed(
         problem, np.append(begun.start, first), low, high, most_points, begun.outcome, tolerance=begun.tolerance,
         progress=progress,
@@ -347,7 +347,7 @@ def _line_begun(
     if orbit.outcome.ok:
         # Twists count by the larger of the motion and the gap, rates by that per phase.
         size[: len(prepared.springs)] = np.maximum(np.abs(orbit.twist_low), np.abs(orbit.twist_high))
-    name = "speed" if prepared.clock == "speed" else "frequency"
+    name = "speed" if prepared.independent_variable == "speed" else "frequency"
     over = Names(name, "rad/s", prepared.springs, "N*m", speed_unit(prepared.assembly.line))
     return _Begun(place, place.scale(size), orbit.start[place.kept], orbit.outcome, over, 1e-10)
 
@@ -360,9 +360,9 @@ def line_over(line: Driveline | Assembly, value: float, speed: float | str | Non
     InputError : excitation by speed and in time together, or none.
     """
     prepared = staged_line(line, value)
-    if prepared.clock == "frequency":
+    if prepared.independent_variable == "frequency":
         prepared = staged_line(line, speed)
-    if prepared.clock == "both":
+    if prepared.independent_variable == "both":
         raise InputError(
             "is excited by its rotation and in time, so its motions over speed have no common period",
             element="driveline", key="excitation", remedy="give orders in place of frequencies, or frequencies only",

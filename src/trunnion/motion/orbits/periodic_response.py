@@ -22,7 +22,13 @@ from trunnion.equations.clutch_capacity import carries_static_torque, refuse_ove
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
-from trunnion.equations.steady_base import bent, imbalance, refuse_dragged, require_balance, torques_in_words
+from trunnion.equations.steady_base import (
+    has_joint_angles,
+    imbalance,
+    refuse_dragged,
+    require_balance,
+    torques_in_words,
+)
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.stability import Stability, stability
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
@@ -30,7 +36,16 @@ from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contact
 from trunnion.motion.simulation.simulate import simulate_system
 from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier
-from trunnion.results.declared import Held, Judged, axis, ending, fields_over, over, remark, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    DescribedWithFindings,
+    data_attribute,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.outcome import Outcome
@@ -39,15 +54,15 @@ from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
     kept_speed_orbit,
     loaded_by_speed,
-    require_closing,
+    require_periodic,
     torque_driven_orbit,
 )
 from trunnion.steady.shooting.periodic_orbit import (
     TOLERANCE,
     IntegratedOrbit,
     PeriodicOrbit,
-    closing_of,
     periodic_orbit,
+    shooting_problem,
     speed_in_words,
 )
 from trunnion.systems.maps import SETTLED, IntegratedMap
@@ -112,7 +127,7 @@ def compared(
 
 
 @dataclass(frozen=True, repr=False)
-class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
+class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
     """The periodic motion of a line at one speed.
 
     torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
@@ -186,7 +201,7 @@ class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
         """Orders (k,) in cycles per turn of the input, and complex torques (k, shaft) [N m]; order 0 is the mean.
 
         A torque is Re[Y e^{i·order·Ωt}], its phase that of a cosine at zero rotation of the input, as in
-        ``order_response``; of a line that starts free, where the input is without vibration. Fourier integrals over
+        ``order_response``; of a free–free line, where the input is without vibration. Fourier integrals over
         the dense output, so that what is above ``highest`` does not appear below it; their error is that of the
         motion. NaN where no motion was found.
         """
@@ -211,22 +226,22 @@ class PeriodicResponse(Judged, OfShafts, IntegratedOrbit):
         """What to read first, speeds in ``unit``."""
         return by_gravity(_findings(self, unit))
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Twist and torque over one period, their orders, and the multipliers."""
         orders, amplitude = self.order_spectrum()
-        yield axis("time", self.time, "s")
-        yield axis("shaft", self.shafts)
-        yield axis("order", orders, "1", "cycles per turn of the input")
-        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
-        yield from fields_over("shaft", self, torque_peak_to_peak="N*m", peak_torque="N*m", torque_mean="N*m")
-        yield over("order shaft", "order_amplitude", amplitude, "N*m")
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield from fields_over("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
-        yield from remarks(driveline=self.system.name, verdict=str(self.verdict))
+        yield data_coordinate("time", self.time, "s")
+        yield data_coordinate("shaft", self.shafts)
+        yield data_coordinate("order", orders, "1", "cycles per turn of the input")
+        yield from data_variables("time shaft", self, twist="rad", torque="N*m")
+        yield from data_variables("shaft", self, torque_peak_to_peak="N*m", peak_torque="N*m", torque_mean="N*m")
+        yield data_variable("order shaft", "order_amplitude", amplitude, "N*m")
+        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
+        yield data_variable("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield from data_variables("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
+        yield from data_attributes(driveline=self.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
-        yield from remarks(continuum="; ".join(map(str, self.continuum)))
-        yield remark("comparison", str(self.comparison or self.no_comparison))
+        yield from data_attributes(continuum="; ".join(map(str, self.continuum)))
+        yield data_attribute("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
         """Torque of every shaft over one period; see ``pictures.motion``."""
@@ -276,7 +291,7 @@ def periodic_response(
     Parameters
     ----------
     line : a ``Driveline`` (or its ``Assembly``), or a ``System``.
-    speed : input speed [rad/s]; default the operating speed of the file. Of a line that starts free, its mean speed,
+    speed : input speed [rad/s]; default the operating speed of the file. Of a free–free line, its mean speed,
         kept by the disks with a drive_share; where none has one, a guess of the speed that its torques lead to.
     start : a state near the motion (2n,): deviations from uniform rotation [rad], then their rates [rad/s]; by default
         that of rigid shafts.
@@ -292,7 +307,7 @@ def periodic_response(
 
     Raises
     ------
-    InputError : no speed; a line whose excitations have no common period, or, where it starts free, act in time; a
+    InputError : no speed; a line whose excitations have no common period, or, where it is free–free, act in time; a
         clutch that carries more than its friction holds and no spring takes; a start beyond what its friction holds.
 
     Examples
@@ -359,7 +374,7 @@ def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settl
         if not orbit.outcome.ok:
             refuse_overload(assembly, prepared.speed)
         words = (
-            "does not apply (the line starts free; beyond the balance of its loads its drives give "
+            "does not apply (the line is free–free; beyond the balance of its loads its drives give "
             f"{orbit.values[-1]:.4g} N m at the input)"
         )
         return PeriodicResponse.of(orbit, line=prepared, speed=prepared.speed, no_comparison=words)
@@ -368,7 +383,7 @@ def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settl
 
 def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settle: bool) -> PeriodicResponse:
     """A free line without shares: its mean speed is found with the motion, from the speed given as a guess."""
-    require_closing(prepared)
+    require_periodic(prepared)
     row = prepared.assembly.table(1, prepared.speed)
     left = float(imbalance(prepared.assembly, row)[0])
     if left > 0 and not loaded_by_speed(prepared.assembly):
@@ -386,7 +401,7 @@ def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: flo
     if not orbit.outcome.ok and left:
         words = f"{orbit.outcome.sentence}; {torques_in_words(prepared.assembly, row[0])}"
         orbit = replace(orbit, outcome=Outcome(False, orbit.outcome.kind, words))
-    words = "does not apply (the line starts free: its speed is a result, not given)"
+    words = "does not apply (the line is free–free: its speed is a result, not given)"
     return PeriodicResponse.of(orbit, line=prepared, speed=orbit.values[-1], no_comparison=words)
 
 
@@ -395,7 +410,7 @@ def _continuum(line: LineSystem, orbit: IntegratedOrbit) -> tuple[StuckClutch, .
     system = orbit.system
     assert system.forcing_period is not None
     place = IntegratedMap.of(system, periods=round(orbit.period / system.forcing_period), tolerance=TOLERANCE)
-    closing = closing_of(place.holding(tuple(map(system.sliders.index, orbit.stuck))))
+    problem = shooting_problem(place.holding(tuple(map(system.sliders.index, orbit.stuck))))
 
     def watch(place: IntegratedMap, start: Array) -> Watched:
         run = place(start, tangents=False, dense=True).run
@@ -403,7 +418,7 @@ def _continuum(line: LineSystem, orbit: IntegratedOrbit) -> tuple[StuckClutch, .
         mean = fourier(lambda times: line.observe(system, times, run.at(times)).twist, run.time_of_state, 0)
         return Watched(seen.low, seen.high, mean[0].real)
 
-    return continuum(line.assembly, line.sliders, closing, orbit.start, watch, _shifts_alike(line, closing.map.held))
+    return continuum(line.assembly, line.sliders, problem, orbit.start, watch, _shifts_alike(line, problem.map.fixed))
 
 
 def _shifts_alike(line: LineSystem, stuck: tuple[int, ...]) -> bool:
@@ -414,7 +429,7 @@ def _shifts_alike(line: LineSystem, stuck: tuple[int, ...]) -> bool:
     clutches = [elements[topo.compliances[line.sliders[i].compliance].shafts[0]] for i in stuck]
     springs = [clutch.stiffnesses for clutch in clutches if isinstance(clutch, Clutch)]
     by_order = any(one.order for one in line.torques)
-    if bent(line.assembly) or any(len(stiffnesses) > 1 for stiffnesses in springs):
+    if has_joint_angles(line.assembly) or any(len(stiffnesses) > 1 for stiffnesses in springs):
         return False
     return not by_order or not any(map(any, springs))
 
@@ -433,7 +448,7 @@ def require_forced(line: LineSystem) -> None:
     """Refuse a line whose motion has no period given from outside."""
     if line.assembly.topology.free:
         raise InputError(
-            "starts free: its speed follows from its torques and is not periodic in time",
+            "is free–free: its speed follows from its torques and is not periodic in time",
             element="driveline",
             remedy="put a ConstantSpeed in front, or simulate it",
         )

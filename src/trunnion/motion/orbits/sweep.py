@@ -28,11 +28,19 @@ from trunnion.motion.orbits.periodic_branch import line_over
 from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Described,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
-from trunnion.steady.shooting.closing import refuse_speed
+from trunnion.steady.shooting.shooting_problem import refuse_speed
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 if TYPE_CHECKING:
@@ -120,13 +128,13 @@ class OscillatorSweep(Displacement[Array], Sweep, Described):
         """Peak-to-peak of x (points, 1)."""
         return self.peak_to_peak[:, None]
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Extremes, impacts and contact over frequency."""
-        yield axis("frequency", self.frequency, "rad/s")
-        yield from fields_over("frequency", self, **dict.fromkeys((*NUMBERS, "settled"), ""))
-        yield over("frequency", "contact", np.array(self.contact, dtype=str))
-        yield over("frequency", "periods", self.periods)
-        yield from remarks(oscillator=self.oscillator.name, direction=self._direction)
+        yield data_coordinate("frequency", self.frequency, "rad/s")
+        yield from data_variables("frequency", self, **dict.fromkeys((*NUMBERS, "settled"), ""))
+        yield data_variable("frequency", "contact", np.array(self.contact, dtype=str))
+        yield data_variable("frequency", "periods", self.periods)
+        yield from data_attributes(oscillator=self.oscillator.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
@@ -194,19 +202,21 @@ class LineSweep(TorqueRange, Sweep, Described):
             )  # fmt: skip
         return self.springs.index(spring)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Extremes of every spring's torque, impacts and contact of those with stages, over speed or frequency."""
-        clock = "speed" if self.line.clock == "speed" else "frequency"
+        independent_variable = "speed" if self.line.independent_variable == "speed" else "frequency"
         staged = [self.springs[e] for e in self.line.staged]
-        yield axis(clock, self.value, "rad/s")
-        yield axis("spring", self.springs)
-        yield axis("staged_spring", staged)
-        yield from fields_over(f"{clock} spring", self, torque_low="N*m", torque_high="N*m")
+        yield data_coordinate(independent_variable, self.value, "rad/s")
+        yield data_coordinate("spring", self.springs)
+        yield data_coordinate("staged_spring", staged)
+        yield from data_variables(f"{independent_variable} spring", self, torque_low="N*m", torque_high="N*m")
         for name, unit, kind in (("impacts", "", None), ("impact_energy", "J", None), ("contact", "", str)):
             values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
-            yield over(f"{clock} staged_spring", name, values.reshape(len(self.value), len(staged)), unit)
-        yield from fields_over(clock, self, settled="", periods="")
-        yield from remarks(driveline=self.line.name, direction=self._direction)
+            yield data_variable(
+                f"{independent_variable} staged_spring", name, values.reshape(len(self.value), len(staged)), unit
+            )
+        yield from data_variables(independent_variable, self, settled="", periods="")
+        yield from data_attributes(driveline=self.line.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
@@ -217,7 +227,7 @@ class LineSweep(TorqueRange, Sweep, Described):
     def unit(self) -> str:
         """What its speeds, or frequencies, read in: the unit of the description."""
         of_line = speed_unit(self.line.assembly.line)
-        return of_line if self.line.clock == "speed" else frequency_unit(of_line)
+        return of_line if self.line.independent_variable == "speed" else frequency_unit(of_line)
 
     def describe(self, unit: str | None = None) -> str:
         """What was found, speeds in ``unit``, by default that of the description."""

@@ -1,4 +1,4 @@
-"""Does a line that starts free reach the speed it is run up to, or does a resonance hold it?
+"""Does a free–free line reach the speed it is run up to, or does a resonance hold it?
 
 Its drives give the torque that the schedule asks for, whatever the line does: what balances the loads at the speed
 asked for, and what accelerates the inertia. A resonance takes power from the rotation, the more the longer the line
@@ -25,13 +25,13 @@ from trunnion.equations.loads import load_at_input
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
-from trunnion.motion.passing.schedule import Schedule
+from trunnion.motion.passing.schedule import SpeedSchedule
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.motion.simulation.simulate import prolonged, simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.motion.simulation.strongest_order import StrongestOrder, strongest_order
 from trunnion.results.counts import few
-from trunnion.results.declared import Held, remarks
+from trunnion.results.declared import DatasetItem, data_attributes
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_span, about_speed, frequency_unit, rounded_speed
 from trunnion.results.units import order_words
@@ -65,7 +65,7 @@ FELL = 0.5
 
 
 @dataclass(frozen=True)
-class Hanging:
+class SpeedCapture:
     """From ``since`` to ``until`` [s] a line stayed about ``speed`` [rad/s], though much more was asked for; in the
     later half of that its mean speed over a turn was between ``lowest`` and ``highest``."""
 
@@ -82,7 +82,7 @@ class Hanging:
 
 
 @dataclass(frozen=True)
-class Slip:
+class ClutchSlip:
     """A clutch that let go: its name, by how many ``turns`` its ends left each other in all, and the mean speed [rad/s]
     that what is behind it has over the last turn, ``lost`` [rad/s] slower than without slip."""
 
@@ -94,7 +94,7 @@ class Slip:
 
 @dataclass(frozen=True)
 class RunUpEnding:
-    """How a line that starts free came to the speed it was run up to, or how a clutch let go.
+    """How a free–free line came to the speed it was run up to, or how a clutch let go.
 
     kind:
 
@@ -120,29 +120,31 @@ class RunUpEnding:
     speed: float
     first: float
     asked: float
-    hanging: Hanging | None = None
+    hanging: SpeedCapture | None = None
     strongest: StrongestOrder | None = None
     drive: float = 0.0
     load: float = 0.0
     ways: tuple[str, str] | None = None
-    slip: Slip | None = None
+    slip: ClutchSlip | None = None
 
     @property
     def on_time(self) -> bool:
         """Whether the line reached the last speed when it was asked for, and hung nowhere."""
         return self.kind == "reached" and self.time <= self.scheduled and self.hanging is None
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """When, how fast, and where it hung."""
-        yield from remarks(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
+        yield from data_attributes(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
         if self.hanging is not None:
             hung = self.hanging
-            yield from remarks(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
-            yield from remarks(drive_torque=self.drive, load_torque=self.load)
+            yield from data_attributes(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
+            yield from data_attributes(drive_torque=self.drive, load_torque=self.load)
         if self.slip is not None:
-            yield from remarks(slipped=self.slip.clutch, slipped_turns=self.slip.turns, slipped_speed=self.slip.speed)
+            yield from data_attributes(
+                slipped=self.slip.clutch, slipped_turns=self.slip.turns, slipped_speed=self.slip.speed
+            )
         if self.hanging is not None and self.strongest is not None:
-            yield from remarks(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
+            yield from data_attributes(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
 
     def outcome(self, failed: Outcome, unit: str) -> Outcome:
         """The outcome, speeds in ``unit``; ``failed`` is the integration's, which counts where it did not get
@@ -255,9 +257,9 @@ def _mode(strongest: StrongestOrder, unit: str) -> str:
 
 
 def run_to_the_end(
-    run: LineSimulation, schedule: Schedule, extra: float, tolerance: float
+    run: LineSimulation, schedule: SpeedSchedule, extra: float, tolerance: float
 ) -> tuple[LineSimulation, RunUpEnding]:
-    """A scheduled ``run`` of a line that starts free, prolonged as far as its ending takes, and the ending.
+    """A scheduled ``run`` of a free–free line, prolonged as far as its ending takes, and the ending.
 
     ``extra`` [N m at the input]: what its drives give from the first speed on beyond loads and inertia.
     """
@@ -269,7 +271,7 @@ def run_to_the_end(
     return run, _ending(kind, run, schedule, drive)
 
 
-def slipped(run: LineSimulation, schedule: Schedule) -> RunUpEnding | None:
+def slipped(run: LineSimulation, schedule: SpeedSchedule) -> RunUpEnding | None:
     """The ending of a scheduled run in which a clutch let go by more than a turn; None where none did."""
     clutches = sorted({slider.compliance for slider in run.line.sliders})
     if not clutches:
@@ -286,11 +288,13 @@ def slipped(run: LineSimulation, schedule: Schedule) -> RunUpEnding | None:
     states = run.at(np.array([since, run.end]))[:, place]
     asked = float(schedule.profile.angle(run.end) - schedule.profile.angle(since)) / (run.end - since)
     own = ratio * asked + float(states[1] - states[0]) / (run.end - since)
-    slip = Slip(run.shafts[worst], float(turns.max()), abs(own), abs(ratio) * asked - abs(own))
+    slip = ClutchSlip(run.shafts[worst], float(turns.max()), abs(own), abs(ratio) * asked - abs(own))
     return RunUpEnding("slipped", run.end, schedule.duration, speed, schedule.first, schedule.last, slip=slip)
 
 
-def _followed(run: LineSimulation, schedule: Schedule, drive: float, tolerance: float) -> tuple[LineSimulation, str]:
+def _followed(
+    run: LineSimulation, schedule: SpeedSchedule, drive: float, tolerance: float
+) -> tuple[LineSimulation, str]:
     """The run until it reaches the last speed, hangs, stops, or is given up; and which of these."""
     if not run.outcome.ok:
         return run, run.outcome.kind
@@ -334,7 +338,7 @@ def wanders(speeds: Array) -> bool:
     return bool(np.ptp(later) > WANDERS * later.mean())
 
 
-def longest_hanging(times: Array, speeds: Array, schedule: Schedule) -> Hanging | None:
+def longest_hanging(times: Array, speeds: Array, schedule: SpeedSchedule) -> SpeedCapture | None:
     """The longest stretch in which the mean speed gained less than a tenth of what was asked, where that is at least a
     tenth of the range and several turns; None without."""
     asked = schedule.continued(times)
@@ -348,11 +352,11 @@ def longest_hanging(times: Array, speeds: Array, schedule: Schedule) -> Hanging 
         gained = abs(float(asked[last] - asked[since])) if last > since else 0.0
         if gained >= HUNG * schedule.range and (best is None or times[last] - times[since] > best.duration):
             within = speeds[since : last + 1]
-            best = Hanging(float(times[since]), float(times[last]), float(within.mean()), *_range(within))
+            best = SpeedCapture(float(times[since]), float(times[last]), float(within.mean()), *_range(within))
     return best if best is not None and best.duration * best.speed >= HANGING_TURNS * TURN else None
 
 
-def _ending(kind: str, run: LineSimulation, schedule: Schedule, drive: float) -> RunUpEnding:
+def _ending(kind: str, run: LineSimulation, schedule: SpeedSchedule, drive: float) -> RunUpEnding:
     """The ending with what hung and vibrated."""
     assembly, speed = run.line.assembly, run.whole.last_turn()[1]
     end = run.end
@@ -366,7 +370,7 @@ def _ending(kind: str, run: LineSimulation, schedule: Schedule, drive: float) ->
     if kind == "captured":
         held = times >= schedule.duration
         since = hanging.since if hanging else schedule.duration
-        hanging = Hanging(since, run.end, float(speeds[held].mean()), *_range(speeds[held]))
+        hanging = SpeedCapture(since, run.end, float(speeds[held].mean()), *_range(speeds[held]))
     at = hanging.speed if hanging and kind == "captured" else max(speed, 0.0)
     column = assembly.packed.column
     last, load = (float(load_at_input(assembly.topology, column, assembly.table(1, w))[0]) for w in (schedule.last, at))
@@ -387,20 +391,20 @@ def _inertia(run: LineSimulation) -> float:
     return float(co.inertia[0] @ assembly.topology.mean_speeds**2)
 
 
-def _behind(turning: InputRotation, schedule: Schedule) -> float:
+def _behind(turning: InputRotation, schedule: SpeedSchedule) -> float:
     """By how much the input turned slower than asked over its last turn [rad/s]; faster, where it runs down."""
     since, speed = turning.last_turn()
     asked = float(schedule.profile.angle(turning.end) - schedule.profile.angle(since)) / (turning.end - since)
     return schedule.sense * (asked - speed)
 
 
-def _stopped(turning: InputRotation, schedule: Schedule, since: float) -> bool:
+def _stopped(turning: InputRotation, schedule: SpeedSchedule, since: float) -> bool:
     """Whether a line has hardly turned since a time, or back."""
     low, high = (float(a) for a in turning.angle([since, turning.end]))
     return high - low <= STOPPED * min(schedule.first, schedule.last) * (turning.end - since)
 
 
-def _span(run: LineSimulation, schedule: Schedule) -> float:
+def _span(run: LineSimulation, schedule: SpeedSchedule) -> float:
     """Seconds in which vibration has settled and many turns are made."""
     turns = FEWEST_TURNS * TURN / max(run.whole.last_turn()[1], STOPPED * schedule.first)
     try:
@@ -419,7 +423,7 @@ def _gain(times: Array, speeds: Array) -> float:
     return float((speeds[-third:].mean() - speeds[:third].mean()) / apart) if apart > 0 else 0.0
 
 
-def _keeps_the_last_speed(run: LineSimulation, schedule: Schedule, drive: float, tolerance: float) -> bool:
+def _keeps_the_last_speed(run: LineSimulation, schedule: SpeedSchedule, drive: float, tolerance: float) -> bool:
     """Whether the torque under which a line hangs, put on it at the last speed, keeps it well above where it hangs."""
     assembly, span = run.line.assembly, _span(run, schedule)
     way = abs(schedule.last - run.whole.last_turn()[1])

@@ -4,9 +4,9 @@ A line that passes a resonance quickly never reaches its steady amplitude; one t
 that is accelerated briskly is twisted by its own inertia. The torque is therefore told apart: what the loads and the
 inertia behind a shaft ask for at each speed and acceleration (quasi-static), and what vibrates about that.
 
-The acceleration is that of the drive. Where a line starts free, nothing turns at a prescribed speed: its disks with a
+The acceleration is that of the drive. Where a line is free–free, nothing turns at a prescribed speed: its disks with a
 drive_share carry the torque that balances the loads at each speed asked for and accelerates the whole inertia, were it
-rigid and its joints straight. What dampers, bent joints and vibration take beyond that makes it lag, and a resonance
+rigid and its joints straight. What dampers, angled joints and vibration take beyond that makes it lag, and a resonance
 that takes all that accelerates captures it (Sommerfeld's effect); ``capture`` tells how such a run ends.
 """
 
@@ -29,17 +29,25 @@ from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_branch import periodic_branch
 from trunnion.motion.passing.capture import RunUpEnding, run_to_the_end, slipped
-from trunnion.motion.passing.schedule import Schedule, check, schedule
+from trunnion.motion.passing.schedule import SpeedSchedule, check, schedule
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.simulate import simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.curves import extremes_in
 from trunnion.results.counts import counted
-from trunnion.results.declared import Described, Held, axis, ending, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Described,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed
-from trunnion.steady.shooting.free_orbit import closes, kept_speed_orbit
+from trunnion.steady.shooting.free_orbit import is_periodic, kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import periodic_orbit
 from trunnion.waiting import OutOfTime, keeps_time, time_is_up, time_kept
 
@@ -51,7 +59,7 @@ STATIC_SPEEDS = 65
 SLOWEST = 1e-3
 """Share of the first speed below which no static torque is asked for: a line that stops has none by speed."""
 EVENED = 9
-"""Turns over which the lag is averaged for the acceleration that a line which starts free has."""
+"""Turns over which the lag is averaged for the acceleration that a free–free line has."""
 LOOSER, LOOSEST = 100.0, 1e-6
 """How much looser the tolerance of a second run is whose ending must be the same, and how loose it may be."""
 
@@ -73,18 +81,18 @@ class RunUp(Described):
     """A passage at constant acceleration.
 
     speed (turns,) [rad/s]: mean speed in each turn of the input, or in the little more that leaves none over, and time
-    (turns,) [s] of its middle; where the line starts free, of the whole line, whose vibration does not count; upper and
-    lower (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; vibration (turns,
-    shaft): the largest distance of the torque from the quasi-static one, which loads and inertia ask for at the speed
-    and acceleration that the line has; lag (turns,) [rad/s]: by how much it turned slower than asked, which only a line
-    that starts free can; inertia_torque (shaft,) [N m]: what accelerates the inertia behind each shaft at the full
-    acceleration, were it rigid and its joints straight; steady: the steady response in the same range (None if not
-    asked for); ending: how a line that starts free came to the last speed, None where the speed is prescribed; ended:
+    (turns,) [s] of its middle; where the line is free–free, of the whole line, whose vibration does not count; upper
+    and lower (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; vibration
+    (turns, shaft): the largest distance of the torque from the quasi-static one, which loads and inertia ask for at the
+    speed and acceleration that the line has; lag (turns,) [rad/s]: by how much it turned slower than asked, which only
+    a line that is free–free can; inertia_torque (shaft,) [N m]: what accelerates the inertia behind each shaft at the
+    full acceleration, were it rigid and its joints straight; steady: the steady response in the same range (None if not
+    asked for); ending: how a free–free line came to the last speed, None where the speed is prescribed; ended:
     what a time limit left out, as a clause, "" where nothing.
     """
 
     simulation: LineSimulation
-    schedule: Schedule
+    schedule: SpeedSchedule
     time: Array
     speed: Array
     upper: Array
@@ -114,7 +122,7 @@ class RunUp(Described):
     @property
     def outcome(self) -> Outcome:
         """How the run ended, speeds in the unit of the line's description: ``kind`` is "reached", "slipped" where a
-        clutch let go, or for a line that starts free "captured", "short of torque", "stalled" or "undecided"; see
+        clutch let go, or for a free–free line "captured", "short of torque", "stalled" or "undecided"; see
         ``RunUpEnding``."""
         return self.outcome_in(self.unit)
 
@@ -167,26 +175,26 @@ class RunUp(Described):
             return np.full(len(self.shafts), np.nan)
         return np.asarray(np.nanmax(self.steady.swing, axis=0))
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Extremes and vibration of every torque turn by turn and in all, and the steady response."""
-        yield axis("shaft", self.shafts)
-        yield over("turn shaft", "torque_upper", self.upper, "N*m")
-        yield over("turn shaft", "torque_lower", self.lower, "N*m")
-        yield from fields_over("turn", self, time="s", speed="rad/s")
-        yield from fields_over("shaft", self, peak_torque="N*m", peak_speed="rad/s", inertia_torque="N*m")
-        yield over("turn shaft", "vibration", self.vibration, "N*m")
-        yield from fields_over("shaft", self, peak_vibration="N*m", vibration_speed="rad/s")
-        yield over("turn", "lag", self.lag, "rad/s")
+        yield data_coordinate("shaft", self.shafts)
+        yield data_variable("turn shaft", "torque_upper", self.upper, "N*m")
+        yield data_variable("turn shaft", "torque_lower", self.lower, "N*m")
+        yield from data_variables("turn", self, time="s", speed="rad/s")
+        yield from data_variables("shaft", self, peak_torque="N*m", peak_speed="rad/s", inertia_torque="N*m")
+        yield data_variable("turn shaft", "vibration", self.vibration, "N*m")
+        yield from data_variables("shaft", self, peak_vibration="N*m", vibration_speed="rad/s")
+        yield data_variable("turn", "lag", self.lag, "rad/s")
         if self.steady is not None:
-            yield axis("steady_speed", self.steady.speed, "rad/s")
-            yield over("steady_speed shaft", "steady_torque", self.steady.largest, "N*m")
-            yield over("steady_speed shaft", "steady_swing", self.steady.swing, "N*m")
-            yield over("steady_speed", "steady_verdict", self.steady.verdict)
-        yield from remarks(acceleration=self.acceleration, ramp=self.ramp)
+            yield data_coordinate("steady_speed", self.steady.speed, "rad/s")
+            yield data_variable("steady_speed shaft", "steady_torque", self.steady.largest, "N*m")
+            yield data_variable("steady_speed shaft", "steady_swing", self.steady.swing, "N*m")
+            yield data_variable("steady_speed", "steady_verdict", self.steady.verdict)
+        yield from data_attributes(acceleration=self.acceleration, ramp=self.ramp)
         if self.ending is not None:
             yield from self.ending.declared()
         yield from ending(self.outcome)
-        yield from remarks(ended=self.ended)
+        yield from data_attributes(ended=self.ended)
 
     def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
         """Envelope against the steady response; see ``pictures.motion.run_up``."""
@@ -249,7 +257,7 @@ def run_up(
     """Run a line from speed ``first`` to ``last`` at an acceleration that sets in smoothly and then stays.
 
     The run begins on the periodic motion at ``first`` where there is one, otherwise without twist (a line that starts
-    free: twisted by its mean torques). A line that starts free and is behind at the end is followed further, its drives
+    free: twisted by its mean torques). A free–free line and is behind at the end is followed further, its drives
     holding their last torque, until it reaches the last speed or hangs: ``outcome.kind`` is "reached", "captured",
     "short of torque", "stalled" or "undecided". Where it was behind on the way, another run at another tolerance must
     end alike.
@@ -273,7 +281,7 @@ def run_up(
     Raises
     ------
     InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a line that
-        starts free without a drive_share; more than 20 000 turns.
+        is free–free without a drive_share; more than 20 000 turns.
 
     Examples
     --------
@@ -315,7 +323,7 @@ def run_up(
     speed = np.diff(run.whole.angle(edges)) / np.diff(edges)
     lag = np.diff(asked.profile.angle(edges)) / np.diff(edges) - speed
     middle = (edges[:-1] + edges[1:]) / 2
-    own = _Own(asked, middle, lag) if ending is not None else None
+    own = _FreeInputSpeed(asked, middle, lag) if ending is not None else None
     quasi_static, count = _quasi_static(prepared.assembly, asked, own), len(run.shafts)
 
     def curves(times: Array) -> Array:
@@ -345,9 +353,9 @@ def run_up(
 
 
 def _run(
-    prepared: LineSystem, asked: Schedule, begun: Array, extra: float, tolerance: float
+    prepared: LineSystem, asked: SpeedSchedule, begun: Array, extra: float, tolerance: float
 ) -> tuple[LineSimulation, RunUpEnding | None]:
-    """The run, and how it ends where the line starts free."""
+    """The run, and how it ends where the line is free–free."""
     run = simulate_line(
         prepared.assembly, asked.profile.time[-1], speed=asked.profile, start=begun, tolerance=tolerance, drive=extra
     )
@@ -361,7 +369,7 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
     """The state to begin with, and what a free line's drives give there [N m at the input] beyond the balance."""
     if prepared.assembly.topology.free:
         begun = prepared.twisted()
-        if not closes(prepared):
+        if not is_periodic(prepared):
             return begun, 0.0
         found = kept_speed_orbit(prepared, settle=False)
         return (found.start, found.values[-1]) if found.outcome.ok else (begun, 0.0)
@@ -385,12 +393,12 @@ def _inertia_torque(assembly: Assembly) -> Array:
 
 
 @dataclass(frozen=True)
-class _Own:
-    """Speed and acceleration of a line that starts free: what is asked, less its ``lag`` (turns,) [rad/s] about
+class _FreeInputSpeed:
+    """Speed and acceleration of a free–free line: what is asked, less its ``lag`` (turns,) [rad/s] about
     ``time`` (turns,) [s], evened out over some turns so that vibration of the rotation does not count as
     acceleration."""
 
-    asked: Schedule
+    asked: SpeedSchedule
     time: Array
     lag: Array
 
@@ -406,7 +414,7 @@ class _Own:
         return speed, self.asked.rate(times) - np.interp(times, self.time, slope)
 
 
-def _quasi_static(assembly: Assembly, asked: Schedule, own: _Own | None) -> Callable[[Array], Array]:
+def _quasi_static(assembly: Assembly, asked: SpeedSchedule, own: _FreeInputSpeed | None) -> Callable[[Array], Array]:
     """Times → torque (times, shaft) [N m] that loads and inertia ask for at their speed and acceleration."""
     ends = [asked.first, asked.last] if own is None else [asked.first, asked.last, *own.at(own.time)[0]]
     speeds = np.linspace(max(min(ends), SLOWEST * asked.first), max(ends), STATIC_SPEEDS)
@@ -426,7 +434,7 @@ def _quasi_static(assembly: Assembly, asked: Schedule, own: _Own | None) -> Call
 def _steady(assembly: Assembly, first: float, last: float, points: int) -> SteadyResponse | None:
     """The branch of steady motions over the range, folds and all; what was found of it."""
     prepared = line_system(assembly, first)
-    if prepared.system.forcing_period is None or (assembly.topology.free and not closes(prepared)):
+    if prepared.system.forcing_period is None or (assembly.topology.free and not is_periodic(prepared)):
         return None
     if prepared.sliders or assembly.topology.dragged:  # no branch follows them
         return None

@@ -1,6 +1,6 @@
 """``safe_accelerations``: how fast and how slowly a line may be run up for a torque that must not be exceeded.
 
-Safe is an acceleration at which the run reaches its last speed and keeps every limit. Whether a line that starts free
+Safe is an acceleration at which the run reaches its last speed and keeps every limit. Whether a free–free line
 passes a resonance need not be monotone in the acceleration, so that what is said holds for the accelerations that were
 run, and names them.
 """
@@ -20,7 +20,14 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
-from trunnion.results.declared import Described, Held, axis, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Described,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+)
 from trunnion.results.speeds import about_span, acceleration_span, rounded_speed, show_acceleration
 
 REACHED = "reached"
@@ -29,7 +36,7 @@ EDGE = 0.01
 
 
 @dataclass(frozen=True)
-class Trial:
+class TrialRunUp:
     """A run at ``acceleration`` [rad/s²]: its kind of ending, the speed at which it ended or hung [rad/s], and the
     largest torque over its limit."""
 
@@ -52,7 +59,7 @@ class SafeAccelerations(Described):
     read in.
     """
 
-    trials: tuple[Trial, ...]
+    trials: tuple[TrialRunUp, ...]
     last: float
     unit: str
 
@@ -77,7 +84,7 @@ class SafeAccelerations(Described):
         return np.array([one.safe for one in self.trials])
 
     @property
-    def stretch(self) -> tuple[Trial, ...]:
+    def stretch(self) -> tuple[TrialRunUp, ...]:
         """The quietest safe run, and its neighbours up to the next one on each side that is not safe; empty without."""
         safe = [i for i, one in enumerate(self.trials) if one.safe]
         if not safe:
@@ -104,14 +111,14 @@ class SafeAccelerations(Described):
         """What may be done, speeds in the unit of the line's description."""
         return self.describe()
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Ending and share of the limit of every acceleration tried, and the ends of the quietest safe stretch."""
-        yield axis("acceleration", self.acceleration, "rad/s^2")
-        yield over("acceleration", "share", self.share, "1")
-        yield over("acceleration", "outcome", np.array(self.outcome, dtype=str))
-        yield over("acceleration", "end_speed", [one.speed for one in self.trials], "rad/s")
-        yield from fields_over("", self, slowest="rad/s^2", fastest="rad/s^2")
-        yield from remarks(says=self.sentence)
+        yield data_coordinate("acceleration", self.acceleration, "rad/s^2")
+        yield data_variable("acceleration", "share", self.share, "1")
+        yield data_variable("acceleration", "outcome", np.array(self.outcome, dtype=str))
+        yield data_variable("acceleration", "end_speed", [one.speed for one in self.trials], "rad/s")
+        yield from data_variables("", self, slowest="rad/s^2", fastest="rad/s^2")
+        yield from data_attributes(says=self.sentence)
 
     def describe(self, unit: str | None = None) -> str:
         """What may be done, speeds in ``unit``, by default that of the line's description."""
@@ -178,7 +185,7 @@ def safe_accelerations(
 ) -> SafeAccelerations:
     """Slowest and fastest acceleration whose passage reaches ``last`` and keeps |torque| below ``limit``.
 
-    A line that starts free may be captured by a resonance (``run_up``): such an acceleration is not safe, however small
+    A free–free line may be captured by a resonance (``run_up``): such an acceleration is not safe, however small
     its torque.
 
     Parameters
@@ -218,12 +225,12 @@ def safe_accelerations(
     if isinstance(points, bool) or one_number(points, "points", "13, say") != int(points) or points < 2:
         raise InputError("must be a whole number from 2", key="points", value=points, remedy="13, say")
 
-    def tried(rate: float) -> Trial:
+    def tried(rate: float) -> TrialRunUp:
         run = run_up(prepared.assembly, first, last, acceleration=rate, ramp=ramp, steady=0, tolerance=tolerance)
         speed = (
             last if run.ending is None else run.ending.hung_speed if run.outcome.kind != REACHED else run.ending.speed
         )
-        return Trial(rate, run.outcome.kind, float(speed), float(np.max(run.peak_torque / limits)))
+        return TrialRunUp(rate, run.outcome.kind, float(speed), float(np.max(run.peak_torque / limits)))
 
     found = SafeAccelerations(
         tuple(tried(float(a)) for a in np.geomspace(low, high, int(points))),

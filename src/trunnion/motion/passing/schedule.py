@@ -29,7 +29,7 @@ MOST_TURNS = 20_000
 
 
 @dataclass(frozen=True)
-class Schedule:
+class SpeedSchedule:
     """From ``first`` to ``last`` [rad/s] at an ``acceleration`` (magnitude, [rad/s²]) that sets in over ``ramp``
     [s]."""
 
@@ -74,7 +74,7 @@ class Schedule:
         return np.asarray(np.where(t <= self.duration, self.sense * self.acceleration * rise, 0.0))
 
 
-def schedule(assembly: Assembly, first: float, last: float, acceleration: float, ramp: float | None) -> Schedule:
+def schedule(assembly: Assembly, first: float, last: float, acceleration: float, ramp: float | None) -> SpeedSchedule:
     """The schedule asked for; without a ``ramp`` over three periods of the slowest mode, but at most until half of the
     range is passed.
 
@@ -92,7 +92,7 @@ def schedule(assembly: Assembly, first: float, last: float, acceleration: float,
             "does not fit in the run", element="run_up", key="ramp", value=float(ramp),
             remedy=f"give 0 to {2 * longest:.4g} s, or leave it out",
         )  # fmt: skip
-    return Schedule(float(first), float(last), float(acceleration), float(ramp))
+    return SpeedSchedule(float(first), float(last), float(acceleration), float(ramp))
 
 
 def check(first: float, last: float, acceleration: float) -> None:

@@ -16,8 +16,8 @@ from scipy.integrate import solve_ivp
 
 from trunnion.arrays import Array, Flags
 from trunnion.errors import InputError
-from trunnion.numerics.curves import at_place, meetings
-from trunnion.results.declared import Held, Result, ending, fields_over, remarks
+from trunnion.numerics.curves import at_place, places_at
+from trunnion.results.declared import DatasetItem, Result, data_attributes, data_variables, ending
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
@@ -85,10 +85,10 @@ class ApproximateResponse(ResponseCurves, Result):
         turns = np.flatnonzero(np.diff(self.frequency)[:-1] * np.diff(self.frequency)[1:] < 0) + 1
         return tuple((float(self.frequency[i]), float(self.amplitude[i])) for i in turns)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Frequency, amplitude, mean and stability over the points."""
-        yield from fields_over("point", self, frequency="rad/s", amplitude="", mean="", stable="")
-        yield from remarks(method=self.method, note=self.note)
+        yield from data_variables("point", self, frequency="rad/s", amplitude="", mean="", stable="")
+        yield from data_attributes(method=self.method, note=self.note)
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -163,7 +163,7 @@ class SlowFlow(ABC):
         """All steady states at one frequency, by rising amplitude."""
         curve = self.response(0.98 * frequency, 1.02 * frequency)
         found = []
-        for place in meetings(curve.frequency, frequency):
+        for place in places_at(curve.frequency, frequency):
             size = self._polished(at_place(curve.amplitude, place), frequency)
             phase = self.steady_phase(size, frequency)
             found.append(SteadyState(size, phase, self.mean(size), self.is_stable(size, phase, frequency)))

@@ -21,8 +21,8 @@ from trunnion.equations.staged_line import StagedLine, refuse_lost_speed, staged
 from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.numerics.piecewise_linear.staged_flow import StagedPassage, kernel, move
-from trunnion.results.declared import Held, Result, axis, ending, over, remark
+from trunnion.numerics.piecewise_linear.staged_flow import StagedSegment, kernel, move
+from trunnion.results.declared import DatasetItem, Result, data_attribute, data_coordinate, data_variable, ending
 from trunnion.results.outcome import Outcome
 from trunnion.systems.regimes import SLACK
 
@@ -120,19 +120,21 @@ class ExactMotion(Result):
         out[np.flatnonzero(inside)[order]] = found.states
         return out
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Twist, its rate, torque and stage of every spring over time, and the located changes of stage."""
-        yield axis("time", self.time, "s")
-        yield axis("spring", self.springs)
-        yield over("time spring", "twist", self.twist, "rad")
-        yield over("time spring", "twist_rate", self.rate, "rad/s")
-        yield over("time spring", "torque", self.torque, "N*m")
-        yield over("time spring", "stage", self.stage[:, : len(self.springs)])
-        yield over("event", "event_time", self.events.time, "s")
-        yield over("event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str))
-        yield over("event", "event_stage", self.events.stage)
-        yield over("event", "event_side", self.events.side)
-        yield remark("driveline", self.line.name)
+        yield data_coordinate("time", self.time, "s")
+        yield data_coordinate("spring", self.springs)
+        yield data_variable("time spring", "twist", self.twist, "rad")
+        yield data_variable("time spring", "twist_rate", self.rate, "rad/s")
+        yield data_variable("time spring", "torque", self.torque, "N*m")
+        yield data_variable("time spring", "stage", self.stage[:, : len(self.springs)])
+        yield data_variable("event", "event_time", self.events.time, "s")
+        yield data_variable(
+            "event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str)
+        )
+        yield data_variable("event", "event_stage", self.events.stage)
+        yield data_variable("event", "event_side", self.events.side)
+        yield data_attribute("driveline", self.line.name)
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -185,8 +187,8 @@ def exact_motion(
 
     Raises
     ------
-    InputError : a line that has no exact motion, or starts free and leaves the speed that its excitation turns with; no
-        duration, a start of the wrong size, times outside the run.
+    InputError : a line that has no exact motion, or is free–free and leaves the speed that its excitation turns with;
+        no duration, a start of the wrong size, times outside the run.
 
     Examples
     --------
@@ -256,7 +258,7 @@ def stage_events(line: StagedLine, events: Array) -> StageEvents:
     return StageEvents(events[:, 0], spring, stage, line.sides[spring, stage], events[:, 3])
 
 
-def _outcome(line: StagedLine, run: StagedPassage) -> Outcome:
+def _outcome(line: StagedLine, run: StagedSegment) -> Outcome:
     if run.done:
         return Outcome(True, "reached", f"reached {run.time:g} s with {len(run.events)} changes of stage")
     busiest = np.bincount(run.events[:, 1].astype(np.int64), minlength=line.size)

@@ -1,6 +1,6 @@
-"""How the input of a line turned in a run: as prescribed, or by itself where the line starts free.
+"""How the input of a line turned in a run: as prescribed, or by itself where the line is free–free.
 
-Orders count cycles per turn of the input. A line that starts free turns as its torques let it, whatever speed it was
+Orders count cycles per turn of the input. A free–free line turns as its torques let it, whatever speed it was
 begun at or asked for, so that turns, speeds and orders are read from the rotation that it makes.
 """
 
@@ -28,7 +28,7 @@ TURN = 2 * np.pi
 class InputRotation:
     """Rotation of a line's input from t = 0 to ``end`` [s].
 
-    profile: the speed prescribed, or asked of a line that starts free; cuts (steps + 1,) [s] between which the motion
+    profile: the speed prescribed, or asked of a free–free line; cuts (steps + 1,) [s] between which the motion
     is smooth; deviation: times (m,) → deviation (m,) [rad] from the profile's angle and its rate (m,) [rad/s], None
     where the speed is prescribed.
     """

@@ -2,7 +2,7 @@
 
 The torque is read at equal steps of the input's angle, so that an order is a line whatever the speed does, and
 transformed over windows of a few turns (Hann, overlapping by half). A pure order shows its amplitude. The angle is the
-one that the input turned: of a line that starts free the line's own, whatever speed it was begun at or asked for, and
+one that the input turned: of a free–free line the line's own, whatever speed it was begun at or asked for, and
 the mean rotation of the whole line, which the vibration of a light input does not modulate.
 """
 
@@ -27,7 +27,7 @@ WINDOW = 8
 @dataclass(frozen=True)
 class OrderMap:
     """amplitude (window, order, shaft) [N m] at speed (window,) [rad/s], that of the input in the middle of the window
-    or, where the line starts free, its mean over the window, and time (window,) [s] over order (order,) in cycles per
+    or, where the line is free–free, its mean over the window, and time (window,) [s] over order (order,) in cycles per
     turn of the input; unit: what speeds read in."""
 
     time: Array
@@ -56,7 +56,7 @@ def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.
 
     Raises
     ------
-    InputError : fewer turns than two windows; a line that starts free and turns back, where orders mean nothing.
+    InputError : fewer turns than two windows; a free–free line and turns back, where orders mean nothing.
 
     Examples
     --------

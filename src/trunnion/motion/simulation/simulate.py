@@ -86,9 +86,9 @@ def simulate(
     ----------
     system : a ``Driveline`` (or its ``Assembly``), or a ``System``.
     duration : length of the motion [s]; or one of ``turns``, ``periods`` and ``times`` instead.
-    turns : of a driveline's input, its own where the line starts free; the motion ends when they are made.
+    turns : of a driveline's input, its own where the line is free–free; the motion ends when they are made.
     speed : input speed of a driveline [rad/s], by default the file's operating speed; or a ``SpeedProfile``. A line
-        that starts free begins there: its disks with a drive_share carry what balances the loads at that speed, and
+        that is free–free begins there: its disks with a drive_share carry what balances the loads at that speed, and
         what accelerates its inertia along a profile; ``input_speed`` and ``turns`` of the result tell how it really
         turns.
     periods : of a system's forcing.
@@ -110,7 +110,7 @@ def simulate(
     Raises
     ------
     InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
-        excitation by the speed on a line that starts free and leaves the speed it begins with.
+        excitation by the speed on a free–free line and leaves the speed it begins with.
 
     Examples
     --------
@@ -277,7 +277,7 @@ def simulate_line(
     elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:
         for one in prepared.torques:
             one.refuse_change()
-    go = _Going(tuple(events), tolerance, most_steps, dense)
+    go = _IntegrationSettings(tuple(events), tolerance, most_steps, dense)
     if turns is not None and prepared.assembly.topology.free:
         pieces = _made_turns(prepared, profile, state, turns, duration, go)
     else:
@@ -297,7 +297,7 @@ def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: 
     end, course = run.profile.courses(run.end + duration)[-1]
     row = run.line.assembly.table(1, run.profile.speed[0])[0]
     system = run.line.system.reading(run.line.numbers(row, course, drive))
-    piece = _Going((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
+    piece = _IntegrationSettings((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
     return _sampled(LineSimulation.of(run.line, run.profile, [*run.pieces, piece]))
 
 
@@ -308,7 +308,7 @@ def _sampled(run: LineSimulation) -> LineSimulation:
 
 
 @dataclass(frozen=True)
-class _Going:
+class _IntegrationSettings:
     """How a line is integrated."""
 
     events: tuple[Event, ...]
@@ -325,7 +325,7 @@ class _Going:
 
 
 def _along(
-    prepared: LineSystem, profile: SpeedProfile, state: Array, duration: float, drive: float, go: _Going
+    prepared: LineSystem, profile: SpeedProfile, state: Array, duration: float, drive: float, go: _IntegrationSettings
 ) -> list[Simulation]:
     """The pieces of a run along a profile."""
     row = prepared.assembly.table(1, profile.speed[0])[0]
@@ -343,7 +343,7 @@ def _along(
 
 
 def _made_turns(
-    prepared: LineSystem, profile: SpeedProfile, state: Array, turns: float, guess: float, go: _Going
+    prepared: LineSystem, profile: SpeedProfile, state: Array, turns: float, guess: float, go: _IntegrationSettings
 ) -> list[Simulation]:
     """The pieces of a run of a free line until its input has made ``turns``, which takes ``guess`` [s] at the speed
     that it begins with."""

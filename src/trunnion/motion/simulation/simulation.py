@@ -20,16 +20,16 @@ from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import Trajectory, joined
 from trunnion.results.declared import (
+    DatasetItem,
     Described,
-    Held,
     Result,
-    axis,
+    data_attribute,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
     ending,
-    fields_over,
-    over,
     parameters_of,
-    remark,
-    remarks,
 )
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
@@ -151,21 +151,21 @@ class SystemSimulation(Simulation, Result):
         found = extremes_in(run.at, run.time_of_state, self.time[[0, -1]]).of(0)
         return found.low, found.high
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Every state and the regime over time, and the located events."""
-        yield axis("time", self.time, "s")
-        yield axis("state", self.system.states)
+        yield data_coordinate("time", self.time, "s")
+        yield data_coordinate("state", self.system.states)
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield over("time", name, self.state[:, i], unit)
-        yield over("time", "regime", self.regime)
-        yield over("event", "event_time", self.event_time, "s")
-        yield over("event", "event_name", np.array(self.event_name, dtype=str))
-        yield over("event state", "state_before", self.event_before)
-        yield over("event state", "state_after", self.event_after)
-        yield remark("system", self.system.name)
+            yield data_variable("time", name, self.state[:, i], unit)
+        yield data_variable("time", "regime", self.regime)
+        yield data_variable("event", "event_time", self.event_time, "s")
+        yield data_variable("event", "event_name", np.array(self.event_name, dtype=str))
+        yield data_variable("event state", "state_before", self.event_before)
+        yield data_variable("event state", "state_after", self.event_after)
+        yield data_attribute("system", self.system.name)
         yield from ending(self.outcome)
         tangents = "exact" if self.system.exact_tangents else "differenced"
-        yield from remarks(tolerance=self.tolerance, steps=self.steps, tangents=tangents)
+        yield from data_attributes(tolerance=self.tolerance, steps=self.steps, tangents=tangents)
         yield from parameters_of(self.system)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
@@ -242,7 +242,7 @@ class LineSimulation(Simulation, OfShafts, Described):
     motion per straight piece of the speed profile.
 
     ``rotation`` of the input, its ``input_speed`` and the ``turns`` it made are those of the profile where a
-    ConstantSpeed prescribes them, and those of its own rotation where the line starts free.
+    ConstantSpeed prescribes them, and those of its own rotation where the line is free–free.
     """
 
     line: LineSystem
@@ -314,7 +314,7 @@ class LineSimulation(Simulation, OfShafts, Described):
 
     @property
     def _place(self) -> int:
-        """Of the input among the unknown rotations of a line that starts free."""
+        """Of the input among the unknown rotations of a free–free line."""
         return int(self.line.assembly.topology.unknown_of[0])
 
     @property
@@ -341,25 +341,27 @@ class LineSimulation(Simulation, OfShafts, Described):
         dense output, whose error is about ten times the tolerance."""
         return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
         n = len(self.line.names)
-        yield axis("time", self.time, "s")
-        yield axis("coordinate", self.line.names)
-        yield axis("shaft", self.shafts)
-        yield over("time coordinate", "rotation", self.state[:, :n], "rad")
-        yield over("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
+        yield data_coordinate("time", self.time, "s")
+        yield data_coordinate("coordinate", self.line.names)
+        yield data_coordinate("shaft", self.shafts)
+        yield data_variable("time coordinate", "rotation", self.state[:, :n], "rad")
+        yield data_variable("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
         if self.line.sliders:
-            yield axis("slider", [slider.name for slider in self.line.sliders])
-            yield over("time slider", "deflection", self.state[:, 2 * n :], "rad")
-        yield from fields_over("time shaft", self, twist="rad", torque="N*m")
-        yield over("time", "input_speed", self.input_speed, "rad/s")
-        yield over("time", "input_angle", self.input.angle(self.time), "rad")
+            yield data_coordinate("slider", [slider.name for slider in self.line.sliders])
+            yield data_variable("time slider", "deflection", self.state[:, 2 * n :], "rad")
+        yield from data_variables("time shaft", self, twist="rad", torque="N*m")
+        yield data_variable("time", "input_speed", self.input_speed, "rad/s")
+        yield data_variable("time", "input_angle", self.input.angle(self.time), "rad")
         if self.starts_free:
-            yield over("time", "reference_speed", self.profile.at(self.time), "rad/s", "that rotations deviate from")
-        yield remark("driveline", self.system.name)
+            yield data_variable(
+                "time", "reference_speed", self.profile.at(self.time), "rad/s", "that rotations deviate from"
+            )
+        yield data_attribute("driveline", self.system.name)
         yield from ending(self.outcome)
-        yield from remarks(tolerance=self.tolerance, steps=self.steps)
+        yield from data_attributes(tolerance=self.tolerance, steps=self.steps)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
         """Torques over time; see ``pictures.motion``."""
@@ -382,14 +384,14 @@ class LineSimulation(Simulation, OfShafts, Described):
         return "\n".join([f"{head}{self.steps} steps", *own, *rows, f"  {self.outcome}"])
 
     def _turning(self, unit: str) -> str:
-        """How fast a line that starts free turned."""
+        """How fast a free–free line turned."""
         speed, last = self.whole.turns[1], self.whole.last_turn()[1]
         if not len(speed):
-            return "the line starts free: it made no turn"
+            return "the line is free–free: it made no turn"
         back = self.whole.turned_back
         if back is not None:
-            return f"the line starts free: it turns back at t = {back:.4g} s"
+            return f"the line is free–free: it turns back at t = {back:.4g} s"
         return (
-            f"the line starts free: it turns at {rounded_speed(float(speed[0]), unit)} in its first turn and at "
+            f"the line is free–free: it turns at {rounded_speed(float(speed[0]), unit)} in its first turn and at "
             f"{rounded_speed(last, unit)} in its last"
         )

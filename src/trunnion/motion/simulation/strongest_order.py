@@ -76,7 +76,7 @@ def _exciting(line: LineSystem, speed: float) -> Iterator[tuple[float, str]]:
     assembly, topo = line.assembly, line.assembly.topology
     names = assembly.line.names
     for joint, law in zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True):
-        if law.uneven:
+        if law.nonuniform:
             yield from ((float(rate), names[topo.stations[joint].element]) for rate in topo.joint_rates(joint))
     for mesh in topo.meshes:
         yield from ((float(rate), names[mesh.element]) for rate in mesh.stiffness_rates)

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Places
-from trunnion.numerics.chain.chain_tables import ChainLanes, ChainProgram
+from trunnion.numerics.batch import BATCH
+from trunnion.numerics.chain.chain_tables import ChainBatch, ChainProgram
 from trunnion.numerics.chain.half_period import whole_periods
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.threads import on_threads
 from trunnion.waiting import keep_time
 
@@ -39,7 +39,7 @@ class Window:
 
 def chain_monodromy(
     program: ChainProgram,
-    lanes: ChainLanes,
+    batch: ChainBatch,
     window: Window,
     tolerance: float,
     threads: int = 1,
@@ -51,29 +51,29 @@ def chain_monodromy(
     """
     length = window.period / 2 if window.half else window.period
     asked = tolerance / 4 if window.half else tolerance
-    phi, error, trace = chain_propagator(program, lanes, window.begin, length, asked, threads)
-    return complete(program, lanes, window, phi, error, trace, threads)
+    phi, error, trace = chain_propagator(program, batch, window.begin, length, asked, threads)
+    return complete(program, batch, window, phi, error, trace, threads)
 
 
 def chain_propagator(
-    program: ChainProgram, lanes: ChainLanes, begin: float, length: float, tolerance: float, threads: int = 1
+    program: ChainProgram, batch: ChainBatch, begin: float, length: float, tolerance: float, threads: int = 1
 ) -> tuple[Array, Array, Array]:
     """The same for any stretch of input angle from ``begin`` on."""
-    n, count = lanes.stiffness.shape
+    n, count = batch.stiffness.shape
     found = np.empty((count, 2 * n, 2 * n)), np.empty(count), np.empty(count)
-    order, stretch = _alike_together(lanes), (begin, length, tolerance, MOST_STEPS)
-    integrate = integrate_stages if has_extra(program, lanes) else integrate_series
+    order, stretch = _alike_together(batch), (begin, length, tolerance, MOST_STEPS)
+    integrate = integrate_stages if has_extra(program, batch) else integrate_series
 
     def run(first: int, last: int) -> None:
-        integrate(program, lanes, order, first, last, *stretch, *found)
+        integrate(program, batch, order, first, last, *stretch, *found)
 
-    _in_pieces(run, count, threads, LANES if n > SMALL else 4 * LANES)
+    _in_pieces(run, count, threads, BATCH if n > SMALL else 4 * BATCH)
     return found
 
 
 def complete(
     program: ChainProgram,
-    lanes: ChainLanes,
+    batch: ChainBatch,
     window: Window,
     phi: Array,
     error: Array,
@@ -86,25 +86,25 @@ def complete(
     matrix, error = np.empty_like(phi), error.copy()
 
     def run(first: int, last: int) -> None:
-        whole_periods(program, lanes, first, last, window.begin, window.period / 2, phi, error, matrix)
+        whole_periods(program, batch, first, last, window.begin, window.period / 2, phi, error, matrix)
 
-    _in_pieces(run, len(phi), threads, 4 * LANES)
+    _in_pieces(run, len(phi), threads, 4 * BATCH)
     return matrix, error, 2 * trace
 
 
-def _alike_together(lanes: ChainLanes) -> Places:
+def _alike_together(batch: ChainBatch) -> Places:
     """An order in which lanes of about the same frequency stand together, to a factor of two, and within those, where
     that is not so already, lanes with equal joint angles and phases.
 
     A block steps as its fastest lane does, so a slow speed beside a fast one would be integrated in needlessly short
     steps. Lanes with equal angles and phases share the joints' laws.
     """
-    octave = np.frexp(lanes.frequency)[1]
-    rows = [*lanes.cosine, *lanes.phase, *lanes.ripple, *lanes.ripple_phase]
+    octave = np.frexp(batch.frequency)[1]
+    rows = [*batch.cosine, *batch.phase, *batch.ripple, *batch.ripple_phase]
     moving = [row for row in rows if len(row) > 1 and np.ptp(row) > 0]
     changes = sum(np.count_nonzero(np.diff(row)) for row in moving)
     if changes >= max(1, len(octave) / 4):
-        by_joints = np.lexsort((1 / lanes.frequency, *moving))
+        by_joints = np.lexsort((1 / batch.frequency, *moving))
         if sum(np.count_nonzero(np.diff(row[by_joints])) for row in moving) < changes / 4:
             return by_joints[np.argsort(octave[by_joints], kind="stable")]
     return np.argsort(octave, kind="stable")
@@ -120,38 +120,38 @@ def _in_pieces(run: Callable[[int, int], None], count: int, threads: int, few: i
         keep_time()
         run(0, count)
         return
-    blocks = -(-count // LANES)
-    edges = np.unique(np.linspace(0, blocks, 8 * max(threads, 1) + 1).astype(int)) * LANES
+    blocks = -(-count // BATCH)
+    edges = np.unique(np.linspace(0, blocks, 8 * max(threads, 1) + 1).astype(int)) * BATCH
     pieces = [(int(a), min(int(b), count)) for a, b in zip(edges[:-1], edges[1:], strict=True)]
     on_threads(lambda piece: run(*piece), pieces, threads)
 
 
-def has_extra(program: ChainProgram, lanes: ChainLanes) -> bool:
-    """Whether static torque on a bent joint, angle-dependent inertia or stiffness add terms to the plain chain, or a
+def has_extra(program: ChainProgram, batch: ChainBatch) -> bool:
+    """Whether static torque on an angled joint, angle-dependent inertia or stiffness add terms to the plain chain, or a
     joint has a law of harmonics, which plain chains do not take."""
     behind_joint = program.near_source >= 0
     varying = len(program.member_unknown) or len(program.wave_unknown) or len(program.ripple_order)
-    return bool(varying) or bool(np.any(lanes.torque[behind_joint]))
+    return bool(varying) or bool(np.any(batch.torque[behind_joint]))
 
 
-def symmetry_phase(program: ChainProgram, lanes: ChainLanes, period: float) -> float | None:
+def symmetry_phase(program: ChainProgram, batch: ChainBatch, period: float) -> float | None:
     """Input angle about which every joint of every lane is even, or None where there is none.
 
     A joint is even about the input angles at which its χ is a whole number of quarter turns.
     """
-    if has_extra(program, lanes):
+    if has_extra(program, batch):
         return None
     joints = len(program.joint_rate)
     direct = [j for j in range(joints) if program.joint_speed_source[j] < 0]
     if not direct:
         return 0.0
     chained = [j for j in range(joints) if program.joint_speed_source[j] >= 0]
-    if any(abs(program.joint_rate[j]) != 1.0 for j in chained) or not _quarter_turns(lanes.phase[chained]):
+    if any(abs(program.joint_rate[j]) != 1.0 for j in chained) or not _quarter_turns(batch.phase[chained]):
         return None
     first = direct[0]
     for quarter in range(4):
-        begin = (quarter * np.pi / 2 - lanes.phase[first, 0]) / program.joint_rate[first]
-        if all(_quarter_turns(program.joint_rate[j] * begin + lanes.phase[j]) for j in direct):
+        begin = (quarter * np.pi / 2 - batch.phase[first, 0]) / program.joint_rate[first]
+        if all(_quarter_turns(program.joint_rate[j] * begin + batch.phase[j]) for j in direct):
             return float(np.mod(begin, period))
     return None
 

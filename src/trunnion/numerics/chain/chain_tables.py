@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.arrays import Array, Integers
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 
 
 class ChainProgram(NamedTuple):
@@ -59,7 +59,7 @@ class ChainProgram(NamedTuple):
     ripple_cycles: Array
 
 
-class ChainLanes(NamedTuple):
+class ChainBatch(NamedTuple):
     """Numbers per lane, lanes last; unknowns are scaled by √J and time is the input angle.
 
     cosine, phase (joints, lanes): cos β, and the constant part of χ since the source [rad].
@@ -100,8 +100,8 @@ MOVING_ROWS = 8
 STIFFNESS, DAMPING, NEAR_SCALE, SLOPE_SCALE, TORQUE, FREQUENCY = 0, 1, 2, 3, 4, 5
 NEAR, NEAR_SLOPE, EXTRA_DAMPING, EXTRA_STIFFNESS, OVER_MASS, WAVE = 0, 1, 2, 3, 4, 5
 TABLE_ROWS = 6
-PER_STAGE, PER_JOINT = MOVING_ROWS * LANES, (MOVING + MOVING_ROWS * STAGES) * LANES
-PER_UNKNOWN, PER_ROW = 6 * LANES, TABLE_ROWS * LANES
+PER_STAGE, PER_JOINT = MOVING_ROWS * BATCH, (MOVING + MOVING_ROWS * STAGES) * BATCH
+PER_UNKNOWN, PER_ROW = 6 * BATCH, TABLE_ROWS * BATCH
 PER_TABLE = PER_ROW * STAGES
 
 
@@ -127,55 +127,55 @@ class Block(NamedTuple):
 
 
 @njit(nogil=True, inner=True)
-def gather(program, lanes, picked):  # type: ignore[no-untyped-def]
+def gather(program, batch, picked):  # type: ignore[no-untyped-def]
     """The lanes ``picked`` (LANES,) of the given ones as a block."""
-    joints, n = lanes.cosine.shape[0], len(program.parent)
+    joints, n = batch.cosine.shape[0], len(program.parent)
     joint = np.zeros(max(1, joints) * PER_JOINT)
     unknown = np.zeros(n * PER_UNKNOWN)
     waves = len(program.wave_unknown)
-    wave_cosine, wave_sine = np.zeros((waves, LANES)), np.zeros((waves, LANES))
+    wave_cosine, wave_sine = np.zeros((waves, BATCH)), np.zeros((waves, BATCH))
     alike = len(program.ripple_order) == 0
-    for lane in range(LANES):
+    for lane in range(BATCH):
         at, first = picked[lane], picked[0]
-        nu = lanes.frequency[at]
+        nu = batch.frequency[at]
         for j in range(joints):
             o = j * PER_JOINT + lane
-            same = lanes.cosine[j, at] == lanes.cosine[j, first] and lanes.phase[j, at] == lanes.phase[j, first]
+            same = batch.cosine[j, at] == batch.cosine[j, first] and batch.phase[j, at] == batch.phase[j, first]
             alike = alike and same
-            joint[o + COSINE * LANES] = lanes.cosine[j, at]
-            joint[o + PHASE * LANES] = lanes.phase[j, at]
+            joint[o + COSINE * BATCH] = batch.cosine[j, at]
+            joint[o + PHASE * BATCH] = batch.phase[j, at]
             if same and lane > 0:
-                joint[o + TURN_COS * LANES] = joint[o + TURN_COS * LANES - lane]
-                joint[o + TURN_SIN * LANES] = joint[o + TURN_SIN * LANES - lane]
+                joint[o + TURN_COS * BATCH] = joint[o + TURN_COS * BATCH - lane]
+                joint[o + TURN_SIN * BATCH] = joint[o + TURN_SIN * BATCH - lane]
             else:
-                joint[o + TURN_COS * LANES] = math.cos(2 * lanes.phase[j, at])
-                joint[o + TURN_SIN * LANES] = math.sin(2 * lanes.phase[j, at])
+                joint[o + TURN_COS * BATCH] = math.cos(2 * batch.phase[j, at])
+                joint[o + TURN_SIN * BATCH] = math.sin(2 * batch.phase[j, at])
         for i in range(n):
             o = i * PER_UNKNOWN + lane
-            scale = lanes.scale[i, at] * program.near_ratio[i]
-            unknown[o + STIFFNESS * LANES] = lanes.stiffness[i, at] / nu
-            unknown[o + DAMPING * LANES] = lanes.damping[i, at]
-            unknown[o + NEAR_SCALE * LANES] = scale
-            unknown[o + SLOPE_SCALE * LANES] = scale * program.near_speed[i] / nu
-            unknown[o + TORQUE * LANES] = lanes.torque[i, at] * program.near_ratio[i] / nu
-            unknown[o + FREQUENCY * LANES] = nu
+            scale = batch.scale[i, at] * program.near_ratio[i]
+            unknown[o + STIFFNESS * BATCH] = batch.stiffness[i, at] / nu
+            unknown[o + DAMPING * BATCH] = batch.damping[i, at]
+            unknown[o + NEAR_SCALE * BATCH] = scale
+            unknown[o + SLOPE_SCALE * BATCH] = scale * program.near_speed[i] / nu
+            unknown[o + TORQUE * BATCH] = batch.torque[i, at] * program.near_ratio[i] / nu
+            unknown[o + FREQUENCY * BATCH] = nu
         for k in range(waves):
-            wave_cosine[k, lane] = lanes.wave_share[k, at] * math.cos(lanes.wave_phase[k, at])
-            wave_sine[k, lane] = lanes.wave_share[k, at] * math.sin(lanes.wave_phase[k, at])
+            wave_cosine[k, lane] = batch.wave_share[k, at] * math.cos(batch.wave_phase[k, at])
+            wave_sine[k, lane] = batch.wave_share[k, at] * math.sin(batch.wave_phase[k, at])
     return Block(
         joint, unknown,
-        _picked(lanes.member_inertia, picked), _picked(lanes.member_load, picked),
-        _picked(lanes.member_viscous, picked), _picked(lanes.member_quadratic, picked),
-        wave_cosine, wave_sine, _picked(lanes.ripple, picked), _picked(lanes.ripple_phase, picked), alike,
+        _picked(batch.member_inertia, picked), _picked(batch.member_load, picked),
+        _picked(batch.member_viscous, picked), _picked(batch.member_quadratic, picked),
+        wave_cosine, wave_sine, _picked(batch.ripple, picked), _picked(batch.ripple_phase, picked), alike,
     )  # fmt: skip
 
 
 @njit(nogil=True, inner=True)
 def _picked(rows, picked):  # type: ignore[no-untyped-def]
     """Rows of the lanes ``picked``."""
-    out = np.empty((len(rows), LANES))
+    out = np.empty((len(rows), BATCH))
     for k in range(len(rows)):
-        for lane in range(LANES):
+        for lane in range(BATCH):
             out[k, lane] = rows[k, picked[lane]]
     return out
 
@@ -188,11 +188,11 @@ def empty_table(program, block):  # type: ignore[no-untyped-def]
     for i in range(n):
         for m in range(STAGES):
             o = i * PER_TABLE + m * PER_ROW
-            for lane in range(LANES):
-                table[o + OVER_MASS * LANES + lane] = 1.0
-                table[o + WAVE * LANES + lane] = 1.0
+            for lane in range(BATCH):
+                table[o + OVER_MASS * BATCH + lane] = 1.0
+                table[o + WAVE * BATCH + lane] = 1.0
                 if program.near_source[i] < 0:
-                    table[o + NEAR * LANES + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
+                    table[o + NEAR * BATCH + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * BATCH + lane]
     return table
 
 
@@ -204,7 +204,7 @@ def fill(program, block, begin, step, nodes, table):  # type: ignore[no-untyped-
     ratio_source, ratios = program.joint_ratio_source, program.joint_ratio
     near_source, near_speed_source = program.near_source, program.near_speed_source
     curved = len(program.member_unknown) > 0
-    used = 1 if block.alike and not curved else LANES
+    used = 1 if block.alike and not curved else BATCH
     unwrapped = len(program.ripple_order) > 0
     for j in range(len(rates)):
         unwrapped = unwrapped or (speed_source[j] >= 0 and abs(rates[j]) != 1.0)
@@ -227,8 +227,8 @@ def fill(program, block, begin, step, nodes, table):  # type: ignore[no-untyped-
             _pass_joint(own, used, count)
     for i in range(len(parent)):
         for m in range(count):
-            for lane in range(LANES):
-                table[i * PER_TABLE + m * PER_ROW + EXTRA_STIFFNESS * LANES + lane] = 0.0
+            for lane in range(BATCH):
+                table[i * PER_TABLE + m * PER_ROW + EXTRA_STIFFNESS * BATCH + lane] = 0.0
     if len(program.wave_unknown) > 0:
         _waves(program, block, begin, step, nodes, table)
     for i in range(len(parent)):
@@ -250,98 +250,98 @@ def _input_from_drive(own, used, begin, step, nodes, rate):  # type: ignore[no-u
     for m in range(len(nodes)):
         angle = 2 * rate * (begin + nodes[m] * step)
         c, s = math.cos(angle), math.sin(angle)
-        o = MOVING * LANES + m * PER_STAGE
+        o = MOVING * BATCH + m * PER_STAGE
         for lane in range(used):
-            turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
-            own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
-            own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
-            own[o + SPEED * LANES + lane] = rate
-            own[o + ACCELERATION * LANES + lane] = 0.0
+            turn_c, turn_s = own[TURN_COS * BATCH + lane], own[TURN_SIN * BATCH + lane]
+            own[o + COS2 * BATCH + lane] = c * turn_c - s * turn_s
+            own[o + SIN2 * BATCH + lane] = s * turn_c + c * turn_s
+            own[o + SPEED * BATCH + lane] = rate
+            own[o + ACCELERATION * BATCH + lane] = 0.0
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _input_from_joint(own, before, used, count, rate):  # type: ignore[no-untyped-def]
     for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
+        o = MOVING * BATCH + m * PER_STAGE
         if rate == 1.0 or rate == -1.0:
             for lane in range(used):
-                turn_c, turn_s = own[TURN_COS * LANES + lane], own[TURN_SIN * LANES + lane]
-                c, s = before[o + COS2 * LANES + lane], rate * before[o + SIN2 * LANES + lane]
-                own[o + COS2 * LANES + lane] = c * turn_c - s * turn_s
-                own[o + SIN2 * LANES + lane] = s * turn_c + c * turn_s
+                turn_c, turn_s = own[TURN_COS * BATCH + lane], own[TURN_SIN * BATCH + lane]
+                c, s = before[o + COS2 * BATCH + lane], rate * before[o + SIN2 * BATCH + lane]
+                own[o + COS2 * BATCH + lane] = c * turn_c - s * turn_s
+                own[o + SIN2 * BATCH + lane] = s * turn_c + c * turn_s
         else:
             # Behind such a ratio multiples of 2ψ do not suffice; ψ itself was kept.
             for lane in range(used):
-                chi2 = 2 * (rate * before[o + ANGLE * LANES + lane] + own[PHASE * LANES + lane])
-                own[o + COS2 * LANES + lane] = math.cos(chi2)
-                own[o + SIN2 * LANES + lane] = math.sin(chi2)
+                chi2 = 2 * (rate * before[o + ANGLE * BATCH + lane] + own[PHASE * BATCH + lane])
+                own[o + COS2 * BATCH + lane] = math.cos(chi2)
+                own[o + SIN2 * BATCH + lane] = math.sin(chi2)
         for lane in range(used):
-            own[o + SPEED * LANES + lane] = rate * before[o + SPEED * LANES + lane]
-            own[o + ACCELERATION * LANES + lane] = rate * before[o + ACCELERATION * LANES + lane]
+            own[o + SPEED * BATCH + lane] = rate * before[o + SPEED * BATCH + lane]
+            own[o + ACCELERATION * BATCH + lane] = rate * before[o + ACCELERATION * BATCH + lane]
 
 
 @njit(nogil=True, inner=True)
 def _unwrap(own, before, used, begin, step, nodes, driven, rate):  # type: ignore[no-untyped-def]
     """ψ, continuous over the period."""
     for m in range(len(nodes)):
-        o = MOVING * LANES + m * PER_STAGE
+        o = MOVING * BATCH + m * PER_STAGE
         for lane in range(used):
-            angle = begin + nodes[m] * step if driven else before[o + ANGLE * LANES + lane]
-            chi = rate * angle + own[PHASE * LANES + lane]
-            cosine = own[COSINE * LANES + lane]
+            angle = begin + nodes[m] * step if driven else before[o + ANGLE * BATCH + lane]
+            chi = rate * angle + own[PHASE * BATCH + lane]
+            cosine = own[COSINE * BATCH + lane]
             t = (1.0 - cosine) / (1.0 + cosine)
-            own[o + ANGLE * LANES + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
+            own[o + ANGLE * BATCH + lane] = chi + math.atan2(t * math.sin(2 * chi), 1.0 - t * math.cos(2 * chi))
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _ratio_in_front(own, before, used, count, first, factor):  # type: ignore[no-untyped-def]
     """r and its derivatives in front of a joint: that of the joint before it in the group, if there is one."""
     for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
+        o = MOVING * BATCH + m * PER_STAGE
         for lane in range(used):
             r, r1, r2 = 1.0, 0.0, 0.0
             if not first:
-                r, r1 = before[o + RATIO * LANES + lane], before[o + RATIO1 * LANES + lane]
-                r2 = before[o + RATIO2 * LANES + lane]
-            own[o + RATIO * LANES + lane] = factor * r
-            own[o + RATIO1 * LANES + lane] = factor * r1
-            own[o + RATIO2 * LANES + lane] = factor * r2
+                r, r1 = before[o + RATIO * BATCH + lane], before[o + RATIO1 * BATCH + lane]
+                r2 = before[o + RATIO2 * BATCH + lane]
+            own[o + RATIO * BATCH + lane] = factor * r
+            own[o + RATIO1 * BATCH + lane] = factor * r1
+            own[o + RATIO2 * BATCH + lane] = factor * r2
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _pass_joint(own, used, count):  # type: ignore[no-untyped-def]
     """A cross: from speed, acceleration and r in front of it to those behind, cos 2ψ and sin 2ψ."""
     for m in range(count):
-        o = MOVING * LANES + m * PER_STAGE
+        o = MOVING * BATCH + m * PER_STAGE
         for lane in range(used):
-            cb, c, s = own[COSINE * LANES + lane], own[o + COS2 * LANES + lane], own[o + SIN2 * LANES + lane]
-            speed, r = own[o + SPEED * LANES + lane], own[o + RATIO * LANES + lane]
-            acceleration, r1 = own[o + ACCELERATION * LANES + lane], own[o + RATIO1 * LANES + lane]
+            cb, c, s = own[COSINE * BATCH + lane], own[o + COS2 * BATCH + lane], own[o + SIN2 * BATCH + lane]
+            speed, r = own[o + SPEED * BATCH + lane], own[o + RATIO * BATCH + lane]
+            acceleration, r1 = own[o + ACCELERATION * BATCH + lane], own[o + RATIO1 * BATCH + lane]
             cb2 = cb * cb
             sb2 = 1.0 - cb2
             over = 1.0 / (1.0 - 0.5 * sb2 * (1.0 + c))
             eta = cb * over
             slope = -eta * sb2 * s * over
             curvature = -2.0 * eta * sb2 * over * (c - sb2 * s * s * over)
-            own[o + RATIO2 * LANES + lane] = (
-                eta * own[o + RATIO2 * LANES + lane] + 3.0 * slope * r * r1 + curvature * r * r * r
+            own[o + RATIO2 * BATCH + lane] = (
+                eta * own[o + RATIO2 * BATCH + lane] + 3.0 * slope * r * r1 + curvature * r * r * r
             )
-            own[o + ACCELERATION * LANES + lane] = slope * speed * speed + eta * acceleration
-            own[o + SPEED * LANES + lane] = eta * speed
-            own[o + RATIO1 * LANES + lane] = eta * r1 + slope * r * r
-            own[o + RATIO * LANES + lane] = eta * r
-            own[o + COS2 * LANES + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
-            own[o + SIN2 * LANES + lane] = eta * s
+            own[o + ACCELERATION * BATCH + lane] = slope * speed * speed + eta * acceleration
+            own[o + SPEED * BATCH + lane] = eta * speed
+            own[o + RATIO1 * BATCH + lane] = eta * r1 + slope * r * r
+            own[o + RATIO * BATCH + lane] = eta * r
+            own[o + COS2 * BATCH + lane] = 0.5 * (cb2 * (1.0 + c) - (1.0 - c)) * over
+            own[o + SIN2 * BATCH + lane] = eta * s
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
 def _pass_ripple(own, before, begin, step, nodes, driven, rate, program, block, first, last):  # type: ignore[no-untyped-def]
     """A joint with harmonics: from speed, acceleration and r in front of it to those behind, and its ψ."""
     for m in range(len(nodes)):
-        o = MOVING * LANES + m * PER_STAGE
-        for lane in range(LANES):
-            angle = begin + nodes[m] * step if driven else before[o + ANGLE * LANES + lane]
-            chi = rate * angle + own[PHASE * LANES + lane]
+        o = MOVING * BATCH + m * PER_STAGE
+        for lane in range(BATCH):
+            angle = begin + nodes[m] * step if driven else before[o + ANGLE * BATCH + lane]
+            chi = rate * angle + own[PHASE * BATCH + lane]
             psi, eta, slope, curvature = chi, 1.0, 0.0, 0.0
             for k in range(first, last):
                 order, phase = program.ripple_order[k], block.ripple_phase[k, lane]
@@ -349,17 +349,17 @@ def _pass_ripple(own, before, begin, step, nodes, driven, rate, program, block, 
                 s = block.ripple[k, lane] * math.sin(order * chi + phase)
                 psi, eta = psi + s, eta + order * c
                 slope, curvature = slope - order * order * s, curvature - order * order * order * c
-            speed, r = own[o + SPEED * LANES + lane], own[o + RATIO * LANES + lane]
-            acceleration, r1 = own[o + ACCELERATION * LANES + lane], own[o + RATIO1 * LANES + lane]
-            r2 = own[o + RATIO2 * LANES + lane]
-            own[o + ACCELERATION * LANES + lane] = slope * speed * speed + eta * acceleration
-            own[o + SPEED * LANES + lane] = eta * speed
-            own[o + RATIO2 * LANES + lane] = eta * r2 + 3 * slope * r * r1 + curvature * r * r * r
-            own[o + RATIO1 * LANES + lane] = eta * r1 + slope * r * r
-            own[o + RATIO * LANES + lane] = eta * r
-            own[o + COS2 * LANES + lane] = math.cos(2 * psi)
-            own[o + SIN2 * LANES + lane] = math.sin(2 * psi)
-            own[o + ANGLE * LANES + lane] = psi
+            speed, r = own[o + SPEED * BATCH + lane], own[o + RATIO * BATCH + lane]
+            acceleration, r1 = own[o + ACCELERATION * BATCH + lane], own[o + RATIO1 * BATCH + lane]
+            r2 = own[o + RATIO2 * BATCH + lane]
+            own[o + ACCELERATION * BATCH + lane] = slope * speed * speed + eta * acceleration
+            own[o + SPEED * BATCH + lane] = eta * speed
+            own[o + RATIO2 * BATCH + lane] = eta * r2 + 3 * slope * r * r1 + curvature * r * r * r
+            own[o + RATIO1 * BATCH + lane] = eta * r1 + slope * r * r
+            own[o + RATIO * BATCH + lane] = eta * r
+            own[o + COS2 * BATCH + lane] = math.cos(2 * psi)
+            own[o + SIN2 * BATCH + lane] = math.sin(2 * psi)
+            own[o + ANGLE * BATCH + lane] = psi
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
@@ -369,15 +369,15 @@ def _shaft_behind_joint(joint, driver, driven, shaft, alike, count, own, above):
     driver: the joint whose speed the group's reference has, unless that is ``driven`` by the input itself.
     """
     for m in range(count):
-        o, t = MOVING * LANES + m * PER_STAGE, m * PER_ROW
-        for lane in range(LANES):
+        o, t = MOVING * BATCH + m * PER_STAGE, m * PER_ROW
+        for lane in range(BATCH):
             from_lane = 0 if alike else lane
-            r, r1 = joint[o + RATIO * LANES + from_lane], joint[o + RATIO1 * LANES + from_lane]
-            speed = 1.0 if driven else driver[o + SPEED * LANES + from_lane]
-            own[t + NEAR * LANES + lane] = shaft[NEAR_SCALE * LANES + lane] * r
-            own[t + NEAR_SLOPE * LANES + lane] = shaft[SLOPE_SCALE * LANES + lane] * r1 * speed
-            torque = shaft[TORQUE * LANES + lane] * own[t + WAVE * LANES + lane]
-            above[t + EXTRA_STIFFNESS * LANES + lane] -= r1 * torque
+            r, r1 = joint[o + RATIO * BATCH + from_lane], joint[o + RATIO1 * BATCH + from_lane]
+            speed = 1.0 if driven else driver[o + SPEED * BATCH + from_lane]
+            own[t + NEAR * BATCH + lane] = shaft[NEAR_SCALE * BATCH + lane] * r
+            own[t + NEAR_SLOPE * BATCH + lane] = shaft[SLOPE_SCALE * BATCH + lane] * r1 * speed
+            torque = shaft[TORQUE * BATCH + lane] * own[t + WAVE * BATCH + lane]
+            above[t + EXTRA_STIFFNESS * BATCH + lane] -= r1 * torque
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
@@ -387,37 +387,37 @@ def _members(program, block, count, table):  # type: ignore[no-untyped-def]
     for m in range(count):
         for k in range(len(owner)):
             t = owner[k] * PER_TABLE + m * PER_ROW
-            for lane in range(LANES):
-                table[t + OVER_MASS * LANES + lane] = 0.0
-                table[t + EXTRA_DAMPING * LANES + lane] = 0.0
+            for lane in range(BATCH):
+                table[t + OVER_MASS * BATCH + lane] = 0.0
+                table[t + EXTRA_DAMPING * BATCH + lane] = 0.0
         for k in range(len(owner)):
-            t, o = owner[k] * PER_TABLE + m * PER_ROW, MOVING * LANES + m * PER_STAGE
+            t, o = owner[k] * PER_TABLE + m * PER_ROW, MOVING * BATCH + m * PER_STAGE
             b, v = program.member_source[k] * PER_JOINT + o, program.member_speed_source[k] * PER_JOINT + o
             factor, mean = program.member_ratio[k], program.member_speed[k]
-            for lane in range(LANES):
+            for lane in range(BATCH):
                 r, r1, r2, speed, acceleration = factor, 0.0, 0.0, mean, 0.0
                 if program.member_source[k] >= 0:
-                    r, r1 = factor * w[b + RATIO * LANES + lane], factor * w[b + RATIO1 * LANES + lane]
-                    r2 = factor * w[b + RATIO2 * LANES + lane]
+                    r, r1 = factor * w[b + RATIO * BATCH + lane], factor * w[b + RATIO1 * BATCH + lane]
+                    r2 = factor * w[b + RATIO2 * BATCH + lane]
                 if program.member_speed_source[k] >= 0:
-                    speed = mean * w[v + SPEED * LANES + lane]
-                    acceleration = mean * w[v + ACCELERATION * LANES + lane]
-                inertia, nu = block.member_inertia[k, lane], block.unknown[FREQUENCY * LANES + lane]
-                table[t + OVER_MASS * LANES + lane] += inertia * r * r
-                table[t + EXTRA_DAMPING * LANES + lane] += 2 * inertia * r * r1 * speed
+                    speed = mean * w[v + SPEED * BATCH + lane]
+                    acceleration = mean * w[v + ACCELERATION * BATCH + lane]
+                inertia, nu = block.member_inertia[k, lane], block.unknown[FREQUENCY * BATCH + lane]
+                table[t + OVER_MASS * BATCH + lane] += inertia * r * r
+                table[t + EXTRA_DAMPING * BATCH + lane] += 2 * inertia * r * r1 * speed
                 curved = 2 * r * r1 * acceleration + (r1 * r1 + r * r2) * speed * speed
                 turning, drag = r * speed, block.member_quadratic[k, lane]
                 growth = block.member_viscous[k, lane] + 2 * drag * abs(turning)
                 load = block.member_load[k, lane] + (growth - drag * abs(turning)) * turning
-                table[t + EXTRA_DAMPING * LANES + lane] += r * r * growth
+                table[t + EXTRA_DAMPING * BATCH + lane] += r * r * growth
                 pull = inertia * curved + r1 * load + r * growth * r1 * speed
-                table[t + EXTRA_STIFFNESS * LANES + lane] += pull / nu
+                table[t + EXTRA_STIFFNESS * BATCH + lane] += pull / nu
         done = -1
         for k in range(len(owner)):
             if owner[k] != done:
                 t = owner[k] * PER_TABLE + m * PER_ROW
-                for lane in range(LANES):
-                    table[t + OVER_MASS * LANES + lane] = 1.0 / table[t + OVER_MASS * LANES + lane]
+                for lane in range(BATCH):
+                    table[t + OVER_MASS * BATCH + lane] = 1.0 / table[t + OVER_MASS * BATCH + lane]
             done = owner[k]
 
 
@@ -426,14 +426,14 @@ def _waves(program, block, begin, step, nodes, table):  # type: ignore[no-untype
     """Stiffness that varies over its mean: gear meshes."""
     for i in program.wave_unknown:
         for m in range(len(nodes)):
-            for lane in range(LANES):
-                table[i * PER_TABLE + m * PER_ROW + WAVE * LANES + lane] = 1.0
+            for lane in range(BATCH):
+                table[i * PER_TABLE + m * PER_ROW + WAVE * BATCH + lane] = 1.0
     for k in range(len(program.wave_unknown)):
         for m in range(len(nodes)):
             angle = program.wave_cycles[k] * (begin + nodes[m] * step)
             c, s = math.cos(angle), math.sin(angle)
-            o = program.wave_unknown[k] * PER_TABLE + m * PER_ROW + WAVE * LANES
-            for lane in range(LANES):
+            o = program.wave_unknown[k] * PER_TABLE + m * PER_ROW + WAVE * BATCH
+            for lane in range(BATCH):
                 table[o + lane] += c * block.wave_cosine[k, lane] - s * block.wave_sine[k, lane]
 
 
@@ -448,10 +448,10 @@ def add_damping_trace(parent, unknown, table, weights, step, trace):  # type: ig
             weight, t = step * weights[m], m * PER_ROW
             if weight == 0.0:
                 continue
-            for lane in range(LANES):
-                own = shaft[DAMPING * LANES + lane] + rows[t + EXTRA_DAMPING * LANES + lane]
-                trace[lane] += weight * own * rows[t + OVER_MASS * LANES + lane]
+            for lane in range(BATCH):
+                own = shaft[DAMPING * BATCH + lane] + rows[t + EXTRA_DAMPING * BATCH + lane]
+                trace[lane] += weight * own * rows[t + OVER_MASS * BATCH + lane]
             if parent[i] >= 0:
-                for lane in range(LANES):
-                    e, over = rows[t + NEAR * LANES + lane], above[t + OVER_MASS * LANES + lane]
-                    trace[lane] += weight * e * e * shaft[DAMPING * LANES + lane] * over
+                for lane in range(BATCH):
+                    e, over = rows[t + NEAR * BATCH + lane], above[t + OVER_MASS * BATCH + lane]
+                    trace[lane] += weight * e * e * shaft[DAMPING * BATCH + lane] * over

@@ -178,8 +178,8 @@ class _March:
 class _Problem:
     """The equations in energy-like units ``scale`` (2n,).
 
-    ``looked``: by number of steps, the coefficients where they are known already. ``held``: the same in the problem's
-    units, of the last run whose are few.
+    ``looked``: by number of steps, the coefficients where they are known already. ``evaluated``: the same in the
+    problem's units, of the last run whose are few.
     """
 
     coefficients: CoefficientFunction
@@ -187,7 +187,7 @@ class _Problem:
     size: int
     scale: Array
     looked: dict[int, Parts]
-    held: dict[int, tuple[Array, Array, Array, Array]] = field(default_factory=dict, repr=False)
+    evaluated: dict[int, tuple[Array, Array, Array, Array]] = field(default_factory=dict, repr=False)
 
     def march(self, start: Array, steps: int, kept: Array | None = None) -> _March:
         """Carry ``start`` (2n, columns) over a period.
@@ -238,17 +238,17 @@ class _Problem:
 
     def _pieces(self, steps: int, each: int) -> Iterator[tuple[int, int]]:
         """First step and number of steps of what is done together, a multiple of ``each``."""
-        at_once = each * max(1, CHUNK // (8 * STAGES * self.size**2 * each))
-        return ((first, min(at_once, steps - first)) for first in range(0, steps, at_once))
+        batch_size = each * max(1, CHUNK // (8 * STAGES * self.size**2 * each))
+        return ((first, min(batch_size, steps - first)) for first in range(0, steps, batch_size))
 
     def _slopes(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:
         """Q/ν, D, g and tr D at the stages of ``count`` of the ``steps`` of a period, in the problem's units."""
         if 8 * steps * STAGES * self.size**2 > KEPT:
             return self._evaluated(first, count, steps)
-        if steps not in self.held:
-            self.held.clear()
-            self.held[steps] = self._evaluated(0, steps, steps)
-        q, d, g, damping = (part[first : first + count] for part in self.held[steps])
+        if steps not in self.evaluated:
+            self.evaluated.clear()
+            self.evaluated[steps] = self._evaluated(0, steps, steps)
+        q, d, g, damping = (part[first : first + count] for part in self.evaluated[steps])
         return q, d, g, damping
 
     def _evaluated(self, first: int, count: int, steps: int) -> tuple[Array, Array, Array, Array]:

@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.rows import load, spread, store
 
 MOST_SWEEPS = 30
@@ -30,22 +30,22 @@ def eigenvalues_in_rows(matrices, size, values, hessenberg):
     """Eigenvalues of ``matrices`` (size², points), an even size, their entries by rows: values (size, points, 2) real
     and imaginary, NaN where they were not found; hessenberg (points, size, size) similar to each by rotations."""
     points = matrices.shape[1]
-    h, work = np.empty(size * size * LANES), np.empty((size + 9) * LANES)
-    low, high, tried = np.empty(LANES, np.int64), np.empty(LANES, np.int64), np.empty(LANES, np.int64)
-    for at in range(0, points, LANES):
-        used = min(LANES, points - at)
+    h, work = np.empty(size * size * BATCH), np.empty((size + 9) * BATCH)
+    low, high, tried = np.empty(BATCH, np.int64), np.empty(BATCH, np.int64), np.empty(BATCH, np.int64)
+    for at in range(0, points, BATCH):
+        used = min(BATCH, points - at)
         for q in range(size * size):
-            for l in range(LANES):
-                h[q * LANES + l] = matrices[q, at + min(l, used - 1)]
+            for l in range(BATCH):
+                h[q * BATCH + l] = matrices[q, at + min(l, used - 1)]
         _reduce(h, size, work)
-        for l in range(LANES):
+        for l in range(BATCH):
             high[l], tried[l] = size - 1 if l < used else -1, 0
         for l in range(used):
             own = hessenberg[at + l]
             for i in range(size):
                 values[i, at + l, 0] = values[i, at + l, 1] = np.nan
                 for j in range(size):
-                    own[i, j] = h[(i * size + j) * LANES + l]
+                    own[i, j] = h[(i * size + j) * BATCH + l]
         while True:
             first, last = size, -1
             for l in range(used):
@@ -63,27 +63,27 @@ def _reduce(h, size, work):
     """Hessenberg form in place."""
     for c in range(size - 2):
         first, count = c + 1, size - c - 1
-        for l in range(LANES):
+        for l in range(BATCH):
             square = 0.0
             for i in range(first + 1, size):
-                entry = h[(i * size + c) * LANES + l]
+                entry = h[(i * size + c) * BATCH + l]
                 square += entry * entry
-            head = h[(first * size + c) * LANES + l]
+            head = h[(first * size + c) * BATCH + l]
             norm = np.sqrt(head * head + square)
             beta = -norm if head >= 0.0 else norm
             v = head - beta
             # 2/‖v‖², v = (head − β, the rest); none where there is nothing to reflect.
             weight = 2.0 / (v * v + square) if square > 0.0 else 0.0
             work[l] = weight
-            work[LANES + l] = v
+            work[BATCH + l] = v
             for i in range(first + 1, size):
-                work[(i - first + 1) * LANES + l] = h[(i * size + c) * LANES + l]
-                h[(i * size + c) * LANES + l] = 0.0
-            h[(first * size + c) * LANES + l] = beta if square > 0.0 else head
+                work[(i - first + 1) * BATCH + l] = h[(i * size + c) * BATCH + l]
+                h[(i * size + c) * BATCH + l] = 0.0
+            h[(first * size + c) * BATCH + l] = beta if square > 0.0 else head
         for j in range(c + 1, size):
-            _reflect(h, (first * size + j) * LANES, size * LANES, count, work)
+            _reflect(h, (first * size + j) * BATCH, size * BATCH, count, work)
         for i in range(size):
-            _reflect(h, (i * size + first) * LANES, LANES, count, work)
+            _reflect(h, (i * size + first) * BATCH, BATCH, count, work)
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
@@ -92,11 +92,11 @@ def _reflect(h, at, stride, count, work):
     zero = spread(0.0)
     dot = zero
     for i in range(count):
-        dot = dot + load(work, (i + 1) * LANES, zero) * load(h, at + i * stride, zero)
+        dot = dot + load(work, (i + 1) * BATCH, zero) * load(h, at + i * stride, zero)
     dot = dot * load(work, 0, zero)
     for i in range(count):
         to = at + i * stride
-        store(h, to, load(h, to, zero) - load(work, (i + 1) * LANES, zero) * dot)
+        store(h, to, load(h, to, zero) - load(work, (i + 1) * BATCH, zero) * dot)
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
@@ -109,22 +109,22 @@ def _part(h, size, lane, low, high, tried, values):
         last = high[lane]
         begin = last
         while begin > 0:
-            here, above = h[(begin * size + begin) * LANES + lane], h[((begin - 1) * size + begin - 1) * LANES + lane]
-            between = (begin * size + begin - 1) * LANES + lane
+            here, above = h[(begin * size + begin) * BATCH + lane], h[((begin - 1) * size + begin - 1) * BATCH + lane]
+            between = (begin * size + begin - 1) * BATCH + lane
             if abs(h[between]) <= EPS * (abs(here) + abs(above)):
                 h[between] = 0.0
                 break
             begin -= 1
         low[lane] = begin
         if begin == last:
-            values[last, 0], values[last, 1] = h[(last * size + last) * LANES + lane], 0.0
+            values[last, 0], values[last, 1] = h[(last * size + last) * BATCH + lane], 0.0
             high[lane], tried[lane] = last - 1, 0
         elif begin == last - 1:
             _pair(h, size, lane, last, values)
             high[lane], tried[lane] = last - 2, 0
         else:
             tried[lane] += 1
-            if tried[lane] > MOST_SWEEPS or not abs(h[(last * size + last) * LANES + lane]) < np.inf:
+            if tried[lane] > MOST_SWEEPS or not abs(h[(last * size + last) * BATCH + lane]) < np.inf:
                 high[lane] = -1
             return
 
@@ -132,8 +132,8 @@ def _part(h, size, lane, low, high, tried, values):
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _pair(h, size, lane, last, values):
     """Eigenvalues of rows ``last`` − 1 and ``last``, parted from all others."""
-    upper, lower = ((last - 1) * size + last - 1) * LANES + lane, (last * size + last - 1) * LANES + lane
-    p, q, r, s = h[upper], h[upper + LANES], h[lower], h[lower + LANES]
+    upper, lower = ((last - 1) * size + last - 1) * BATCH + lane, (last * size + last - 1) * BATCH + lane
+    p, q, r, s = h[upper], h[upper + BATCH], h[lower], h[lower + BATCH]
     mean, half = (p + s) / 2, (p - s) / 2
     inside = half * half + q * r
     root = np.sqrt(abs(inside))
@@ -150,20 +150,20 @@ def _pair(h, size, lane, last, values):
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _shifts(h, size, low, high, tried, work):
     """First column of (H − σ₁)(H − σ₂) of each lane's range, σ the eigenvalues of its last two rows."""
-    for l in range(LANES):
+    for l in range(BATCH):
         if high[l] < 0:
             continue
-        upper, lower = ((high[l] - 1) * size + high[l] - 1) * LANES + l, (high[l] * size + high[l] - 1) * LANES + l
-        p, q, r, s = h[upper], h[upper + LANES], h[lower], h[lower + LANES]
+        upper, lower = ((high[l] - 1) * size + high[l] - 1) * BATCH + l, (high[l] * size + high[l] - 1) * BATCH + l
+        p, q, r, s = h[upper], h[upper + BATCH], h[lower], h[lower + BATCH]
         total, det = p + s, p * s - q * r
         if tried[l] % STUCK == 0:
-            stride = abs(r) + abs(h[upper - LANES])
+            stride = abs(r) + abs(h[upper - BATCH])
             total, det = 1.5 * stride + 2 * s, stride * stride + 1.5 * stride * s + s * s
-        at, below = (low[l] * size + low[l]) * LANES + l, ((low[l] + 1) * size + low[l]) * LANES + l
-        a, b, c, d, e = h[at], h[at + LANES], h[below], h[below + LANES], h[below + (size + 1) * LANES]
-        work[6 * LANES + l] = a * (a - total) + b * c + det
-        work[7 * LANES + l] = c * (a + d - total)
-        work[8 * LANES + l] = c * e
+        at, below = (low[l] * size + low[l]) * BATCH + l, ((low[l] + 1) * size + low[l]) * BATCH + l
+        a, b, c, d, e = h[at], h[at + BATCH], h[below], h[below + BATCH], h[below + (size + 1) * BATCH]
+        work[6 * BATCH + l] = a * (a - total) + b * c + det
+        work[7 * BATCH + l] = c * (a + d - total)
+        work[8 * BATCH + l] = c * e
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
@@ -172,10 +172,10 @@ def _sweep(h, size, first, last, low, high, work):
     zero = spread(0.0)
     for k in range(first, last):
         three = k < last - 1
-        for l in range(LANES):
+        for l in range(BATCH):
             # Everything is read before anything is chosen: branches would be sixteen times as slow.
-            x, y, z = work[l], work[LANES + l], work[2 * LANES + l]
-            first_x, first_y, first_z = work[6 * LANES + l], work[7 * LANES + l], work[8 * LANES + l]
+            x, y, z = work[l], work[BATCH + l], work[2 * BATCH + l]
+            first_x, first_y, first_z = work[6 * BATCH + l], work[7 * BATCH + l], work[8 * BATCH + l]
             begin, end = low[l], high[l]
             x, y, z = (first_x if k == begin else x), (first_y if k == begin else y), (first_z if k == begin else z)
             z = z if k < end - 1 else 0.0
@@ -186,21 +186,21 @@ def _sweep(h, size, first, last, low, high, work):
             live = (k >= begin) & (k < end) & (length > 0.0)
             over, weight = 1.0 / v, 2.0 * v * v / length
             # v = (1, y, z) with its weight 2/‖v‖²
-            work[3 * LANES + l] = weight if live else 0.0
-            work[4 * LANES + l] = y * over if live else 0.0
-            work[5 * LANES + l] = z * over if live else 0.0
-        weight, y, z = load(work, 3 * LANES, zero), load(work, 4 * LANES, zero), load(work, 5 * LANES, zero)
+            work[3 * BATCH + l] = weight if live else 0.0
+            work[4 * BATCH + l] = y * over if live else 0.0
+            work[5 * BATCH + l] = z * over if live else 0.0
+        weight, y, z = load(work, 3 * BATCH, zero), load(work, 4 * BATCH, zero), load(work, 5 * BATCH, zero)
         for j in range(max(first, k - 1), last + 1):
-            _reflect_few(h, (k * size + j) * LANES, size * LANES, three, weight, y, z)
+            _reflect_few(h, (k * size + j) * BATCH, size * BATCH, three, weight, y, z)
         for i in range(k + 1, min(k + 2, last) + 1):
             if k > first:
-                store(h, (i * size + k - 1) * LANES, zero)
+                store(h, (i * size + k - 1) * BATCH, zero)
         for i in range(min(k + 3, last) + 1):
-            _reflect_few(h, (i * size + k) * LANES, LANES, three, weight, y, z)
+            _reflect_few(h, (i * size + k) * BATCH, BATCH, three, weight, y, z)
         for m in range(3):
             i = k + 1 + m
             if i <= last:
-                store(work, m * LANES, load(h, (i * size + k) * LANES, zero))
+                store(work, m * BATCH, load(h, (i * size + k) * BATCH, zero))
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)

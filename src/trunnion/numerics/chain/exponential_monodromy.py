@@ -73,11 +73,11 @@ def exponential_monodromies(
     def march(which: Places, count: int) -> Array:
         return marched(rates, which, size, period, count)
 
-    return by_halving(march, cases, size, tolerance=tolerance, least_steps=least_steps, aside=aside)
+    return step_halving(march, cases, size, tolerance=tolerance, least_steps=least_steps, aside=aside)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # steps that are far too long overflow, and are halved
-def by_halving(
+def step_halving(
     march: March,
     cases: int,
     size: int,
@@ -130,9 +130,9 @@ def _radius(fine: Array, coarse: Array) -> tuple[Array, Array, Complex]:
 def marched(rates: Rates, which: Places, size: int, period: float, steps: int) -> Array:
     """Monodromy matrices of the systems ``which`` as products of ``steps`` exponentials."""
     out = np.empty((len(which), size, size))
-    at_once = max(1, CHUNK // (3 * min(steps, 16) * size**2))
-    for first in range(0, len(which), at_once):
-        some = which[first : first + at_once]
+    batch_size = max(1, CHUNK // (3 * min(steps, 16) * size**2))
+    for first in range(0, len(which), batch_size):
+        some = which[first : first + batch_size]
         product = np.broadcast_to(np.eye(size), (len(some), size, size)).copy()
         for begin in range(0, steps, 16):
             keep_time()
@@ -141,7 +141,7 @@ def marched(rates: Rates, which: Places, size: int, period: float, steps: int) -
             a = rates(some, tau.ravel()).reshape(len(some), count, 3, size, size)
             for step in np.moveaxis(exponential(magnus(a, h)), 1, 0):
                 product = step @ product
-        out[first : first + at_once] = product
+        out[first : first + batch_size] = product
     return out
 
 

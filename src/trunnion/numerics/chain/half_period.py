@@ -7,7 +7,7 @@ the propagator over the first half,
 
     Z = R [[0, I], [−I, S₀]] φᵀ [[S₁, −I], [I, 0]] R φ,
 
-S₀, S₁ at the two ends of the half. Needs constant inertia and no static torque on a bent joint (its η′T̄ is
+S₀, S₁ at the two ends of the half. Needs constant inertia and no static torque on an angled joint (its η′T̄ is
 odd). Here rates are in units of ν, so S stands as S/ν.
 """
 
@@ -19,39 +19,39 @@ import math
 
 import numpy as np
 
+from trunnion.numerics.batch import BATCH
+from trunnion.numerics.chain.batch_blocks import pick
 from trunnion.numerics.chain.chain_tables import DAMPING, FREQUENCY, NEAR_SCALE, PER_UNKNOWN, gather
 from trunnion.numerics.chain.joint_series import ROWS, couplings, empty_series
-from trunnion.numerics.chain.lane_blocks import pick
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.rows import load, spread, store
 
 
 @njit(nogil=True)
-def whole_periods(program, lanes, first, last, begin, half, phi, error, matrix):
+def whole_periods(program, batch, first, last, begin, half, phi, error, matrix):
     """Z of lanes first…last from their propagators ``phi`` over ``half``, and their errors in place."""
     n = len(program.parent)
     wide = 2 * n
-    size = wide * wide * LANES
+    size = wide * wide * BATCH
     half_phi, b, c, z = np.empty(size), np.empty(size), np.empty(size), np.empty(size)
-    ends, factor, picked = np.empty(2 * n * LANES), np.empty(LANES), np.empty(LANES, np.int64)
+    ends, factor, picked = np.empty(2 * n * BATCH), np.empty(BATCH), np.empty(BATCH, np.int64)
     every = np.arange(last)
-    for at in range(first, last, LANES):
+    for at in range(first, last, BATCH):
         count = pick(every, at, last, picked)
-        block = gather(program, lanes, picked)
+        block = gather(program, batch, picked)
         _at_both_ends(program, block, begin, half, ends)
-        for lane in range(LANES):
+        for lane in range(BATCH):
             own = phi[picked[lane]]
             for i in range(wide):
                 for j in range(wide):
-                    half_phi[(i * wide + j) * LANES + lane] = own[i, j]
+                    half_phi[(i * wide + j) * BATCH + lane] = own[i, j]
         _whole_from_half(program.parent, block.unknown, ends, half_phi, b, c, z, factor)
         for lane in range(count):
             error[at + lane] *= factor[lane]
             own = matrix[at + lane]
             for i in range(wide):
                 for j in range(wide):
-                    own[i, j] = z[(i * wide + j) * LANES + lane]
+                    own[i, j] = z[(i * wide + j) * BATCH + lane]
 
 
 @njit(nogil=True, inner=True)
@@ -62,13 +62,13 @@ def _at_both_ends(program, block, begin, half, ends):
     near, bent = np.zeros(n * ROWS), np.zeros(n, np.bool_)
     for i in range(n):
         bent[i] = parent[i] >= 0 and program.near_source[i] >= 0
-        for lane in range(LANES):
-            near[i * ROWS + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * LANES + lane]
+        for lane in range(BATCH):
+            near[i * ROWS + lane] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * BATCH + lane]
     for end in range(2):
-        couplings(program, block, LANES, bent, begin + end * half, 0.0, series, start, near, spread(0.0))
+        couplings(program, block, BATCH, bent, begin + end * half, 0.0, series, start, near, spread(0.0))
         for i in range(n):
-            for lane in range(LANES):
-                ends[(end * n + i) * LANES + lane] = near[i * ROWS + lane]
+            for lane in range(BATCH):
+                ends[(end * n + i) * BATCH + lane] = near[i * ROWS + lane]
 
 
 @njit(nogil=True, inner=True)
@@ -79,13 +79,13 @@ def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
     """
     n = len(parent)
     wide, zero = 2 * n, spread(0.0)
-    line = wide * LANES
+    line = wide * BATCH
     _halves_swapped(phi, n * line, b)
     top = 0 * n  # not a constant: numba would compile for each of them anew
-    _add_damped(parent, unknown, ends, n * LANES, 1.0, phi, top, b, top, line)
+    _add_damped(parent, unknown, ends, n * BATCH, 1.0, phi, top, b, top, line)
     square = zero
-    for i in range(0, line, LANES):
-        for j in range(0, line, LANES):
+    for i in range(0, line, BATCH):
+        for j in range(0, line, BATCH):
             own, total = load(phi, i * wide + j, zero), zero
             square = square + own * own
             for k in range(0, wide * line, line):
@@ -94,13 +94,13 @@ def _whole_from_half(parent, unknown, ends, phi, b, c, z, factor):
     store(factor, 0, square)
     _halves_swapped(c, n * line, z)
     _add_damped(parent, unknown, ends, top, -1.0, c, n * line, z, n * line, line)
-    for lane in range(LANES):
+    for lane in range(BATCH):
         weight = 0.0
         for i in range(n):
-            first, last = ends[i * LANES + lane], ends[(n + i) * LANES + lane]
+            first, last = ends[i * BATCH + lane], ends[(n + i) * BATCH + lane]
             steepest = max(first * first, last * last)
-            weight += abs(unknown[i * PER_UNKNOWN + DAMPING * LANES + lane]) * (1 + steepest)
-        weight /= unknown[FREQUENCY * LANES + lane]
+            weight += abs(unknown[i * PER_UNKNOWN + DAMPING * BATCH + lane]) * (1 + steepest)
+        weight /= unknown[FREQUENCY * BATCH + lane]
         factor[lane] = 2 * max(1.0, math.sqrt(factor[lane] / (2 * n))) * (1 + weight) * (1 + weight)
 
 
@@ -116,9 +116,9 @@ def _add_damped(parent, unknown, ends, end, sign, x, row, out, to, line):
     """Add ± S x/ν at one ``end`` of the half to n rows of ``out`` from ``to`` on; x are n rows from ``row`` on."""
     zero = spread(0.0)
     for i in range(len(parent)):
-        p, e = parent[i], load(ends, end + i * LANES, zero)
-        d = sign * load(unknown, i * PER_UNKNOWN + DAMPING * LANES, zero) / load(unknown, FREQUENCY * LANES, zero)
-        for j in range(0, line, LANES):
+        p, e = parent[i], load(ends, end + i * BATCH, zero)
+        d = sign * load(unknown, i * PER_UNKNOWN + DAMPING * BATCH, zero) / load(unknown, FREQUENCY * BATCH, zero)
+        for j in range(0, line, BATCH):
             own = i * line + j
             if p >= 0:
                 above = p * line + j

@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.chain.chain_tables import (
     DAMPING,
     EXTRA_DAMPING,
@@ -31,7 +32,6 @@ from trunnion.numerics.chain.chain_tables import (
 )
 from trunnion.numerics.integration.runge_kutta import E3, E5, STAGES, A, B
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.rows import load, spread, store
 
 # Rows of weights that are not 0: of the stages in front of stage m, of the result and of its two error estimates.
@@ -44,28 +44,30 @@ RESULT, FIVE, THREE = STAGES, STAGES + 1, STAGES + 2
 
 
 @njit(nogil=True, fastmath=True, inner=True)
-def step_by_stages(parent, table, unknown, h, u, un, spare, squares):
+def step_by_stages(parent, table, unknown, h, u, un, scratch, squares):
     """Carry the columns of ``u`` (column, state, lane) into ``un``; squares (3, lanes) of two errors and of the result.
 
     spare: room for the slopes of all stages of one column, and one state.
     """
     wide, zero = 2 * len(parent), spread(0.0)
-    here = STAGES * wide * LANES
+    here = STAGES * wide * BATCH
     five, three, whole = zero, zero, zero
-    for column in range(0, wide * wide * LANES, wide * LANES):
+    for column in range(0, wide * wide * BATCH, wide * BATCH):
         for m in range(STAGES):
-            for i in range(0, wide * LANES, LANES):
-                store(spare, here + i, load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, FIRST[m:]))
-            _slopes(parent, table, unknown, h, spare, here, m)
-        for i in range(0, wide * LANES, LANES):
-            z = load(u, column + i, zero) + _sum_of_stages(spare, i, wide * LANES, FIRST[RESULT:])
+            for i in range(0, wide * BATCH, BATCH):
+                store(
+                    scratch, here + i, load(u, column + i, zero) + _sum_of_stages(scratch, i, wide * BATCH, FIRST[m:])
+                )
+            _slopes(parent, table, unknown, h, scratch, here, m)
+        for i in range(0, wide * BATCH, BATCH):
+            z = load(u, column + i, zero) + _sum_of_stages(scratch, i, wide * BATCH, FIRST[RESULT:])
             store(un, column + i, z)
-            off5 = _sum_of_stages(spare, i, wide * LANES, FIRST[FIVE:])
-            off3 = _sum_of_stages(spare, i, wide * LANES, FIRST[THREE:])
+            off5 = _sum_of_stages(scratch, i, wide * BATCH, FIRST[FIVE:])
+            off3 = _sum_of_stages(scratch, i, wide * BATCH, FIRST[THREE:])
             whole, five, three = whole + z * z, five + off5 * off5, three + off3 * off3
     store(squares, 0, five)
-    store(squares, LANES, three)
-    store(squares, 2 * LANES, whole)
+    store(squares, BATCH, three)
+    store(squares, 2 * BATCH, whole)
 
 
 @njit(nogil=True, fastmath=True, inner=True)
@@ -81,32 +83,32 @@ def _sum_of_stages(slopes, i, line, first):
 
 
 @njit(nogil=True, fastmath=True, inner=True)
-def _slopes(parent, table, unknown, h, spare, here, m):
+def _slopes(parent, table, unknown, h, scratch, here, m):
     """Slopes of stage m, times the step, from the state at ``here``."""
     n, zero = len(parent), spread(0.0)
-    nu = h * load(unknown, FREQUENCY * LANES, zero)
-    out, half = m * 2 * n * LANES, n * LANES
+    nu = h * load(unknown, FREQUENCY * BATCH, zero)
+    out, half = m * 2 * n * BATCH, n * BATCH
     for i in range(n):
-        x, t = i * LANES, i * PER_TABLE + m * PER_ROW
-        angle, rate = load(spare, here + x, zero), load(spare, here + half + x, zero)
-        store(spare, out + x, nu * rate)
-        g, s = load(table, t + EXTRA_DAMPING * LANES, zero), load(table, t + EXTRA_STIFFNESS * LANES, zero)
-        store(spare, out + half + x, zero - g * rate - s * angle)
+        x, t = i * BATCH, i * PER_TABLE + m * PER_ROW
+        angle, rate = load(scratch, here + x, zero), load(scratch, here + half + x, zero)
+        store(scratch, out + x, nu * rate)
+        g, s = load(table, t + EXTRA_DAMPING * BATCH, zero), load(table, t + EXTRA_STIFFNESS * BATCH, zero)
+        store(scratch, out + half + x, zero - g * rate - s * angle)
     for i in range(n):
-        p, x, t, own = parent[i], i * LANES, i * PER_TABLE + m * PER_ROW, i * PER_UNKNOWN
-        kappa = load(unknown, own + STIFFNESS * LANES, zero) * load(table, t + WAVE * LANES, zero)
-        d = load(unknown, own + DAMPING * LANES, zero)
-        angle, rate = load(spare, here + x, zero), load(spare, here + half + x, zero)
-        mine = load(spare, out + half + x, zero)
+        p, x, t, own = parent[i], i * BATCH, i * PER_TABLE + m * PER_ROW, i * PER_UNKNOWN
+        kappa = load(unknown, own + STIFFNESS * BATCH, zero) * load(table, t + WAVE * BATCH, zero)
+        d = load(unknown, own + DAMPING * BATCH, zero)
+        angle, rate = load(scratch, here + x, zero), load(scratch, here + half + x, zero)
+        mine = load(scratch, out + half + x, zero)
         if p < 0:
-            store(spare, out + half + x, mine - kappa * angle - d * rate)
+            store(scratch, out + half + x, mine - kappa * angle - d * rate)
             continue
-        y = p * LANES
-        e, f = load(table, t + NEAR * LANES, zero), load(table, t + NEAR_SLOPE * LANES, zero)
-        angle_p, rate_p = load(spare, here + y, zero), load(spare, here + half + y, zero)
+        y = p * BATCH
+        e, f = load(table, t + NEAR * BATCH, zero), load(table, t + NEAR_SLOPE * BATCH, zero)
+        angle_p, rate_p = load(scratch, here + y, zero), load(scratch, here + half + y, zero)
         torque = kappa * (angle - e * angle_p) + d * (rate - e * rate_p - f * angle_p)
-        store(spare, out + half + x, mine - torque)
-        store(spare, out + half + y, load(spare, out + half + y, zero) + e * torque)
+        store(scratch, out + half + x, mine - torque)
+        store(scratch, out + half + y, load(scratch, out + half + y, zero) + e * torque)
     for i in range(n):
-        at, over = out + half + i * LANES, i * PER_TABLE + m * PER_ROW + OVER_MASS * LANES
-        store(spare, at, h * load(spare, at, zero) * load(table, over, zero))
+        at, over = out + half + i * BATCH, i * PER_TABLE + m * PER_ROW + OVER_MASS * BATCH
+        store(scratch, at, h * load(scratch, at, zero) * load(table, over, zero))

@@ -76,7 +76,7 @@ def once(tell: Callable[[P, CurvePoint], T]) -> Callable[[P, CurvePoint], T]:
 
 
 @dataclass(frozen=True)
-class Curve:
+class SolutionCurve:
     """Points in order of arclength, the folds among them (by the index of the point before), and why it ends."""
 
     points: tuple[CurvePoint, ...]
@@ -102,7 +102,7 @@ def follow(
     most_points: int = 1000,
     tolerance: float = 1e-10,
     on_point: Callable[[CurvePoint], bool] = lambda point: False,
-) -> Curve:
+) -> SolutionCurve:
     """The curve from ``start`` on.
 
     Parameters
@@ -124,13 +124,13 @@ def follow(
     across[-1] = 1.0
     point = correct(equations, np.asarray(start, dtype=float), across, scale=scale, tolerance=tolerance)
     if point is None:
-        return Curve((), (), Ending.STALLED)
+        return SolutionCurve((), (), Ending.STALLED)
     if point.tangent[-1] * direction < 0:
         point = CurvePoint(point.z, -point.tangent, point.corrections)
     points, folds = [point], []
     step, ending = first_step, Ending.POINTS
     if on_point(point):
-        return Curve((point,), (), Ending.STOPPED)
+        return SolutionCurve((point,), (), Ending.STOPPED)
     while len(points) < most_points:
         found = _step(equations, point, step, scale, tolerance)
         if found is None:
@@ -162,7 +162,7 @@ def follow(
         elif found.corrections >= SLOW:
             step *= SHRINKAGE
         point = found
-    return Curve(tuple(points), tuple(folds), ending)
+    return SolutionCurve(tuple(points), tuple(folds), ending)
 
 
 def correct(

@@ -26,7 +26,7 @@ MOST_STEPS = 1_000_000
 TOLERANCE = 1e-10
 
 
-class End(IntEnum):
+class IntegrationEnd(IntEnum):
     """How an integration ended; the codes of the compiled core."""
 
     REACHED = 0
@@ -109,7 +109,7 @@ class Trajectory:
     final: Array
     time: float
     final_regime: int
-    end: End
+    end: IntegrationEnd
     rejected: int
     next_step: float
 
@@ -157,11 +157,11 @@ def integrate(
     state : (n,), or (1 + k, n) with tangent vectors in rows 1…k: they are then carried along by the exact
         variational equations, under the same error control and with saltation at switching surfaces.
     tolerance : error allowed per step, relative to weight + |x|; for a tangent, relative to its own length.
-    most_steps : after which the integration ends with ``End.STEP_LIMIT``.
+    most_steps : after which the integration ends with ``IntegrationEnd.STEP_LIMIT``.
     watch : functions whose zeros are located (and may stop the integration).
     dense : keep the coefficients for ``Trajectory.at`` (8n numbers a step).
     first_step : a first guess of the step; 0 finds one.
-    partly : keep what was computed where a time limit ends it, with ``End.OUT_OF_TIME``.
+    partly : keep what was computed where a time limit ends it, with ``IntegrationEnd.OUT_OF_TIME``.
 
     Raises
     ------
@@ -200,14 +200,14 @@ def integrate(
         }
         found["state"] = np.concatenate([parts[-1].state[-1:] if parts else first, found["state"]])
         found["final_regime"], found["rejected"], found["next_step"] = int(whole[0]), int(whole[3]), float(clock[1])
-        reached = float(end) if code == End.REACHED else float(clock[0])
-        parts.append(Trajectory(**found, final=y.reshape(1 + count, n), time=reached, end=End(code)))
-        if code != End.FULL:
+        reached = float(end) if code == IntegrationEnd.REACHED else float(clock[0])
+        parts.append(Trajectory(**found, final=y.reshape(1 + count, n), time=reached, end=IntegrationEnd(code)))
+        if code != IntegrationEnd.FULL:
             return joined(parts)
         if not partly:
             keep_time()
         elif time_is_up():
-            return replace(joined(parts), end=End.OUT_OF_TIME)
+            return replace(joined(parts), end=IntegrationEnd.OUT_OF_TIME)
         size = CHUNK
 
 

@@ -163,17 +163,17 @@ def _error(h, y, new, k, n, count, tolerance, weight):
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _dense(rate, t, h, y, new, p, n, regime, k, spare, q):
+def _dense(rate, t, h, y, new, p, n, regime, k, scratch, q):
     """Coefficients q (8, n) of the interpolant of order 7 of the state over an accepted step."""
     for s in range(STAGES + 1, ALL_STAGES):
         for i in range(n):
-            spare[i] = y[i]
+            scratch[i] = y[i]
         for j in range(s):
             a = h * A[s, j]
             if a != 0.0:
                 for i in range(n):
-                    spare[i] += a * k[j, i]
-        refused = _call_rate(rate, t + C[s] * h, spare, p, 0, regime, k[s])
+                    scratch[i] += a * k[j, i]
+        refused = _call_rate(rate, t + C[s] * h, scratch, p, 0, regime, k[s])
         if refused != 0:
             return refused
     for i in range(n):
@@ -347,7 +347,7 @@ def _earlier(functions, t, h, q, p, asked, n, regime, own, which, low, high, dir
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
+def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, scratch):
     """A step to begin with, from the sizes of f and of its change (Hairer et al., section II.4)."""
     size, slope = 0.0, 0.0
     for i in range(n):
@@ -357,8 +357,8 @@ def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
     size, slope = np.sqrt(size / n), np.sqrt(slope / n)
     h = 1e-6 if size < 1e-5 or slope < 1e-5 else 0.01 * size / slope
     for i in range(y.size):
-        spare[i] = y[i] + h * k[0, i]
-    if _call_rate(rate, t + h, spare, p, count, regime, k[1]) != 0:
+        scratch[i] = y[i] + h * k[0, i]
+    if _call_rate(rate, t + h, scratch, p, count, regime, k[1]) != 0:
         return h
     bend = 0.0
     for i in range(n):
@@ -372,7 +372,7 @@ def _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare):
 
 
 @njit(cache=True, nogil=True, **INNER)
-def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps, g, slope, k, spare):
+def _pass_event(functions, t, y, p, asked, n, count, regime, then, which, jumps, g, slope, k, scratch):
     """Carry state and tangents across switching surface ``which`` into regime ``then`` (saltation).
 
     A neighbour v meets the surface δτ = −∇g·v/ġ later: it moves on with f⁻ for that long, jumps, and moves
@@ -483,7 +483,7 @@ def advance(
         m = own + watched.size
     wide = y.size
     k = np.zeros((ALL_STAGES, wide))
-    new, spare = np.empty(wide), np.empty(wide)
+    new, scratch = np.empty(wide), np.empty(wide)
     x, q = np.empty(n), np.zeros((POWERS, n))
     g, slope = np.zeros(m), np.zeros(m * (n + 1))
     active, due = np.zeros(m, dtype=np.int64), np.zeros(own, dtype=np.bool_)
@@ -509,7 +509,7 @@ def advance(
             return NOT_FINITE
     if whole[FRESH] == 1:
         if h <= 0.0:
-            h = _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, spare)
+            h = _first_step(rate, t, y, p, n, count, regime, tolerance, weight, k, scratch)
         whole[FRESH] = 0
     rejected = False
     while t < end:
@@ -540,7 +540,7 @@ def advance(
         if _call_rate(rate, t + step, new, p, count, regime, k[STAGES]) != 0:
             return REFUSED
         which, side = -1, 0.0
-        if (m > 0 or dense) and _dense(rate, t, step, y, new, p, n, regime, k, spare, q) != 0:
+        if (m > 0 or dense) and _dense(rate, t, step, y, new, p, n, regime, k, scratch, q) != 0:
             return REFUSED
         if watched is not None:
             if m > 0:
@@ -583,7 +583,7 @@ def advance(
                     step += change
                 _call_rate(rate, t + step, new, p, count, regime, k[STAGES])
                 if dense:
-                    _dense(rate, t, step, y, new, p, n, regime, k, spare, q)
+                    _dense(rate, t, step, y, new, p, n, regime, k, scratch, q)
         row = whole[STORED]
         step_start[row], step_length[row], step_regime[row] = t, step, regime
         _copy(new[:n], step_states[row])
@@ -616,7 +616,7 @@ def advance(
                 if (
                     which < own
                     and _pass_event(
-                        functions, t, y, p, asked, n, count, regime, then, which, jumped, g[:own], slope, k, spare
+                        functions, t, y, p, asked, n, count, regime, then, which, jumped, g[:own], slope, k, scratch
                     )
                     != 0
                 ):

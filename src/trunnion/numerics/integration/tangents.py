@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.numerics.compiled import kernel_file
-from trunnion.numerics.integration.integration import TOLERANCE, End, Equations
+from trunnion.numerics.integration.integration import TOLERANCE, Equations, IntegrationEnd
 
 CHUNK = 512
 """Samples between two looks of the interpreter."""
@@ -35,7 +35,7 @@ class Samples:
     growth: Array
     states: Array
     divergence: Array
-    end: End
+    end: IntegrationEnd
 
     @property
     def finished(self) -> int:
@@ -83,8 +83,8 @@ class Motion:
         e, n, count = self.equations, self.equations.size, len(self.frame)
         functions = np.array([e.rate, e.guard, e.jump, 0], dtype=np.int64)
         growth, states, divergence = np.empty((samples, count)), np.empty((samples, n)), np.empty(samples)
-        end, done = End.REACHED, 0
-        while done < samples and end is End.REACHED:
+        end, done = IntegrationEnd.REACHED, 0
+        while done < samples and end is IntegrationEnd.REACHED:
             part = slice(done, min(done + CHUNK, samples))
             before = self._block[:n].copy()
             code, finished = kernel().follow(
@@ -92,7 +92,7 @@ class Motion:
                 self._whole, float(self.interval), float(self.wrap), float(self.tolerance), int(self.most_steps),
                 traced, growth[part], states[part], divergence[part],
             )  # fmt: skip
-            end, done = End(code), done + finished
+            end, done = IntegrationEnd(code), done + finished
             self.state = states[done - 1].copy() if finished else before
         self.frame = self._block[n:].reshape(count, n).copy()
         self.time, self.regime = float(self._clock[0]), int(self._whole[0])

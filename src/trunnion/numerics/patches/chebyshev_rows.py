@@ -5,8 +5,8 @@ A library's matrix product would start threads of its own under those that share
 
 from __future__ import annotations
 
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.rows import load, spread, store
 
 
@@ -42,12 +42,12 @@ def weighted_sums(weights, rows, out):  # type: ignore[no-untyped-def]
     """
     count, degrees = weights.shape
     wide, zero = rows.shape[2], spread(0.0)  # type: ignore[call-arg, var-annotated]
-    whole, paired = wide - wide % LANES, count - count % 2
+    whole, paired = wide - wide % BATCH, count - count % 2
     for q in range(len(rows)):
         flat, to = rows[q].reshape(-1), out[q].reshape(-1)
         for v in range(0, paired, 2):
             a, b = weights[v], weights[v + 1]
-            for at in range(0, whole, LANES):
+            for at in range(0, whole, BATCH):
                 first, second = zero, zero
                 for i in range(degrees):
                     row = load(flat, i * wide + at, zero)

@@ -53,7 +53,7 @@ def _places(low: float, high: float, degree: int) -> Array:
 
 
 @dataclass(frozen=True)
-class Series:
+class ChebyshevSeries:
     """coefficients (quantity, i, j) of T_i(v) T_j(u); tail_u, tail_v (quantity,): sums of the last ones."""
 
     coefficients: Array
@@ -61,7 +61,7 @@ class Series:
     tail_v: Array
 
     @classmethod
-    def of(cls, grid: Grid, values: Array) -> Series:
+    def of(cls, grid: Grid, values: Array) -> ChebyshevSeries:
         """``values`` (node, quantity)."""
         samples = values.T.reshape(-1, *grid.shape)
         c = dct(dct(samples, type=1, axis=1), type=1, axis=2) / (grid.along_u * grid.along_v)

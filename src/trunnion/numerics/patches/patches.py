@@ -115,7 +115,7 @@ class PatchedFunction:
     patches: tuple[Patch, ...]
     direct: tuple[Box, ...]
     evaluations: int = 0
-    stubborn: int = field(default=0)
+    unconverged: int = field(default=0)
 
     def parts(self, u: Array, v: Array) -> Iterator[tuple[Patch, slice, slice]]:
         """Every patch that holds any of the grid ``u`` × ``v``, with the rows and columns that lie in it."""
@@ -161,7 +161,7 @@ def build(
     patches: list[Patch] = []
     direct: list[Box] = []
     todo = [(box, 0) for box in boxes]
-    evaluations = stubborn = 0
+    evaluations = unconverged = 0
     whole = sum((box.u1 - box.u0) * (box.v1 - box.v0) for box in boxes)
     settled = 0.0
     while todo:
@@ -172,7 +172,7 @@ def build(
             if pixels <= direct_below or spent:
                 direct.append(part)
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
-                stubborn += spent or depth > 0
+                unconverged += spent or depth > 0
             else:
                 sampled.append((part, depth))
         todo = []
@@ -186,7 +186,7 @@ def build(
                 patches.append(_trimmed(part, coefficients, error, 1e-3 * tolerance))
                 settled += (part.u1 - part.u0) * (part.v1 - part.v0)
             tick(min(settled / whole, 1.0))
-    return PatchedFunction(tuple(patches), tuple(direct), evaluations, stubborn)
+    return PatchedFunction(tuple(patches), tuple(direct), evaluations, unconverged)
 
 
 BATCH = 24

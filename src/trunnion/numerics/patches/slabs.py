@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.jit import njit
-from trunnion.numerics.lanes import LANES
 from trunnion.numerics.patches.patches import Box, Grid, PatchedFunction, build, grid_by_grid
 from trunnion.numerics.rows import load, spread, store
 
@@ -37,13 +37,13 @@ class Slabs:
     size: int
 
     def propagators(self, grid: Grid) -> tuple[Array, Array, Array]:
-        """Propagator over all slabs on a grid of a multiple of ``LANES`` points, its error and trace; shapes
+        """Propagator over all slabs on a grid of a multiple of ``BATCH`` points, its error and trace; shapes
         (rows · columns, …), rows slow."""
         m, count = self.size, len(grid[0]) * len(grid[1])
-        phi = np.zeros((count // LANES, m * m, LANES))
+        phi = np.zeros((count // BATCH, m * m, BATCH))
         phi[:, :: m + 1] = 1.0
         largest, error, trace = np.ones(count), np.zeros(count), np.zeros(count)
-        room = np.empty(2 * m * m * LANES + LANES)
+        room = np.empty(2 * m * m * BATCH + BATCH)
         for function in self.functions:
             values, bounds = _on_grid(function, grid, m * m + 1)
             _multiply(values, bounds, m, phi, largest, error, trace, room)
@@ -79,7 +79,7 @@ def build_slabs(propagate: Propagate, box: Box, edges: Array, size: int, toleran
         functions.append(
             build(grid_by_grid(sampled), boxes, nowhere, nowhere, tolerance / count, nodes=SLAB_NODES, direct_below=-1)
         )
-        if functions[-1].stubborn:
+        if functions[-1].unconverged:
             return None
     return Slabs(tuple(functions), size)
 
@@ -99,24 +99,24 @@ def _on_grid(function: PatchedFunction, grid: Grid, quantities: int) -> tuple[Ar
 @njit(nogil=True, fastmath=True)
 def _multiply(values, bounds, m, phi, largest, error, trace, room):  # type: ignore[no-untyped-def]
     """phi (block, m², lane) times the slab's, ``values`` (m² + 1, point) with its trace; room (2m² + 1) lanes."""
-    size, every, zero = m * m * LANES, values.shape[1], spread(0.0)  # type: ignore[call-arg, var-annotated]
+    size, every, zero = m * m * BATCH, values.shape[1], spread(0.0)  # type: ignore[call-arg, var-annotated]
     flat, left, product, squares = values.reshape(-1), room[:size], room[size : 2 * size], room[2 * size :]
     for block in range(len(phi)):
-        right, at = phi[block].reshape(-1), block * LANES
+        right, at = phi[block].reshape(-1), block * BATCH
         for entry in range(m * m):
-            store(left, entry * LANES, load(flat, entry * every + at, zero))
+            store(left, entry * BATCH, load(flat, entry * every + at, zero))
         square = zero
-        for i in range(0, size, m * LANES):
-            for j in range(0, m * LANES, LANES):
+        for i in range(0, size, m * BATCH):
+            for j in range(0, m * BATCH, BATCH):
                 total = zero
                 for k in range(m):
-                    total = total + load(left, i + k * LANES, zero) * load(right, k * m * LANES + j, zero)
+                    total = total + load(left, i + k * BATCH, zero) * load(right, k * m * BATCH + j, zero)
                 store(product, i + j, total)
                 square = square + total * total
-        for entry in range(0, size, LANES):  # setting slices to each other takes two seconds to compile
+        for entry in range(0, size, BATCH):  # setting slices to each other takes two seconds to compile
             store(right, entry, load(product, entry, zero))
         store(squares, 0, square)
-        for lane in range(LANES):
+        for lane in range(BATCH):
             p = at + lane
             largest[p] = max(largest[p], np.sqrt(squares[lane] / m))
             error[p] += bounds[p]

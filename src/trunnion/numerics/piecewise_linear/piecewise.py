@@ -34,7 +34,7 @@ COLUMNS = (
 )
 
 
-class Tables(Protocol):
+class RegimeTables(Protocol):
     """Regimes of a motion; see ``numerics/piecewise_kernel.py``."""
 
     @property
@@ -61,7 +61,7 @@ def kernel() -> ModuleType:
 
 
 @dataclass(frozen=True)
-class Passage:
+class PiecewiseSegment:
     """A stretch of motion: state (2,) at its end and its regime there, tangents (2, 3) = ∂(x, x′)
     by x₀, x₀′ and ω; events (count, 4): time, x, x′, regime begun (−1: an extremum, where they were asked for)."""
 
@@ -81,7 +81,7 @@ class TooManyEventsError(ComputationError):
 
 
 def move(
-    tables: Tables,
+    tables: RegimeTables,
     force: Complex,
     frequency: float,
     state: ArrayLike,
@@ -91,7 +91,7 @@ def move(
     regime: int | None = None,
     tangents: bool = True,
     extrema: bool = False,
-) -> Passage:
+) -> PiecewiseSegment:
     """The motion from time ``start`` to ``end``, exact to rounding.
 
     Raises
@@ -113,11 +113,11 @@ def move(
             f"(the last at {record[max(events - 1, 0), 0]:g} s, x = {x[0]:g}); "
             "ask for less time at once or raise damping"
         )
-    return Passage(x, int(last), w, record[:events].copy())
+    return PiecewiseSegment(x, int(last), w, record[:events].copy())
 
 
 def states(
-    tables: Tables,
+    tables: RegimeTables,
     force: Complex,
     frequency: float,
     state: ArrayLike,
@@ -133,7 +133,7 @@ def states(
     return out
 
 
-def period(tables: Tables, force: Complex, frequency: float, state: Array, periods: int) -> Passage:
+def period(tables: RegimeTables, force: Complex, frequency: float, state: Array, periods: int) -> PiecewiseSegment:
     """The motion over ``periods`` forcing periods, its last tangent the derivative by ω of the state after them.
 
     The time of the end depends on ω as well, and adds the rate there.
@@ -149,7 +149,7 @@ def period(tables: Tables, force: Complex, frequency: float, state: Array, perio
     return passage
 
 
-def measure(tables: Tables, force: Complex, frequency: float, state: ArrayLike, periods: int) -> dict[str, float]:
+def measure(tables: RegimeTables, force: Complex, frequency: float, state: ArrayLike, periods: int) -> dict[str, float]:
     """What the motion from ``state`` at phase zero does in ``periods`` periods: columns of a row, by name."""
     k = kernel()
     x = np.array(state, dtype=float)

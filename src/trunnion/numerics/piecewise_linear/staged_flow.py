@@ -59,7 +59,7 @@ class StagedFlow:
 
 
 @dataclass(frozen=True)
-class StagedPassage:
+class StagedSegment:
     """A stretch of motion.
 
     time reached; state (2m,), its rate (2m,) and stages (m,) there; tangents (2m, 2m), with a last column by the
@@ -112,7 +112,7 @@ def move(
     by_parameter: bool = False,
     watch: bool = False,
     most_events: int = MOST_EVENTS,
-) -> StagedPassage:
+) -> StagedSegment:
     """The motion from ``start`` to ``end``; ``times`` rise within it, ``watch`` fills ``seen``."""
     keep_time()
     k, m = kernel(), flow.size
@@ -134,7 +134,7 @@ def move(
     )  # fmt: skip
     events_found = record[:events].copy()
     gone = flow.moves[np.arange(m), now] * z[m:]
-    return StagedPassage(
+    return StagedSegment(
         time=float(time), state=z, rate=np.append(gone, rate), stages=now, tangents=w.T, states=states,
         shown_stages=shown_stages, events=events_found, seen=seen, ended=int(ended),
     )  # fmt: skip
@@ -142,7 +142,7 @@ def move(
 
 def period(
     flow: StagedFlow, state: ArrayLike, length: float, length_slope: float = 0.0, *, watch: bool = False
-) -> StagedPassage:
+) -> StagedSegment:
     """The motion from time 0 to ``length`` with all its tangents, the last by the parameter, on which ``length`` itself
     depends with ``length_slope``."""
     passage = move(flow, state, 0.0, length, tangents=True, by_parameter=True, watch=watch)

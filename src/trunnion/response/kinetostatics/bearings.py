@@ -9,12 +9,12 @@ import numpy as np
 from trunnion.driveline.quantities import LENGTH, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 
 Bearings = Sequence[Sequence[object]]
 
 
-def place_bearings(chain: Chain, bearings: Bearings) -> dict[int, tuple[float, ...]]:
+def place_bearings(chain: KinematicChain, bearings: Bearings) -> dict[int, tuple[float, ...]]:
     """Bearing positions by member, checked."""
     remedy = 'write supports=[("Shaft 1", -0.3, -0.1), ("Shaft 3", 0.1, 0.4)]'
     placed: dict[int, tuple[float, ...]] = {}
@@ -56,7 +56,7 @@ def place_bearings(chain: Chain, bearings: Bearings) -> dict[int, tuple[float, .
     return placed
 
 
-def _within(chain: Chain, m: int, name: str, positions: tuple[float, ...]) -> None:
+def _within(chain: KinematicChain, m: int, name: str, positions: tuple[float, ...]) -> None:
     member = chain.members[m]
     last = any(chain.steps[i].parent >= 0 and chain.steps[chain.steps[i].parent].member == m for i in chain.joints)
     low = -np.inf if member.joint < 0 else 0.0

@@ -26,7 +26,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Elastic
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
-from trunnion.equations.topology import Link, Station, stations_of
+from trunnion.equations.topology import LinkKind, Station, stations_of
 from trunnion.errors import InputError
 from trunnion.laws import double_cardan, hooke
 from trunnion.laws.fourier import FourierLaw
@@ -37,7 +37,7 @@ UNCHANGED = FourierLaw((), (), ())
 
 
 @dataclass(frozen=True)
-class Step:
+class ChainStep:
     """From station ``parent`` to the station behind this step; SI units.
 
     ``speed`` over the input's, on average; ``reach`` [m] is how far along its member the station lies. ``fork_offset``
@@ -47,7 +47,7 @@ class Step:
     ``viscous_load`` and ``quadratic_load`` are all that sits at the station.
     """
 
-    link: Link
+    link: LinkKind
     parent: int
     name: str
     member: int
@@ -84,14 +84,14 @@ class Member:
 
 
 @dataclass(frozen=True)
-class Chain:
+class KinematicChain:
     """Steps (``steps[0]`` is the drive), members, the line they come from and the step ``behind`` each of its elements.
 
     ``output`` is the element at the end that is asked about: the last, or that of a branch.
     """
 
     line: Driveline
-    steps: tuple[Step, ...]
+    steps: tuple[ChainStep, ...]
     members: tuple[Member, ...]
     behind: tuple[int, ...]
     output: int
@@ -99,12 +99,12 @@ class Chain:
     @cached_property
     def shafts(self) -> tuple[int, ...]:
         """Steps that are Shafts."""
-        return tuple(i for i, step in enumerate(self.steps) if step.link is Link.SHAFT)
+        return tuple(i for i, step in enumerate(self.steps) if step.link is LinkKind.SHAFT)
 
     @cached_property
     def joints(self) -> tuple[int, ...]:
         """Steps that bend the axis."""
-        return tuple(i for i, step in enumerate(self.steps) if step.link is Link.JOINT)
+        return tuple(i for i, step in enumerate(self.steps) if step.link is LinkKind.JOINT)
 
     @property
     def ends(self) -> tuple[int, ...]:
@@ -155,7 +155,7 @@ class Chain:
         return self.path(self.behind[self.output])
 
 
-def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str | None = None) -> Chain:
+def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str | None = None) -> KinematicChain:
     """Sort ``line`` into steps and members.
 
     Parameters
@@ -174,8 +174,8 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
                 element=name,
                 remedy="replace it by a Disk with the load_torque it exerts",
             )
-    stations, draft = stations_of(line, even=True), _Draft(line, lengths or {})
-    knots = [station.element for station in stations.stations if station.link is Link.SUM]
+    stations, draft = stations_of(line, even=True), _ChainDraft(line, lengths or {})
+    knots = [station.element for station in stations.stations if station.link is LinkKind.SUM]
     knots += [compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None]
     if knots:
         raise InputError(
@@ -189,14 +189,14 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
         draft.put(step_of[s], line.elements[i], number)
     members = tuple(member if member.length > 0 else replace(member, length=np.nan) for member in draft.members)
     behind = tuple(step_of[s] for s in stations.behind)
-    found = Chain(line, tuple(draft.steps), members, behind, len(line.elements) - 1)
+    found = KinematicChain(line, tuple(draft.steps), members, behind, len(line.elements) - 1)
     return found if branch is None else replace(found, output=found.end_behind(branch))
 
 
-class _Draft:
+class _ChainDraft:
     def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
         self.line, self.lengths = line, lengths
-        self.steps: list[Step] = []
+        self.steps: list[ChainStep] = []
         self.members: list[Member] = []
 
     @cached_property
@@ -208,8 +208,8 @@ class _Draft:
         """The step to a station behind the step ``parent``."""
         i = station.element
         element, name = self.line.elements[i], self.line.names[i]
-        if station.link is Link.ROOT:
-            return self._step(Link.ROOT, parent, "drive", speed, Member(-1, 0, speed))
+        if station.link is LinkKind.ROOT:
+            return self._step(LinkKind.ROOT, parent, "drive", speed, Member(-1, 0, speed))
         if isinstance(element, DoubleCardanJoint):
             first, second = double_cardan.halves(element.angle, element.distance_ratio or 1.0)
             yoke = self._cross(parent, f"{name}, first cross", speed, angle=float(first), plane=element.plane)
@@ -225,9 +225,9 @@ class _Draft:
             if element.orders:
                 law = element.law(lambda key: np.asarray(self.packed.values[self.packed.column(i, key)]))
             return self._joint(parent, name, speed, law=law, orders=element.orders, **bend)
-        if station.link is Link.RATIO:
+        if station.link is LinkKind.RATIO:
             axis, ratio = Member(-1, self.members[-1].train + 1, speed), self.steps[parent].speed / speed
-            return self._step(Link.RATIO, parent, name, speed, axis, ratio=float(ratio))
+            return self._step(LinkKind.RATIO, parent, name, speed, axis, ratio=float(ratio))
         if isinstance(element, GearPair):
             return parent  # rigid and in contact
         assert isinstance(element, Elastic | PiecewiseShaft)
@@ -237,7 +237,7 @@ class _Draft:
             more["stiffness"] = element.torsional_stiffness or np.inf
         else:
             more["stages"] = stage_law(self.line, i, self.packed.column, self.packed.table(1))
-        here = self._step(Link.SHAFT, parent, name, speed, **more)
+        here = self._step(LinkKind.SHAFT, parent, name, speed, **more)
         if element.onward == 0:  # beside the axis
             return here
         self._extend(here, name, self.lengths.get(name, getattr(element, "length", None) or 0.0))
@@ -263,22 +263,22 @@ class _Draft:
 
     def _joint(self, parent: int, name: str, speed: Fraction, **numbers: Any) -> int:
         axis = Member(len(self.steps), self.members[self.steps[parent].member].train, speed)
-        return self._step(Link.JOINT, parent, name, speed, axis, **numbers)
+        return self._step(LinkKind.JOINT, parent, name, speed, axis, **numbers)
 
     def _step(
-        self, link: Link, parent: int, name: str, speed: Fraction, axis: Member | None = None, **numbers: Any
+        self, link: LinkKind, parent: int, name: str, speed: Fraction, axis: Member | None = None, **numbers: Any
     ) -> int:
         """A step, on the axis of the one before it or on one of its own."""
         if axis is not None:
             self.members.append(axis)
         member = self.steps[parent].member if axis is None else len(self.members) - 1
-        self.steps.append(Step(link, parent, name, member, speed, **numbers))
+        self.steps.append(ChainStep(link, parent, name, member, speed, **numbers))
         return len(self.steps) - 1
 
     def _extend(self, step: int, shaft: str, length: float) -> None:
         """Put the far end of a shaft ``length`` [m] behind its near end, and count it to its member."""
         here = self.steps[step]
-        reach = length + (self.steps[here.parent].reach if here.link is Link.SHAFT else 0.0)
+        reach = length + (self.steps[here.parent].reach if here.link is LinkKind.SHAFT else 0.0)
         self.steps[step] = replace(here, reach=reach)
         member = self.members[here.member]
         self.members[here.member] = replace(member, length=max(member.length, reach), shafts=(*member.shafts, shaft))

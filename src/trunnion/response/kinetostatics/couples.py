@@ -23,7 +23,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.laws.hooke import QUARTER_TURN
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 from trunnion.response.kinetostatics.torques import Torques
 
 
@@ -42,7 +42,7 @@ class Couples:
     friction_power: Array
 
 
-def secondary_couples(chain: Chain, motion: Rotations, passed: Torques, pin_moment: float) -> Couples:
+def secondary_couples(chain: KinematicChain, motion: Rotations, passed: Torques, pin_moment: float) -> Couples:
     """Couples on all forks of the line."""
     points = len(motion.angle[0][0])
     names, member, standing, rotating, heat = [], [], [], [], np.zeros(points)
@@ -67,7 +67,7 @@ def secondary_couples(chain: Chain, motion: Rotations, passed: Torques, pin_mome
     return Couples(tuple(names), tuple(member), np.reshape(standing, shape), np.reshape(rotating, shape), heat)
 
 
-def cross_tilts(chain: Chain, motion: Rotations) -> Array:
+def cross_tilts(chain: KinematicChain, motion: Rotations) -> Array:
     """Tilt [rad] of the cross in every fork (fork, point), in the order of ``Couples``; NaN where there is no cross.
 
     In each fork the other fork's pins tip out of the plane square to the shaft, with a at the input, b at the output:

@@ -21,7 +21,7 @@ from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import ComputationError
 from trunnion.numerics import jets
-from trunnion.response.kinetostatics.chain import Chain, Step
+from trunnion.response.kinetostatics.chain import ChainStep, KinematicChain
 from trunnion.response.kinetostatics.motion import Drive, walk
 from trunnion.response.kinetostatics.torques import Torques, rates_needed, torques
 
@@ -29,7 +29,7 @@ ROUNDS = 300
 MOTION_ORDER = 2
 
 
-def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Rotations, Torques, dict[int, Array]]:
+def solve(chain: KinematicChain, drive: Drive, *, rigid: bool) -> tuple[Rotations, Torques, dict[int, Array]]:
     """Motion, torques and twists (jets by Shaft step [rad], far end minus near end; none if rigid)."""
     if rigid:
         motion = walk(chain, drive.jet(MOTION_ORDER))
@@ -51,13 +51,13 @@ def solve(chain: Chain, drive: Drive, *, rigid: bool) -> tuple[Rotations, Torque
     )
 
 
-def constant_twist(chain: Chain, drive: Drive, twist: dict[int, Array]) -> Rotations:
+def constant_twist(chain: KinematicChain, drive: Drive, twist: dict[int, Array]) -> Rotations:
     """S2's approximation: the motion with every twist held at its mean over the turn."""
     mean = {i: jets.constant(float(np.mean(xi[0])), xi) for i, xi in twist.items()}
     return walk(chain, drive.jet(MOTION_ORDER), mean)
 
 
-def _yielding(step: Step, passed: Array) -> Array:
+def _yielding(step: ChainStep, passed: Array) -> Array:
     """Jet of the twist [rad] of a shaft that passes the torque with the jet ``passed`` [N m].
 
     Raises

@@ -21,25 +21,25 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.topology import Link
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.equations.topology import LinkKind
+from trunnion.response.kinetostatics.chain import KinematicChain
 
 Changes = Mapping[int, Array]
 
 
-def is_one_joint(chain: Chain) -> bool:
+def is_one_joint(chain: KinematicChain) -> bool:
     """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio."""
     geared = False
     for i in chain.way:
         step = chain.steps[i]
         if step.orders and (geared or not step.cross):
             return False
-        geared = geared or step.link is Link.RATIO
+        geared = geared or step.link is LinkKind.RATIO
     return True
 
 
 def matrices(
-    chain: Chain, cases: int, *, angle: Changes | None = None, plane: Changes | None = None,
+    chain: KinematicChain, cases: int, *, angle: Changes | None = None, plane: Changes | None = None,
     fork_offset: Changes | None = None,
 ) -> Array:  # fmt: skip
     """M of the line for many variants, shape (case, 2, 2); changed numbers are arrays (case,) by step."""
@@ -47,7 +47,7 @@ def matrices(
     product = np.broadcast_to(np.eye(2), (cases, 2, 2))
     for i in chain.way:
         step = chain.steps[i]
-        if step.link is Link.SHAFT:
+        if step.link is LinkKind.SHAFT:
             product = _rotation(fork_offset.get(i, step.fork_offset), cases) @ product
         elif step.law is not None:
             product = _rotation(-np.asarray(plane.get(i, step.plane)), cases) @ product
@@ -72,21 +72,21 @@ def irregularity(product: Array) -> Array:
     return np.hypot(a - d, b + c) * np.hypot(a + d, b - c)
 
 
-def least_irregularity(chain: Chain) -> float:
+def least_irregularity(chain: KinematicChain) -> float:
     """What the best phasing of the forks can reach [1]."""
     rapidities = [-np.log(np.cos(chain.steps[i].angle)) for i in chain.way if chain.steps[i].cross]
     rest = max(0.0, 2 * max(rapidities, default=0.0) - sum(rapidities))
     return float(2 * np.sinh(rest))
 
 
-def phasors(chain: Chain) -> tuple[Array, Array]:
+def phasors(chain: KinematicChain) -> tuple[Array, Array]:
     """Angles β_i and input angles χ_i [rad] of the joints on the way to the output, for small angles."""
     a, angles, phases = 0.0, [], []
     for i in chain.way:
         step = chain.steps[i]
-        if step.link is Link.SHAFT:
+        if step.link is LinkKind.SHAFT:
             a += step.fork_offset
-        elif step.link is Link.RATIO:
+        elif step.link is LinkKind.RATIO:
             a /= step.ratio
         elif step.law is not None:
             a -= step.plane

@@ -13,12 +13,12 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 
 START = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
-def member_frames(chain: Chain) -> Array:
+def member_frames(chain: KinematicChain) -> Array:
     """Rows e, u, v of every member in space, shape (member, 3, 3); u and v of the joint in front of it."""
     frames = np.empty((len(chain.members), 3, 3))
     for m, member in enumerate(chain.members):

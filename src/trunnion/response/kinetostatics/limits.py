@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.driveline.quantities import ANGLE, DEGREE, TORQUE, Kind, parse
+from trunnion.driveline.quantities import ANGLE, DEGREE, TORQUE, QuantityKind, parse
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.measures import largest
 from trunnion.response.kinetostatics.result import Kinetostatics
@@ -94,7 +94,7 @@ def _sentence(what: str, value: float, limit: float | None, unit: str) -> Findin
     )
 
 
-def _limit(key: str, value: float | str | None, kind: Kind | None = None) -> float | None:
+def _limit(key: str, value: float | str | None, kind: QuantityKind | None = None) -> float | None:
     if value is None:
         return None
     try:

@@ -17,8 +17,8 @@ ROUNDING = 1e-12
 def irregularity(speed: Array, mean: float) -> float:
     """(largest − smallest)/mean of speeds over the turns computed [1]; 0 where it is only rounding."""
     low, high = extremes(speed)
-    uneven = float((high - low) / abs(mean))
-    return uneven if uneven > ROUNDING else 0.0
+    nonuniform = float((high - low) / abs(mean))
+    return nonuniform if nonuniform > ROUNDING else 0.0
 
 
 def equivalent_angle(irregularity: ArrayLike) -> Array:

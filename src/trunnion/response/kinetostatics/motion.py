@@ -15,10 +15,10 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations import kinematics
-from trunnion.equations.kinematics import Place, Rotations
-from trunnion.equations.topology import Link
+from trunnion.equations.kinematics import Rotations, StationKinematics
+from trunnion.equations.topology import LinkKind
 from trunnion.laws import hooke
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def drive_jet(input_angle: Array, speed: float, acceleration: float, order: int)
 
 
 def walk(
-    chain: Chain,
+    chain: KinematicChain,
     drive: Array,
     twist: Mapping[int, Array] | None = None,
     *,
@@ -70,17 +70,17 @@ def walk(
     places = []
     for i, step in enumerate(chain.steps[1:], start=1):
         shift: list[Array] = []
-        if step.link is Link.SHAFT:
+        if step.link is LinkKind.SHAFT:
             shift = [np.asarray(fork_offset.get(i, step.fork_offset))]
         elif step.law is not None:
             shift = [-np.asarray(plane.get(i, step.plane))]
         if i in twist:
             shift = [shift[0] + twist[i][0], *twist[i][1:]]
         law = hooke.law(angle[i]) if i in angle else step.law
-        places.append(Place(step.parent, shift, law, step.ratio))
+        places.append(StationKinematics(step.parent, shift, law, step.ratio))
     return kinematics.walk(places, list(drive))
 
 
-def assembled(chain: Chain) -> list[float]:
+def assembled(chain: KinematicChain) -> list[float]:
     """Fork angle [rad] of every station of the unloaded line at input angle 0: where rotations count from."""
     return [float(a[0]) for a in walk(chain, np.zeros(1)).angle]

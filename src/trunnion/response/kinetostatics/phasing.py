@@ -19,10 +19,10 @@ from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.driveline.refusals import nearest
-from trunnion.equations.topology import Link
+from trunnion.equations.topology import LinkKind
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics import equivalent
-from trunnion.response.kinetostatics.chain import Chain, chain
+from trunnion.response.kinetostatics.chain import KinematicChain, chain
 from trunnion.response.kinetostatics.measures import equivalent_angle, extremes, phasor_angle
 from trunnion.response.kinetostatics.motion import drive_jet, walk
 
@@ -132,13 +132,13 @@ def phase_forks(
     )
 
 
-def phased_shafts(train: Chain) -> tuple[int, ...]:
+def phased_shafts(train: KinematicChain) -> tuple[int, ...]:
     """The first Shaft between each two neighbouring joints that are not ideal, on the way to the output."""
     found: list[int] = []
     shaft, seen = None, False
     for i in train.way:
         step = train.steps[i]
-        if step.link is Link.SHAFT and seen and shaft is None:
+        if step.link is LinkKind.SHAFT and seen and shaft is None:
             shaft = i
         elif step.orders:
             found += [shaft] if shaft is not None else []
@@ -147,7 +147,7 @@ def phased_shafts(train: Chain) -> tuple[int, ...]:
 
 
 def irregularity_of(
-    train: Chain,
+    train: KinematicChain,
     free: tuple[int, ...],
     offsets: Array,
     *,
@@ -174,7 +174,7 @@ def irregularity_of(
     return np.asarray((high - low) / abs(float(train.steps[train.behind[train.output]].speed)))
 
 
-def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:
+def _continuous(train: KinematicChain, free: tuple[int, ...], own: Array) -> Array:
     """Offsets of least irregularity; of several equally good ones the nearest to the line's own."""
     n = len(free)
     per_shaft = int(STARTS ** (1 / n))
@@ -192,7 +192,7 @@ def _continuous(train: Chain, free: tuple[int, ...], own: Array) -> Array:
     return np.asarray(good[int(away.max(axis=1).argmin())])
 
 
-def _polish(train: Chain, free: tuple[int, ...], start: Array) -> Array:
+def _polish(train: KinematicChain, free: tuple[int, ...], start: Array) -> Array:
     from scipy.optimize import least_squares, minimize
 
     if equivalent.is_one_joint(train):
@@ -230,7 +230,9 @@ def _spline_positions(pitches: Array, near: Array) -> Array:
     return np.array(list(product(*each)))
 
 
-def _pitches(train: Chain, free: tuple[int, ...], pitch: float | str | Mapping[str, float | str] | None) -> Array:
+def _pitches(
+    train: KinematicChain, free: tuple[int, ...], pitch: float | str | Mapping[str, float | str] | None
+) -> Array:
     names = [train.steps[i].name for i in free]
     given = dict(pitch) if isinstance(pitch, Mapping) else {n: pitch for n in names if pitch is not None}
     pitches = dict.fromkeys(names, np.inf)

@@ -10,7 +10,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DEGREE
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 from trunnion.response.kinetostatics.motion import Drive
 from trunnion.response.kinetostatics.supports import Supports
 from trunnion.results.finding import Finding, Gravity
@@ -21,7 +21,7 @@ NEAR_RESONANCE = 1 / 3
 
 
 def remarks(
-    chain: Chain, drive: Drive, rigid: bool, supports: Supports | None, turns: int, twist: Mapping[int, Array]
+    chain: KinematicChain, drive: Drive, rigid: bool, supports: Supports | None, turns: int, twist: Mapping[int, Array]
 ) -> tuple[Finding, ...]:
     """Findings about a result, gravest first where it matters; ``twist`` as ``elastic.solve`` gives it."""
     found = []
@@ -43,7 +43,7 @@ def remarks(
     return tuple(found)
 
 
-def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
+def _resonance(chain: KinematicChain, drive: Drive, rigid: bool) -> list[Finding]:
     """Whether the fastest excitation stays well below the lowest elastic frequency."""
     from trunnion.modes.natural_frequencies import natural_frequencies
 
@@ -77,7 +77,7 @@ def _resonance(chain: Chain, drive: Drive, rigid: bool) -> list[Finding]:
     ]
 
 
-def _meshes(chain: Chain) -> list[Finding]:
+def _meshes(chain: KinematicChain) -> list[Finding]:
     """Gear pairs, which a turn takes as rigid pairs in contact."""
     words = {
         "mesh_stiffness": "the mesh's yielding",
@@ -97,7 +97,7 @@ def _meshes(chain: Chain) -> list[Finding]:
     ]
 
 
-def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
+def _stages(chain: KinematicChain, twist: Mapping[int, Array]) -> list[Finding]:
     """Shafts that change their stage within the turn."""
     found = []
     for i, jet in twist.items():
@@ -126,7 +126,7 @@ def _stages(chain: Chain, twist: Mapping[int, Array]) -> list[Finding]:
     return found
 
 
-def _repeats(chain: Chain, turns: int) -> list[Finding]:
+def _repeats(chain: KinematicChain, turns: int) -> list[Finding]:
     """Whether the turns asked for cover a whole period of a line with ratios."""
     period = chain.turns
     if turns % period == 0:

@@ -12,7 +12,7 @@ from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.quantities import ANGLE, DEGREE
 from trunnion.errors import InputError
-from trunnion.response.kinetostatics.chain import Chain, chain
+from trunnion.response.kinetostatics.chain import KinematicChain, chain
 from trunnion.response.kinetostatics.measures import equivalent_angle
 from trunnion.response.kinetostatics.phasing import irregularity_of, phased_shafts
 
@@ -101,7 +101,7 @@ def assembly_sensitivity(
     )
 
 
-def _refuse_reaching_90(train: Chain, hooke: tuple[int, ...], size: float, error: float | str) -> None:
+def _refuse_reaching_90(train: KinematicChain, hooke: tuple[int, ...], size: float, error: float | str) -> None:
     """An error that bends a joint by 90° or more describes no joint."""
     i = max(hooke, key=lambda j: abs(train.steps[j].angle))
     bent = abs(train.steps[i].angle)

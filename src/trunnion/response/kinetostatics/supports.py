@@ -19,10 +19,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.equations.topology import Link
+from trunnion.equations.topology import LinkKind
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings, place_bearings
-from trunnion.response.kinetostatics.chain import Chain
+from trunnion.response.kinetostatics.chain import KinematicChain
 from trunnion.response.kinetostatics.couples import Couples, turned
 from trunnion.response.kinetostatics.frames import member_frames
 from trunnion.results.fields import coordinate, internal, labelled, variable
@@ -47,7 +47,7 @@ class Supports:
     idle: tuple[str, ...] = internal("joints taken to carry no force")
 
 
-def support_forces(chain: Chain, couples: Couples, bearings: Bearings) -> Supports:
+def support_forces(chain: KinematicChain, couples: Couples, bearings: Bearings) -> Supports:
     """Solve the statics of the train that the bearings belong to.
 
     Parameters
@@ -76,7 +76,7 @@ def support_forces(chain: Chain, couples: Couples, bearings: Bearings) -> Suppor
 class _Statics:
     """The equations of one train: rows by member, columns by joint force and bearing force."""
 
-    def __init__(self, chain: Chain, members: list[int], placed: dict[int, tuple[float, ...]]) -> None:
+    def __init__(self, chain: KinematicChain, members: list[int], placed: dict[int, tuple[float, ...]]) -> None:
         self.chain, self.members, self.placed = chain, members, placed
         self.frames = member_frames(chain)
         self.joints = [chain.members[m].joint for m in members if chain.members[m].joint >= 0]
@@ -122,7 +122,9 @@ class _Statics:
         """Shafts between a joint and the beginning of the member it hangs on."""
         steps, front = self.chain.steps, self._front(joint)
         return {
-            i for i in self.chain.path(steps[joint].parent) if steps[i].link is Link.SHAFT and steps[i].member == front
+            i
+            for i in self.chain.path(steps[joint].parent)
+            if steps[i].link is LinkKind.SHAFT and steps[i].member == front
         }
 
     def _require_lengths(self, shafts: set[int]) -> None:

@@ -19,11 +19,11 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.kinematics import Rotations
-from trunnion.equations.topology import Link
+from trunnion.equations.topology import LinkKind
 from trunnion.errors import InputError
 from trunnion.laws.joint import through
 from trunnion.numerics import jets
-from trunnion.response.kinetostatics.chain import Chain, Step
+from trunnion.response.kinetostatics.chain import ChainStep, KinematicChain
 from trunnion.response.kinetostatics.motion import Drive
 
 
@@ -36,7 +36,7 @@ class Torques:
     out: list[Array]
 
 
-def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Rotations) -> Torques:
+def torques(chain: KinematicChain, drive: Drive, motion: Rotations, order: int, rigid: Rotations) -> Torques:
     """Torques of the loads, and of the inertias where they count.
 
     Parameters
@@ -69,7 +69,7 @@ def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Ro
             )
         elif step.orders:
             torque = jets.multiply(torque, np.stack(through(motion.passed[i][1:], motion.chi[i][:size])))
-        elif step.link is Link.RATIO:
+        elif step.link is LinkKind.RATIO:
             torque = torque / step.ratio
         into[i] = torque
         if parent >= 0:
@@ -77,12 +77,12 @@ def torques(chain: Chain, drive: Drive, motion: Rotations, order: int, rigid: Ro
     return Torques(into, out)
 
 
-def rates_needed(chain: Chain, drive: Drive) -> int:
+def rates_needed(chain: KinematicChain, drive: Drive) -> int:
     """Order of the derivatives of the rotations that the torques depend on."""
     return 2 if drive.inertia else int(any(_grows(step) for step in chain.steps))
 
 
-def _grows(step: Step) -> bool:
+def _grows(step: ChainStep) -> bool:
     """Whether a load grows with the speed."""
     return step.viscous_load != 0 or step.quadratic_load != 0
 
@@ -91,12 +91,12 @@ def _acceleration(rotations: Rotations, station: int) -> Array:
     return jets.rate(jets.rate(rotations.jet(station)))
 
 
-def _speed_load(step: Step, speed: Array, sense: float) -> Array:
+def _speed_load(step: ChainStep, speed: Array, sense: float) -> Array:
     """Jet of cω + qω|ω|; joints below 90° never turn the sense of rotation."""
     return step.viscous_load * speed + sense * step.quadratic_load * jets.multiply(speed, speed)
 
 
-def refuse_locking(chain: Chain, pin_moment: float) -> None:
+def refuse_locking(chain: KinematicChain, pin_moment: float) -> None:
     """A cross whose pin friction exceeds what its angle lets through would not turn."""
     for step in chain.steps:
         if step.cross and pin_moment * abs(np.tan(step.angle)) >= 1:
@@ -109,7 +109,7 @@ def refuse_locking(chain: Chain, pin_moment: float) -> None:
             )
 
 
-def _with_friction(step: Step, chi: Array, pin_moment: Array) -> Array:
+def _with_friction(step: ChainStep, chi: Array, pin_moment: Array) -> Array:
     """M₁/M₂ as a jet; ``pin_moment`` is σκ′ at each angle."""
     sine, cosine = jets.sine_cosine(chi)
     d = -(np.sin(step.angle) ** 2) * jets.multiply(cosine, cosine)

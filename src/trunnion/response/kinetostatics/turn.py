@@ -16,7 +16,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings
-from trunnion.response.kinetostatics.chain import Chain, chain
+from trunnion.response.kinetostatics.chain import KinematicChain, chain
 from trunnion.response.kinetostatics.couples import cross_tilts, secondary_couples
 from trunnion.response.kinetostatics.elastic import constant_twist, solve
 from trunnion.response.kinetostatics.friction import CrossFriction
@@ -149,7 +149,7 @@ def kinetostatics(
     )
 
 
-def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]) -> dict[int, float]:
+def _output_torques(train: KinematicChain, given: float | str | Mapping[str, float | str]) -> dict[int, float]:
     """Torque [N m] by the element at the end of a branch."""
     if not isinstance(given, Mapping):
         return {train.output: quantity(given, TORQUE, "output_torque")}
@@ -165,7 +165,9 @@ def _output_torques(train: Chain, given: float | str | Mapping[str, float | str]
     return found
 
 
-def _constant(train: Chain, drive: Drive, motion: Rotations, twist: dict[int, Array]) -> tuple[ConstantTwist, ...]:
+def _constant(
+    train: KinematicChain, drive: Drive, motion: Rotations, twist: dict[int, Array]
+) -> tuple[ConstantTwist, ...]:
     """One for every end."""
     approximate = constant_twist(train, drive, twist).angle
     variation = []
@@ -181,7 +183,7 @@ def _constant(train: Chain, drive: Drive, motion: Rotations, twist: dict[int, Ar
 
 
 def _power_residual(
-    train: Chain, drive: Drive, motion: Rotations, passed: Torques, twist: dict[int, Array], heat: Array
+    train: KinematicChain, drive: Drive, motion: Rotations, passed: Torques, twist: dict[int, Array], heat: Array
 ) -> float:
     """Largest imbalance of power over the largest power [1].
 

@@ -1,7 +1,7 @@
 """Linear steady response of a line at every speed to every excitation order.
 
 Excited by the harmonic torques of its disks (by order of their rotation, in time, or both), by the transmission errors
-of its meshes, and by its bent joints. A straight line is one complex system per order and speed; in a line with bent
+of its meshes, and by its angled joints. A straight line is one complex system per order and speed; in a line with bent
 joints an order k couples to k ± 2mR, R the speed ratio of the joint, and is solved with its side orders.
 
 Orders are taken at the angle that their disk has in the base motion (joints' lead and static twist included). How far
@@ -28,7 +28,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import disk_torques, line_harmonics
-from trunnion.equations.steady_base import bent, moves_by_itself
+from trunnion.equations.steady_base import has_joint_angles, has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.stability.stable_speeds import verdicts_at
@@ -41,7 +41,7 @@ from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.steady.orders.spectrum import order_spectrum
 
 if TYPE_CHECKING:
-    from trunnion.steady.own.own_motions import MotionsBySpeed
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
 NEAR_ENOUGH = 1e-9
@@ -86,24 +86,25 @@ def order_response(
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
     speed = _positive(speeds_of(speeds, remedy), "speeds", remedy)
     wanted = _listed(orders)
-    twisted, motions = statically_twisted, own_motions_of(assembly)
+    twisted, motions = statically_twisted, steady_states_of(assembly)
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
     return _result(assembly, spectrum, judged, wanted)
 
 
-def own_motions_of(assembly: Assembly) -> MotionsBySpeed | None:
-    """For the motions that a bent line which starts free is taken about, each solved once; None for other lines."""
-    if not moves_by_itself(assembly):
+def steady_states_of(assembly: Assembly) -> SteadyStatesBySpeed | None:
+    """For the motions that a free–free line with joint angles is taken about, each solved once; None for other
+    lines."""
+    if not has_periodic_base(assembly):
         return None
     # Loaded for lines that need it: it brings the compiler and the orbits with it.
-    from trunnion.steady.own.own_motions import MotionsBySpeed
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
-    return MotionsBySpeed(assembly.line)
+    return SteadyStatesBySpeed(assembly.line)
 
 
 def response_about(
-    assembly: Assembly, speeds: Array, motions: MotionsBySpeed | None = None, *, rough: bool = False
+    assembly: Assembly, speeds: Array, motions: SteadyStatesBySpeed | None = None, *, rough: bool = False
 ) -> OrderResponse:
     """As ``order_response``, its verdicts not judged, about ``motions`` that may be known already.
 
@@ -231,15 +232,15 @@ def _stress_factor(assembly: Assembly) -> Array:
 
 def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> Iterator[Finding]:
     if not any(one.acts for one in line_harmonics(assembly)):
-        joints = " but its joints" if bent(assembly) else ""
+        joints = " but its joints" if has_joint_angles(assembly) else ""
         yield Finding(Gravity.NOTE, f"Nothing excites this line{joints}.")
     for order in unexcited:
         yield Finding(Gravity.NOTE, f"Nothing excites order {order:g}.")
-    if moves_by_itself(assembly) and spectrum.loss.any():
+    if has_periodic_base(assembly) and spectrum.loss.any():
         yield Finding(
             Gravity.NOTE,
-            "A loss factor without a frequency has no motion in time: this bent line that starts free is taken about "
-            "the motion of its rigid shafts, right to first order in what joints and excitations force.",
+            "A loss factor without a frequency has no motion in time: this free–free line with joint angles is taken "
+            "about the motion of its rigid shafts, right to first order in what joints and excitations force.",
         )
     yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)

@@ -24,7 +24,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.ranges.resonances import Resonances
-from trunnion.floquet.ranges.span import Piece
+from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.numerics.curves import parabola
 from trunnion.response.orders.response import response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
@@ -64,7 +64,7 @@ NEXT, ROUNDING = 0.1, 1e-12
 
 
 @dataclass(frozen=True)
-class Quantity:
+class SearchedQuantity:
     """What is largest somewhere: ``values`` (speed,), and amplitudes by order (speed, order) that make them up.
 
     ``squared``: values are the sum of squares of the amplitudes, as of heat; else of no more than their sum. ``level``:
@@ -91,30 +91,30 @@ class Largest:
 
 
 @dataclass(frozen=True)
-class Hidden:
+class PossiblePeaks:
     """Speeds (place,) [rad/s] at which more may hide, how high (place,), and how wide (place,) [rad/s] the top is."""
 
     speed: Array
     height: Array
     scale: Array
 
-    def of(self, which: Flags) -> Hidden:
+    def of(self, which: Flags) -> PossiblePeaks:
         """Some of them."""
-        return Hidden(self.speed[which], self.height[which], self.scale[which])
+        return PossiblePeaks(self.speed[which], self.height[which], self.scale[which])
 
-    def over(self, top: float) -> Hidden:
+    def over(self, top: float) -> PossiblePeaks:
         """Heights as shares of ``top``."""
         return replace(self, height=self.height / top)
 
 
-def _together(parts: Sequence[Hidden]) -> Hidden:
+def _together(parts: Sequence[PossiblePeaks]) -> PossiblePeaks:
     none = np.zeros(0)
-    return Hidden(
+    return PossiblePeaks(
         *(np.concatenate([none, *(getattr(part, key) for part in parts)]) for key in ("speed", "height", "scale"))
     )
 
 
-def first_speeds(pieces: Sequence[Piece], met: Resonances, points: int = POINTS) -> list[Array]:
+def first_speeds(pieces: Sequence[SmoothRange], met: Resonances, points: int = POINTS) -> list[Array]:
     """Speeds to begin with, by piece: evenly, closer towards slow ones, and about every resonance."""
     low, high = pieces[0].low, pieces[-1].high
     even = np.linspace(low, high, points)
@@ -125,7 +125,9 @@ def first_speeds(pieces: Sequence[Piece], met: Resonances, points: int = POINTS)
     return [_within(every, piece) for piece in pieces]
 
 
-def thinned(around: Largest, pieces: Sequence[Piece], quantities: Sequence[Quantity], points: int) -> list[Array]:
+def thinned(
+    around: Largest, pieces: Sequence[SmoothRange], quantities: Sequence[SearchedQuantity], points: int
+) -> list[Array]:
     """Speeds to begin with after a rough look: few evenly, and about every top that may be the largest."""
     x = around.response.speed
     kept = [np.linspace(pieces[0].low, pieces[-1].high, points)]
@@ -138,7 +140,7 @@ def thinned(around: Largest, pieces: Sequence[Piece], quantities: Sequence[Quant
     return [_within(every, piece) for piece in pieces]
 
 
-def _within(speeds: Array, piece: Piece) -> Array:
+def _within(speeds: Array, piece: SmoothRange) -> Array:
     inside = speeds[(speeds > piece.low) & (speeds < piece.high)]
     return np.unique(np.concatenate([[piece.low], inside, [piece.high]]))
 
@@ -147,7 +149,7 @@ def search(
     assembly: Assembly,
     respond: Callable[[Array], OrderResponse],
     first: Sequence[Array],
-    quantities: Sequence[Quantity],
+    quantities: Sequence[SearchedQuantity],
     *,
     tolerance: float = TOLERANCE,
     rounds: int = MOST_ROUNDS,
@@ -160,7 +162,7 @@ def search(
     ------
     InputError, ComputationError : as of ``respond``. OutOfTime : the time was up before the first speeds were known.
     """
-    seen = _Seen(assembly, respond, quantities)
+    seen = _SearchedRanges(assembly, respond, quantities)
     seen.look([np.asarray(part) for part in first])
     try:
         for _ in range(rounds):
@@ -175,11 +177,11 @@ def search(
     return seen.largest(tolerance)
 
 
-class _Seen:
+class _SearchedRanges:
     """What is known of some quantities, piece by piece."""
 
     def __init__(
-        self, assembly: Assembly, respond: Callable[[Array], OrderResponse], quantities: Sequence[Quantity]
+        self, assembly: Assembly, respond: Callable[[Array], OrderResponse], quantities: Sequence[SearchedQuantity]
     ) -> None:
         self.assembly, self.respond, self.quantities = assembly, respond, quantities
         self.response: OrderResponse | None = None
@@ -206,7 +208,7 @@ class _Seen:
 
     def wanted(self, tolerance: float) -> list[Array]:
         """Speeds at which a larger value may hide, by piece."""
-        found: list[list[Hidden]] = [[] for _ in self._runs]
+        found: list[list[PossiblePeaks]] = [[] for _ in self._runs]
         for q in range(len(self.quantities)):
             top = self._top(q)
             if np.isfinite(top) and top > 0:
@@ -229,30 +231,30 @@ class _Seen:
     def _levels(self) -> list[int]:
         return [q for q, quantity in enumerate(self.quantities) if np.isfinite(quantity.level)]
 
-    def _passes(self, q: int, run: slice) -> Hidden:
+    def _passes(self, q: int, run: slice) -> PossiblePeaks:
         """Middles between neighbours of which one lies above the level and the other does not."""
         assert self.response is not None
         x, v = self.response.speed[run], self.values[run, q]
         above = ~(v <= self.quantities[q].level)
         here = np.flatnonzero((above[1:] != above[:-1]) & (x[1:] - x[:-1] > PASSED * x[1:]))
-        return Hidden((x[here] + x[here + 1]) / 2, np.ones(len(here)), x[here + 1] - x[here])
+        return PossiblePeaks((x[here] + x[here + 1]) / 2, np.ones(len(here)), x[here + 1] - x[here])
 
     def _top(self, q: int) -> float:
         column = self.values[:, q]
         return float(np.max(np.where(np.isfinite(column), column, np.inf), initial=0.0))
 
-    def _hidden(self, q: int, run: slice, top: float, tolerance: float) -> Hidden:
+    def _hidden(self, q: int, run: slice, top: float, tolerance: float) -> PossiblePeaks:
         """Where quantity ``q`` may rise above its ``top``."""
         assert self.response is not None
         x, v = self.response.speed[run], self.values[run, q]
         if len(x) < 3:
             return _together([])
         quantity = self.quantities[q]
-        wanted = Wanted(top * (1 + tolerance / 4), quantity.level)
+        wanted = SearchAim(top * (1 + tolerance / 4), quantity.level)
         poles = _poles(x, v, quantity.parts(self.response)[run], quantity.squared, wanted)
         return _together([_tops(x, v, wanted), *_ends(x, v, wanted), poles])
 
-    def _apart(self, wanted: Hidden, run: slice) -> Array:
+    def _apart(self, wanted: PossiblePeaks, run: slice) -> Array:
         """Speeds that are not next to each other, nor to known ones: of several at one top the highest."""
         assert self.response is not None
         known = self.response.speed[run].tolist()
@@ -292,7 +294,7 @@ class _Seen:
 
 
 @dataclass(frozen=True)
-class Wanted:
+class SearchAim:
     """What is worth a look: more than is known, or anything above a level where nothing is known to be."""
 
     more: float
@@ -304,7 +306,7 @@ class Wanted:
             return np.asarray((height > self.more) | ((height > self.level) & (known <= self.level)))
 
 
-def _tops(x: Array, v: Array, wanted: Wanted) -> Hidden:
+def _tops(x: Array, v: Array, wanted: SearchAim) -> PossiblePeaks:
     """Places to look at for tops that may be the largest: those of parabolas, and between them and their neighbours
     where these lie too far below."""
     inner = np.flatnonzero(np.isfinite(v[:-2]) & np.isfinite(v[1:-1]) & np.isfinite(v[2:])) + 1
@@ -319,10 +321,10 @@ def _tops(x: Array, v: Array, wanted: Wanted) -> Hidden:
     nearer = np.where(where - low < high - where, low, high)
     left, right = (nearer + x[inner - 1]) / 2, (nearer + x[inner + 1]) / 2
     both = [np.concatenate([one, one[known]]) for one in (above, high - low)]
-    return Hidden(np.concatenate([np.where(known, left, where), right[known]]), *both)
+    return PossiblePeaks(np.concatenate([np.where(known, left, where), right[known]]), *both)
 
 
-def _ends(x: Array, v: Array, wanted: Wanted) -> list[Hidden]:
+def _ends(x: Array, v: Array, wanted: SearchAim) -> list[PossiblePeaks]:
     """Middles of the first and the last stretch where the end is the highest and rises too steeply for a parabola: of a
     resonance that stands beyond it the top may lie before it."""
     found = []
@@ -331,11 +333,11 @@ def _ends(x: Array, v: Array, wanted: Wanted) -> list[Hidden]:
         height = v[end] + END * fall
         if fall > FLAT * v[end] and wanted.by(np.array([height]), v[[end]])[0]:
             middle, apart = (x[end] + x[beside]) / 2, abs(x[end] - x[beside])
-            found.append(Hidden(np.array([middle]), np.array([height]), np.array([apart])))
+            found.append(PossiblePeaks(np.array([middle]), np.array([height]), np.array([apart])))
     return found
 
 
-def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: Wanted) -> Hidden:
+def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: SearchAim) -> PossiblePeaks:
     """Places to look at for resonances that stand between three neighbours, and how high the sum may be there."""
     f = np.nan_to_num(parts)
     x0, x1, x2 = x[:-2, None], x[1:-1, None], x[2:, None]
@@ -363,11 +365,11 @@ def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: Wanted) ->
     rises = (1 - share) * v[place - 1] + share * v[place] + CAUTION * gain
     above = wanted.by(rises, np.maximum(v[place - 1], v[place]))
     scale = np.minimum(width, x[place] - x[place - 1])
-    return Hidden(at[above], rises[above], scale[above])
+    return PossiblePeaks(at[above], rises[above], scale[above])
 
 
 def sharpened(
-    respond: Callable[[Array], OrderResponse], quantity: Quantity, speeds: tuple[float, float, float]
+    respond: Callable[[Array], OrderResponse], quantity: SearchedQuantity, speeds: tuple[float, float, float]
 ) -> float:
     """The speed [rad/s] of the top of ``quantity`` that lies between the outer two of ``speeds``, near the middle one:
     far closer than its value needs it, for what is differentiated there."""

@@ -103,10 +103,10 @@ def _passed(x: Complex, h: Integers, of: Sequence[int] | Places, factor: Array, 
     varies = moves & np.any(np.ptp(factor, axis=1) > 0, axis=0)
     same = np.flatnonzero(moves & ~varies)
     found[..., same] = factor[:, :1, same] * x[..., of[same]]
-    uneven = np.flatnonzero(varies)
-    if len(uneven):
-        spectrum = np.zeros((len(x), times, len(uneven)), dtype=complex)
-        spectrum[:, h % times] = x[..., of[uneven]]
-        grid = np.fft.ifft(spectrum, axis=1) * factor[..., uneven]
-        found[..., uneven] = np.fft.fft(grid, axis=1)[:, h % times]
+    nonuniform = np.flatnonzero(varies)
+    if len(nonuniform):
+        spectrum = np.zeros((len(x), times, len(nonuniform)), dtype=complex)
+        spectrum[:, h % times] = x[..., of[nonuniform]]
+        grid = np.fft.ifft(spectrum, axis=1) * factor[..., nonuniform]
+        found[..., nonuniform] = np.fft.fft(grid, axis=1)[:, h % times]
     return found

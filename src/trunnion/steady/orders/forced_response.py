@@ -15,7 +15,14 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
-from trunnion.results.declared import Held, Result, axis, fields_over, over, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Result,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+)
 from trunnion.results.units import angle_words
 from trunnion.steady.orders.spectrum import order_spectrum
 
@@ -65,16 +72,16 @@ class LinearResponse(Result):
         """Whether the deviations stay within ``LINEAR_RANGE``, so that the amplitudes can be trusted."""
         return bool(self.largest_joint_rotation <= LINEAR_RANGE)
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Twist and torque of every shaft and the deviation of every inertia over the period."""
-        yield axis("input_angle", self.tau, "rad")
-        yield axis("shaft", self.shafts)
-        yield axis("joint", self.joints)
-        yield axis("coordinate", self.names)
-        yield from fields_over("input_angle shaft", self, twist="rad", torque="N*m")
-        yield over("input_angle coordinate", "rotation", self.rotation, "rad")
-        yield over("joint", "joint_rotation", self.joint_rotation, "rad")
-        yield from remarks(linear_range=LINEAR_RANGE, within_linear_range=int(self.linear))
+        yield data_coordinate("input_angle", self.tau, "rad")
+        yield data_coordinate("shaft", self.shafts)
+        yield data_coordinate("joint", self.joints)
+        yield data_coordinate("coordinate", self.names)
+        yield from data_variables("input_angle shaft", self, twist="rad", torque="N*m")
+        yield data_variable("input_angle coordinate", "rotation", self.rotation, "rad")
+        yield data_variable("joint", "joint_rotation", self.joint_rotation, "rad")
+        yield from data_attributes(linear_range=LINEAR_RANGE, within_linear_range=int(self.linear))
 
     def __str__(self) -> str:
         rows = [

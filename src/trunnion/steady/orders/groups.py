@@ -19,7 +19,7 @@ from trunnion.laws.harmonic import turning
 
 
 @dataclass(frozen=True)
-class Group:
+class CarrierGroup:
     """Excitations about one carrier.
 
     carrier κ [cycles per turn of the input] and the ``frequency`` ν [rad/s] that all have; ``members`` as (harmonic,
@@ -59,7 +59,7 @@ class SideOrders:
         """The largest offset."""
         return max(self.layers)
 
-    def of(self, group: Group) -> tuple[Integers, Flags]:
+    def of(self, group: CarrierGroup) -> tuple[Integers, Flags]:
         """Harmonics h (h,) about the members and which of them are the outermost (h,)."""
         return group.harmonics(self.layers, self.outermost)
 
@@ -76,10 +76,10 @@ def offsets(rates: set[int], reach: int) -> dict[int, int]:
     return found
 
 
-OWN = Group(Fraction(0), 0.0, (), own=True)
+OWN = CarrierGroup(Fraction(0), 0.0, (), own=True)
 
 
-def groups_of(harmonics: Iterable[LineHarmonic], base: Fraction | None, width: int) -> list[Group]:
+def groups_of(harmonics: Iterable[LineHarmonic], base: Fraction | None, width: int) -> list[CarrierGroup]:
     """Groups of the harmonics, whose orders share a carrier where they differ by whole ``base`` (None: where they are
     equal); those with more than 2·``width`` harmonics between them are apart."""
     together: dict[tuple[Fraction, float], list[tuple[LineHarmonic, int]]] = {}
@@ -91,5 +91,5 @@ def groups_of(harmonics: Iterable[LineHarmonic], base: Fraction | None, width: i
         members.sort(key=lambda member: member[1])
         apart = [i for i, (one, next_to) in enumerate(pairwise(members), 1) if next_to[1] - one[1] > 2 * width]
         for begin, end in pairwise([0, *apart, len(members)]):
-            found.append(Group(carrier, frequency, tuple(members[begin:end])))
+            found.append(CarrierGroup(carrier, frequency, tuple(members[begin:end])))
     return found

@@ -35,7 +35,7 @@ ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
 
 
-def few_nodes(speed: Array, co: LineCoefficients) -> Array | None:
+def interpolation_nodes(speed: Array, co: LineCoefficients) -> Array | None:
     """Three speeds (3,) that suffice where the coefficients ``co`` of ``speed`` (case,) are the same everywhere;
     None where each case has to stand for itself. Excitations are taken to be of second degree in the speed as well."""
     laws = [np.broadcast_to(n, (len(speed), 1)) for law in co.joints for n in law.numbers]
@@ -56,7 +56,7 @@ def weights_at(few: Array | None, speed: Array) -> Array | None:
     return np.stack([2 * b * c, -4 * a * c, 2 * a * b], axis=1)
 
 
-def carried(weights: Array | None, values: NDArray[Any]) -> NDArray[Any]:
+def interpolated(weights: Array | None, values: NDArray[Any]) -> NDArray[Any]:
     """Values (node, …) of second degree in the speed, at every case (case, …)."""
     if weights is None:
         return values
@@ -103,10 +103,10 @@ class HillBlocks:
         leaving out the rest costs. NaN where the motion needs no force: resonance without damping.
         """
         s = np.asarray(1j * (carrier[:, None] + harmonics * self.step[:, None]))
-        held = harmonics == 0 if self.topo.still and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
-        matrix = self.matrices(s, harmonics, np.flatnonzero(held))
+        at_rest = harmonics == 0 if self.topo.still and not carrier.any() else np.zeros(len(harmonics), dtype=bool)
+        matrix = self.matrices(s, harmonics, np.flatnonzero(at_rest))
         if not self.linearised:
-            return _with_rim(matrix, rim, carried(weights, right), weights)
+            return _with_rim(matrix, rim, interpolated(weights, right), weights)
         alone = replace(matrix, values=matrix.values[:1])
         first = _with_rim(alone, rim, right[:1])
         rest = right - _times(matrix, rim, first)
@@ -114,18 +114,18 @@ class HillBlocks:
         rest[np.abs(rest).max(axis=(1, 2)) <= RESIDUAL * size] = 0.0
         return np.asarray(first + _with_rim(alone, rim, rest, bounded=False))
 
-    def matrices(self, s: Complex, harmonics: Integers, held: Iterable[int] = ()) -> SparseMatrices:
+    def matrices(self, s: Complex, harmonics: Integers, at_rest: Iterable[int] = ()) -> SparseMatrices:
         """The matrices (node, h·n, h·n) at s (node, h) [1/s] of the ``harmonics`` (h,); what a free line turns as a
-        whole in those ``held``, or oil alone drags along, which nothing resists at rest, is taken to be zero."""
+        whole in those ``at_rest``, or oil alone drags along, which nothing resists at rest, is taken to be zero."""
         parts = (self.stiffness, self.damping, self.mass)
         found = fourier.hill_matrices(s, harmonics, parts, np.flatnonzero(self.kept))
         if self.loss.any():
             apart = (harmonics[:, None] - harmonics[None, :]) % self.times
             found += self._of_loss(apart, np.sign(s.imag))
-        found += [self._held(h) for h in held]
+        found += [self._rigid_motion_condition(h) for h in at_rest]
         return SparseMatrices.added(len(harmonics) * self.topo.size, found)
 
-    def _held(self, h: int) -> Part:
+    def _rigid_motion_condition(self, h: int) -> Part:
         n, joined = self.topo.size, self.topo.elongations[list(self.topo.dragged)]
         whole = joined.T @ joined
         if self.topo.free:
@@ -167,10 +167,10 @@ def _with_rim(
     cases, count, n = right.shape
     x = np.zeros((cases, count, n), dtype=complex)
     inside = matrix.among(np.repeat(~rim, n)) if rim.any() else matrix
-    inside = replace(inside, values=carried(weights, inside.values))
+    inside = replace(inside, values=interpolated(weights, inside.values))
     x[:, ~rim] = _solve(inside, right[:, ~rim].reshape(cases, -1), bounded=bounded).reshape(cases, -1, n)
     for end in np.flatnonzero(rim):
-        row = carried(weights, matrix.rows(np.repeat(np.arange(count) == end, n)))
+        row = interpolated(weights, matrix.rows(np.repeat(np.arange(count) == end, n)))
         known = (row @ x.reshape(cases, count * n, 1))[..., 0]
         x[:, end] = fourier.solved(row[:, :, end * n : (end + 1) * n], right[:, end] - known)
     return x

@@ -26,7 +26,7 @@ from trunnion.equations.harmonics import (
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices, line_matrices
-from trunnion.equations.steady_base import bent, moves_by_itself, require_steady_base
+from trunnion.equations.steady_base import has_joint_angles, has_periodic_base, require_steady_base
 from trunnion.equations.topology import require_period
 from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
 from trunnion.errors import InputError
@@ -35,9 +35,9 @@ from trunnion.numerics.memory import require_memory
 from trunnion.numerics.tree_blocks import AT_ONCE
 from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
-from trunnion.steady.orders.groups import OWN, Group, SideOrders, groups_of, offsets
-from trunnion.steady.orders.hill import HillBlocks, carried, few_nodes, weights_at
-from trunnion.steady.orders.prices import places_left, tree_pays
+from trunnion.steady.orders.cost_model import places_left, tree_pays
+from trunnion.steady.orders.groups import OWN, CarrierGroup, SideOrders, groups_of, offsets
+from trunnion.steady.orders.hill import HillBlocks, interpolated, interpolation_nodes, weights_at
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
 from trunnion.steady.orders.straight import coupled_response, straight_response
 from trunnion.steady.orders.tree_hill import TreeHill
@@ -45,8 +45,8 @@ from trunnion.steady.orders.unbalanced import balanced
 from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
-    from trunnion.steady.orders.own_orders import OwnBase, OwnOrders
-    from trunnion.steady.own.own_motions import MotionsBySpeed
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
+    from trunnion.steady.orders.steady_state_orders import SteadyStateBase, SteadyStateOrders
 
 
 FEWEST, MOST, ROUGH_REACH = 3, 48, 1
@@ -65,7 +65,7 @@ def order_spectrum(
     statically_twisted: bool = True,
     linearised: bool = False,
     rough: bool = False,
-    motions: MotionsBySpeed | None = None,
+    motions: SteadyStatesBySpeed | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> OrderSpectrum:
     """Solve ``assembly`` at every ``speed`` (speed,) [rad/s].
@@ -73,17 +73,19 @@ def order_spectrum(
     ``table`` (speed, column): packed numbers of each case where more than the speed differs from case to case. With
     ``linearised`` each is solved as X₀ + A₀⁻¹(G − AX₀) about the first, X₀: right to first order, and as smooth a
     function of the numbers as A and G are, however near a resonance. With ``rough`` each cause
-    makes the nearest side orders alone, and a bent line that starts free is taken about the motion of rigid shafts:
-    right to first order in what joints force, a tenth of the time. ``motions``: own motions that are known already.
+    makes the nearest side orders alone, and a free–free line with joint angles is taken about the motion of rigid
+    shafts: right to first order in what joints force, a tenth of the time. ``motions``: periodic steady states that are
+    known already.
 
     Raises
     ------
-    InputError : a line with too long a period; a free bent line, or an excitation's own frequency, in a ``table``.
+    InputError : a line with too long a period; a free–free line with joint angles, or an excitation's own frequency, in
+    a ``table``.
     """
     numbers = _numbers(assembly, speed, table)
 
-    def solved(*, whole: bool) -> tuple[_Case, OrderSpectrum]:
-        case = _Case(assembly, statically_twisted, numbers, linearised, rough, motions, whole)
+    def solved(*, whole: bool) -> tuple[_SpectrumProblem, OrderSpectrum]:
+        case = _SpectrumProblem(assembly, statically_twisted, numbers, linearised, rough, motions, whole)
         return case, _at_all(case, speed, progress)
 
     case, found = solved(whole=False)
@@ -92,7 +94,7 @@ def order_spectrum(
     return found
 
 
-def _at_all(case: _Case, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
+def _at_all(case: _SpectrumProblem, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
     """At every ``speed`` (speed,), batch by batch."""
     parts: list[OrderSpectrum] = []
     for done in range(0, len(speed), case.batch):
@@ -113,9 +115,9 @@ def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
     if table is None:
         return numbers
     remedy = "ask order_response of each line by itself"
-    if moves_by_itself(assembly, numbers):
+    if has_periodic_base(assembly, numbers):
         raise InputError(
-            "starts free and is bent: its cases are not solved together", element="driveline", remedy=remedy
+            "is free–free and has joint angles: its cases are not solved together", element="driveline", remedy=remedy
         )
     for one in disk_torques(assembly):
         column = one.columns[2]
@@ -135,19 +137,19 @@ def _require_room(first: OrderSpectrum, speeds: int) -> None:
 
 
 @dataclass(frozen=True)
-class _Written:
+class _StraightEquations:
     """Equations of one reach of harmonics, written out for the rows of ``table``."""
 
     table: Array
     co: LineCoefficients
-    groups: list[Group]
+    groups: list[CarrierGroup]
     sides: SideOrders
     matrices: LineMatrices | TreeMatrices
     base: BaseOfExcitation
     blocks: HillBlocks | TreeHill
 
 
-class _Case:
+class _SpectrumProblem:
     """What solving takes, apart from the speeds."""
 
     def __init__(
@@ -157,7 +159,7 @@ class _Case:
         numbers: Array,
         linearised: bool,
         rough: bool,
-        motions: MotionsBySpeed | None,
+        motions: SteadyStatesBySpeed | None,
         whole: bool,
     ) -> None:
         """With ``whole`` matrices however long the line is."""
@@ -171,16 +173,16 @@ class _Case:
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
         row = few[np.abs(few).argmax(axis=0), np.arange(few.shape[1])]
         self.acting = [one for one in line_harmonics(assembly, row) if one.acts]
-        self.varies = bent(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
+        self.varies = has_joint_angles(assembly, numbers[:1] if self.alike else numbers) or bool(one.waves)
         self.turns = require_period(assembly.line, self.topo) if self.varies else Fraction(1)
         # Equations by motion know no damping whatever the frequency: about rigid shafts it is as right as all is there.
         about_rigid = rough or bool(one.loss.any())
-        self.own: OwnOrders | None = None
-        if moves_by_itself(assembly) and not about_rigid:
+        self.own: SteadyStateOrders | None = None
+        if has_periodic_base(assembly) and not about_rigid:
             # Loaded for lines that need it: it brings the compiler and the orbits with it.
-            from trunnion.steady.orders.own_orders import OwnOrders
+            from trunnion.steady.orders.steady_state_orders import SteadyStateOrders
 
-            self.own = OwnOrders(assembly, motions)
+            self.own = SteadyStateOrders(assembly, motions)
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.fall: dict[int, float] | None = None
         self.reach: float = ROUGH_REACH if rough else _reach(one.joints)
@@ -188,13 +190,13 @@ class _Case:
         if self.along_tree and not rough:
             self.fall, self.reach = spreads(self.topo, one, self.turns), DECADES
         self.few: Array | None = None
-        self.written: dict[float, _Written] = {}
+        self.written: dict[float, _StraightEquations] = {}
         torques = disk_torques(assembly)
         # A frequency that the speed turns round has a sign, which a loss factor's torque follows.
         turns_round = bool(one.loss.any()) and any(torque.frequency for torque in torques)
         smooth = self.alike and not turns_round and not any(torque.law.speeds for torque in torques)
         if self.varies and smooth and self.own is None:
-            self.few = few_nodes(numbers[:, 0], self.coefficients(numbers))
+            self.few = interpolation_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
             self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
         elif self.varies:
@@ -207,7 +209,7 @@ class _Case:
     def coefficients(self, table: Array) -> LineCoefficients:
         return self.assembly.coefficients(table, statically_twisted=self.twisted, any_frequency=True)
 
-    def _plan(self, reach: float) -> tuple[list[Group], SideOrders, int]:
+    def _plan(self, reach: float) -> tuple[list[CarrierGroup], SideOrders, int]:
         """Groups, the side orders of their harmonics, and samples over the period that resolve them."""
         if self.fall is None:
             sides = SideOrders(offsets(self.rates, int(reach)), int(reach))
@@ -242,7 +244,7 @@ class _Case:
     def _solved(self, table: Array) -> tuple[OrderSum, Array]:
         """That sum, and the relative size of the outermost harmonics, (case,)."""
         if self.own is not None:
-            return self._about_own_motions(self.own.at(table[:, 0]), table)
+            return self._about_steady_states(self.own.at(table[:, 0]), table)
         if not self.varies:
             return self._straight(table), np.zeros(len(table))
         while True:
@@ -279,7 +281,7 @@ class _Case:
         self._add_static(total, co)
         return total
 
-    def _written(self, reach: float, cases: Array) -> _Written:
+    def _written(self, reach: float, cases: Array) -> _StraightEquations:
         """The equations at the speeds that stand for all, or at those of ``cases``."""
         if self.few is not None and reach in self.written:
             return self.written[reach]
@@ -300,7 +302,7 @@ class _Case:
         else:
             matrices = line_matrices(self.topo, co, tau)
             blocks = HillBlocks(self.topo, matrices, co.loss, step, linearised=self.linearised)
-        found = _Written(table, co, groups, sides, matrices, base, blocks)
+        found = _StraightEquations(table, co, groups, sides, matrices, base, blocks)
         if self.few is not None:
             self.written[reach] = found
         return found
@@ -341,18 +343,18 @@ class _Case:
             right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
             if group.own:
                 right += self._harmonics(out.matrices.forcing, h)
-            least = np.maximum(least, 1e-6 * np.abs(carried(weights, right)).max(axis=(1, 2)))
+            least = np.maximum(least, 1e-6 * np.abs(interpolated(weights, right)).max(axis=(1, 2)))
             x = out.blocks.solve(weights, carrier, h, rim, right)
             seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
-            self._gather(total, group, h, seen, carried(weights, error), carried(weights, nu), every, wave)
+            self._gather(total, group, h, seen, interpolated(weights, error), interpolated(weights, nu), every, wave)
             last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
         self._add_base(total, out.base.rotation[alike], out.sides.width)
         self._add_static(total, every)
         return total, self._share(last, total, least)
 
-    def _about_own_motions(self, own: OwnBase, table: Array) -> tuple[OrderSum, Array]:
-        """Some speeds of a bent line that starts free."""
-        from trunnion.steady.orders.own_orders import about, seen_about
+    def _about_steady_states(self, own: SteadyStateBase, table: Array) -> tuple[OrderSum, Array]:
+        """Some speeds of a free–free line with joint angles."""
+        from trunnion.steady.orders.steady_state_orders import about, seen_about
 
         co, speed = own.coefficients, table[:, 0]
         total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
@@ -382,7 +384,7 @@ class _Case:
 
     def _sources(
         self,
-        group: Group,
+        group: CarrierGroup,
         h: Integers,
         table: Array,
         co: LineCoefficients,
@@ -418,7 +420,7 @@ class _Case:
     def _gather(
         self,
         total: OrderSum,
-        group: Group,
+        group: CarrierGroup,
         h: Integers,
         seen: Complex,
         error: Complex,

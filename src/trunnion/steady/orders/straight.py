@@ -3,7 +3,7 @@
     (−w² M + iw C + K + i sgn(w) H) Y = g,   w = KΩ + ν,
 
 with H the part of the stiffness that damps whatever the frequency. What stands still, w = 0, is a constant torque: it
-drives a line that starts free away, against the loads that go with its speed or else against its inertia, and twists
+drives a free–free line away, against the loads that go with its speed or else against its inertia, and twists
 it. The matrix has the pattern of the line's tree, so elimination from the leaves solves all orders and speeds together;
 where that loses figures, bands with exchange of pivots do.
 """
@@ -34,7 +34,7 @@ def straight_response(
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
     ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping. Of a
-    line that starts free and is driven away the deviations are those beside what it turns as a whole.
+    free–free line and is driven away the deviations are those beside what it turns as a whole.
     With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
     orders, cases, n = right.shape

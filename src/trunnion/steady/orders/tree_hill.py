@@ -17,8 +17,8 @@ from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
 from trunnion.numerics.condensation import Plan
-from trunnion.numerics.tree_blocks import Block, TreeMatrix
-from trunnion.steady.orders.hill import carried
+from trunnion.numerics.tree_blocks import TreeBlock, TreeMatrix
+from trunnion.steady.orders.hill import interpolated
 from trunnion.steady.orders.straight import about_first, bounded
 
 CONSTANT = 1e-15
@@ -94,7 +94,7 @@ class TreeHill:
         power = (0.0, 1.0, 2.0 * s) if slope else (1.0, s, s * s)
 
         def summed(parts: Iterable[Array]) -> Complex:
-            k, c, m = (np.asarray(carried(weights, part.T).T)[:, :, None] for part in parts)
+            k, c, m = (np.asarray(interpolated(weights, part.T).T)[:, :, None] for part in parts)
             found = power[0] * k + power[1] * c
             return np.asarray(found + power[2] * m if m.any() else found + np.zeros_like(s))
 
@@ -104,19 +104,19 @@ class TreeHill:
             blocks += self._add_loss(own, coupling, np.sign(s.imag), harmonics, weights)
         return TreeMatrix(self.plan, self.parent, own, coupling, blocks)
 
-    def _block(self, entry: Varying, s: Complex, h: Integers, weights: Array | None, slope: bool) -> Block:
+    def _block(self, entry: Varying, s: Complex, h: Integers, weights: Array | None, slope: bool) -> TreeBlock:
         meant = h[:, None] - entry.apart  # pairs come by their far harmonic
         place = np.minimum(np.searchsorted(h, meant), len(h) - 1)
         far, at = np.nonzero(h[place] == meant)
         near = place[far, at]
-        k, c, m = (carried(weights, part)[:, at] for part in entry.parts)
+        k, c, m = (interpolated(weights, part)[:, at] for part in entry.parts)
         v = s[:, near]
         values = c + 2 * v * m if slope else k + v * (c + v * m)
-        return Block(entry.row, entry.column, far, near, np.asarray(values))
+        return TreeBlock(entry.row, entry.column, far, near, np.asarray(values))
 
     def _add_loss(
         self, own: Complex, coupling: Complex, sign: Array, h: Integers, weights: Array | None
-    ) -> list[Block]:
+    ) -> list[TreeBlock]:
         """Add damping whatever the frequency of springs whose ratio does not vary; blocks of the others."""
         blocks = []
         apart = h[:, None] - h[None, :]
@@ -125,12 +125,12 @@ class TreeHill:
         for e, (far, near) in enumerate(self.topo.ends):
             if not self.loss[:, e].any():
                 continue
-            loss = 1j * carried(weights, self.loss[:, e, None]) * sign
+            loss = 1j * interpolated(weights, self.loss[:, e, None]) * sign
             if far >= 0:
                 own[far] += loss
             if near < 0:
                 continue
-            ratio = carried(weights, self.ratio[e])
+            ratio = interpolated(weights, self.ratio[e])
             if ratio.shape[1] == 1:
                 own[near] += ratio**2 * loss
                 if far >= 0:
@@ -140,14 +140,14 @@ class TreeHill:
             parts = [(near, near, wave @ (loss[:, :, None] * wave))]
             if far >= 0:
                 parts += [(far, near, -loss[:, :, None] * wave), (near, far, -wave * loss[:, None, :])]
-            blocks += [Block(a, b, far_h, near_h, v.reshape(len(v), -1)) for a, b, v in parts]
+            blocks += [TreeBlock(a, b, far_h, near_h, v.reshape(len(v), -1)) for a, b, v in parts]
         return blocks
 
     def solve(self, weights: Array | None, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
         """X (case, h, n) of G (node, h, n), as ``HillBlocks.solve``; harmonics on the rim are solved with all."""
         s = 1j * (carrier[:, None] + harmonics * self.step[:, None])
-        matrix = self.at(np.asarray(carried(weights, s)), harmonics, weights)
-        g = np.ascontiguousarray(np.moveaxis(carried(weights, right), 2, 0))
+        matrix = self.at(np.asarray(interpolated(weights, s)), harmonics, weights)
+        g = np.ascontiguousarray(np.moveaxis(interpolated(weights, right), 2, 0))
         if self.topo.free and not carrier.any() and (harmonics == 0).any():
             x = self._held(matrix, int(np.flatnonzero(harmonics == 0)[0]), g)
         elif self.linearised:

@@ -1,1 +1,1 @@
-"""Periodic orbits by shooting: of any system, and of a line that starts free."""
+"""Periodic orbits by shooting: of any system, and of a free–free line."""

@@ -1,4 +1,4 @@
-"""The periodic motion of a line that starts free, at the mean speed asked for.
+"""The periodic motion of a free–free line, at the mean speed asked for.
 
 Nothing prescribes its rotation, so that any phase of the motion is one as well: unknown are the state but for the
 first rotation, which is held where it starts, and the torque that drives beyond the balance of the loads, to cover
@@ -24,8 +24,15 @@ from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
-from trunnion.steady.shooting.closing import IntegratedClosing, Neutral, Phase, close
-from trunnion.steady.shooting.periodic_orbit import LONGEST, MOST_STEPS, TOLERANCE, PeriodicOrbit, closing_of, judged
+from trunnion.steady.shooting.periodic_orbit import (
+    LONGEST,
+    MOST_STEPS,
+    TOLERANCE,
+    PeriodicOrbit,
+    judged,
+    shooting_problem,
+)
+from trunnion.steady.shooting.shooting_problem import IntegratedShooting, NeutralDisturbances, Phase, close
 from trunnion.systems.maps import IntegratedMap
 from trunnion.systems.system import System
 
@@ -50,17 +57,17 @@ def kept_speed_orbit(
     ------
     InputError : excited in time or without a common period.
     """
-    require_closing(line)
+    require_periodic(line)
     first = line.twisted() if start is None else line.system.checked_start(start)
     torque = torque_scale(line)
     driving = IntegratedMap(driven or line.with_drive, (0.0,), (torque,), 0.0, 1, tolerance, MOST_STEPS)
     neutral = neutral_motions(line)
 
-    def held(guess: Array) -> IntegratedClosing:
+    def fixed(guess: Array) -> IntegratedShooting:
         scale = np.asarray(driving.system.scale)
-        return replace(closing_of(driving, Phase.held(0, float(guess[0]), scale), (torque,)), neutral=neutral)
+        return replace(shooting_problem(driving, Phase.fixed(0, float(guess[0]), scale), (torque,)), neutral=neutral)
 
-    return judged(*close(first, held, (0.0,), settle=settle))
+    return judged(*close(first, fixed, (0.0,), settle=settle))
 
 
 def torque_driven_orbit(line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE) -> PeriodicOrbit:
@@ -72,20 +79,20 @@ def torque_driven_orbit(line: LineSystem, speed: float, start: Array, *, toleran
     of the orbit. As for any autonomous system one multiplier is 1 and is set aside.
     """
     turning = IntegratedMap(line.varied("speed"), (speed,), (BESIDE * speed,), 0.0, 1, tolerance, MOST_STEPS)
-    phase = Phase.held(0, 0.0, np.asarray(turning.system.scale))
-    closing = closing_of(turning, phase, (speed,), (speed / LONGEST, speed * LONGEST))
-    closing.neutral = neutral_motions(line)
-    return judged(closing, closing.solve(np.append(start, speed)))
+    phase = Phase.fixed(0, 0.0, np.asarray(turning.system.scale))
+    problem = shooting_problem(turning, phase, (speed,), (speed / LONGEST, speed * LONGEST))
+    problem.neutral = neutral_motions(line)
+    return judged(problem, problem.solve(np.append(start, speed)))
 
 
-def closes(line: LineSystem) -> bool:
+def is_periodic(line: LineSystem) -> bool:
     """Whether the motion of a free line can close: a frequency in time has no fixed ratio to a speed that is free."""
     return line.period_turns is not None and not line.timed
 
 
 def require_kept_speed(line: LineSystem) -> None:
     """Refuse a free line whose drives keep no speed that is asked for, or whose motion cannot close."""
-    require_closing(line)
+    require_periodic(line)
     assembly = line.assembly
     row = assembly.table(1, line.speed)
     require_balance(assembly, row)
@@ -93,20 +100,20 @@ def require_kept_speed(line: LineSystem) -> None:
         require_share(assembly)  # a constant torque balances at one speed only
 
 
-def require_closing(line: LineSystem) -> None:
+def require_periodic(line: LineSystem) -> None:
     """Refuse a free line whose motion cannot close."""
-    if not closes(line):
+    if not is_periodic(line):
         raise InputError(
-            "starts free and is excited in time or without a common period: its motion does not close",
+            "is free–free and is excited in time or without a common period: its motion does not close",
             element="driveline",
             remedy="put a ConstantSpeed in front, give orders instead of frequencies, or simulate it",
         )
 
 
-def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
+def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDisturbances]:
     """(system, state at t = 0) → the line's neutral disturbances in the frame that turns at the system's mean speed.
 
-    A shift of the phase comes back exactly; without bent joints, loads by speed and excitation a change of the speed
+    A shift of the phase comes back exactly; without angled joints, loads by speed and excitation a change of the speed
     does as well.
     """
     topo, n = line.assembly.topology, line.assembly.topology.size
@@ -117,15 +124,15 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], Neutral]:
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
     unsteady = [one.columns[0] for one in line.torques]
 
-    def at(system: System, x: Array) -> Neutral:
+    def at(system: System, x: Array) -> NeutralDisturbances:
         by_speed = _any(line, system, loads)
-        steady = not (by_speed or _uneven(line, system) or _any(line, system, unsteady))
+        steady = not (by_speed or _nonuniform(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
         moved = np.concatenate([turn * speed, np.zeros(n), others])
         shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + moved
         if steady:
-            return Neutral(np.stack([shift, faster], axis=1))
-        return Neutral(shift[:, None], None if by_speed else faster)
+            return NeutralDisturbances(np.stack([shift, faster], axis=1))
+        return NeutralDisturbances(shift[:, None], None if by_speed else faster)
 
     return at
 
@@ -135,10 +142,10 @@ def _any(line: LineSystem, system: System, places: Iterable[int]) -> bool:
     return any(system.parameters[line.assembly.packed.labels[i]] for i in places)
 
 
-def _uneven(line: LineSystem, system: System) -> bool:
+def _nonuniform(line: LineSystem, system: System) -> bool:
     """Whether any joint of the line is bent in ``system``."""
     table = np.array([[system.parameters[label] for label in line.assembly.packed.labels]])
-    return any(law.uneven for law in joint_laws(line.assembly, table))
+    return any(law.nonuniform for law in joint_laws(line.assembly, table))
 
 
 def loaded_by_speed(assembly: Assembly) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.integration.integration import End, Trajectory
+from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory
 from trunnion.results.outcome import Outcome
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import WRONG_SHAPE, parameter_tuple, store
@@ -23,24 +23,24 @@ TINY = 1e-5
 def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[str, ...]) -> Outcome:
     """The outcome of ``run``; ``guards`` name the system's guards and then the caller's events."""
     _pass_on_interrupt(system)
-    if run.end is End.REACHED:
+    if run.end is IntegrationEnd.REACHED:
         return Outcome(True, "reached", f"reached t = {run.time:.6g} s in {run.steps} steps")
     at = f"at t = {run.time:.6g} s"
     largest = int(np.argmax(np.abs(np.nan_to_num(run.final[0], nan=np.inf)) / np.asarray(system.scale)))
     value = f"{system.states[largest]} = {run.final[0, largest]:.3g}"
-    if run.end is End.STOPPED:
+    if run.end is IntegrationEnd.STOPPED:
         return Outcome(True, "stopped", f"stopped {at} by the event {guards[int(run.event_which[-1])]}")
-    if run.end is End.OUT_OF_TIME:
+    if run.end is IntegrationEnd.OUT_OF_TIME:
         why = time_is_up() or "the search was stopped"
         return Outcome(False, OUT_OF_TIME, f"{why.replace('the search', 'the run')} {at}; what was computed is kept")
-    if run.end is End.STEP_LIMIT:
+    if run.end is IntegrationEnd.STEP_LIMIT:
         return Outcome(
             False,
             "step limit",
             f"stopped {at} after {run.steps} steps; raise most_steps, ask for a shorter time, or loosen "
             f"tolerance = {tolerance:g}{_scaled(system, run)}",
         )
-    if run.end is End.CHATTER:
+    if run.end is IntegrationEnd.CHATTER:
         name = guards[int(run.event_which[-1])]
         return Outcome(
             False,
@@ -49,15 +49,17 @@ def outcome_of(system: System, run: Trajectory, tolerance: float, guards: tuple[
             "slides there; give the system a regime for sticking, or smooth the law",
         )
     grown = np.abs(run.final[0]) > GROWN * np.maximum(np.abs(run.state[0]), np.asarray(system.scale))
-    if run.end is End.BEYOND or (run.end in (End.TOO_SMALL, End.NOT_FINITE) and np.any(grown)):
+    if run.end is IntegrationEnd.BEYOND or (
+        run.end in (IntegrationEnd.TOO_SMALL, IntegrationEnd.NOT_FINITE) and np.any(grown)
+    ):
         return Outcome(
             False,
             "blow-up",
             f"the motion blows up {at}: {value}; check signs and damping, or end the run before that",
         )
-    if run.end is End.REFUSED:
+    if run.end is IntegrationEnd.REFUSED:
         return Outcome(False, "refused", f"near {at[3:]} the right-hand side of {system.name} {_refusal(system, run)}")
-    if run.end is End.NOT_FINITE:
+    if run.end is IntegrationEnd.NOT_FINITE:
         return Outcome(
             False,
             "not finite",

@@ -22,18 +22,29 @@ from trunnion.arrays import Array, Complex
 from trunnion.errors import InputError
 from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import extremes, fourier
-from trunnion.numerics.integration.integration import End, Trajectory
+from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory
 from trunnion.numerics.spectrum import spectral_radius
 from trunnion.results.counts import counted
-from trunnion.results.declared import Held, Result, axis, ending, fields_over, over, parameters_of, remarks
+from trunnion.results.declared import (
+    DatasetItem,
+    Result,
+    data_attributes,
+    data_coordinate,
+    data_variable,
+    data_variables,
+    ending,
+    parameters_of,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
 from trunnion.results.units import with_error
 from trunnion.results.verdict import MEANING, Verdict, verdicts
-from trunnion.steady.shooting.closing import (
+from trunnion.steady.shooting.integration_outcomes import outcome_of
+from trunnion.steady.shooting.repetition import repetition
+from trunnion.steady.shooting.shooting_problem import (
     COARSER,
-    IntegratedClosing,
+    IntegratedShooting,
     Phase,
     close,
     divergence_of,
@@ -41,8 +52,6 @@ from trunnion.steady.shooting.closing import (
     rests,
     sticking,
 )
-from trunnion.steady.shooting.integration_outcomes import outcome_of
-from trunnion.steady.shooting.repetition import repetition
 from trunnion.systems.maps import IntegratedMap, TimedMap, checked_periods
 from trunnion.systems.system import System
 
@@ -157,17 +166,17 @@ class PeriodicOrbit(IntegratedOrbit, Result):
         """Largest minus smallest value of every state (n,), found on the dense output."""
         return extremes(self.trajectory.at, self.trajectory.time_of_state).span
 
-    def declared(self) -> Iterator[Held]:
+    def declared(self) -> Iterator[DatasetItem]:
         """Every state over one period, and the multipliers."""
-        yield axis("time", self.time, "s")
+        yield data_coordinate("time", self.time, "s")
         for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield over("time", name, self.state[:, i], unit)
-        yield over("multiplier_number", "multiplier", self.multipliers, "1")
-        yield over("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield from fields_over("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
-        yield from remarks(system=self.system.name, verdict=str(self.verdict))
+            yield data_variable("time", name, self.state[:, i], unit)
+        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
+        yield data_variable("multiplier_number", "multiplier_error", self.multiplier_error, "1")
+        yield from data_variables("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
+        yield from data_attributes(system=self.system.name, verdict=str(self.verdict))
         yield from ending(self.outcome)
-        yield from remarks(
+        yield from data_attributes(
             residual=self.residual,
             liouville_defect=self.liouville_defect,
             tangents="exact" if self.system.exact_tangents else "differenced",
@@ -257,7 +266,7 @@ def periodic_orbit(
                 remedy="give periods = 2 for a motion of twice the forcing period",
             )  # fmt: skip
         forced = IntegratedMap(lambda: system, (), (), phase, periods, tolerance, MOST_STEPS)
-        return judged(*close(first, lambda guess: closing_of(forced), settle=settle))
+        return judged(*close(first, lambda guess: shooting_problem(forced), settle=settle))
     if period is None or not (np.isfinite(period) and period > 0):
         raise InputError(
             "must be guessed for an autonomous system", element=system.name, key="period", value=period,
@@ -266,36 +275,36 @@ def periodic_orbit(
     length = periods * float(period)
     timed = TimedMap(lambda time: system, (length,), (0.0,), phase, 1, tolerance, MOST_STEPS)
 
-    def across(guess: Array) -> IntegratedClosing:
+    def across(guess: Array) -> IntegratedShooting:
         """One point of the orbit is chosen by the plane across the flow at the guess."""
         scale = np.asarray(system.scale)
         flow = system.rate_at(phase, guess)
         row = flow / max(float(np.linalg.norm(flow / scale)), 1e-300) / scale**2
-        return closing_of(timed, Phase(row, guess), (length,), (length / LONGEST, length * LONGEST))
+        return shooting_problem(timed, Phase(row, guess), (length,), (length / LONGEST, length * LONGEST))
 
     return judged(*close(first, across, (length,), settle=settle))
 
 
-def closing_of(
+def shooting_problem(
     place: IntegratedMap,
     phase: Phase | None = None,
     sizes: tuple[float, ...] = (),
     within: tuple[float, float] = (-np.inf, np.inf),
-) -> IntegratedClosing:
+) -> IntegratedShooting:
     """The closing of motions of an integrated map; ``sizes`` of the unknown values that count as one."""
     scale = np.append(np.asarray(place.system.scale), sizes)
-    return IntegratedClosing(place, scale, phase, LEFT * place.tolerance, within)
+    return IntegratedShooting(place, scale, phase, LEFT * place.tolerance, within)
 
 
-def judged(free: IntegratedClosing, root: Root) -> PeriodicOrbit:
+def judged(free: IntegratedShooting, root: Root) -> PeriodicOrbit:
     """The orbit where shooting ended: its multipliers, their error and the verdict; or why there is none."""
     if not root.converged:
         return _failed(free, root)
-    closing, root, stuck = sticking(free, root) or (free, root, ())
-    n, x, place, system = free.size, root.x[: free.size], closing.place(root.x), free.place(root.x).system
+    problem, root, stuck = sticking(free, root) or (free, root, ())
+    n, x, place, system = free.size, root.x[: free.size], problem.place(root.x), free.place(root.x).system
     length, scale = place.length, np.asarray(system.scale)
     run, coarse = place(x, dense=True).run, place(x, looser=COARSER).run
-    found, matrix = closing.judged(place, x, run, coarse, root.size), run.final[1:].T
+    found, matrix = problem.judged(place, x, run, coarse, root.size), run.final[1:].T
     radius, radius_error = np.array(0.0), np.array(0.0)
     if len(found.counted):
         radius, radius_error = spectral_radius(found.counted, found.counted_bound)
@@ -304,7 +313,7 @@ def judged(free: IntegratedClosing, root: Root) -> PeriodicOrbit:
     jumps = system.regimes is not None and system.regimes.jump is not None and len(run.event_time) > 0
     nearest = int(np.argmin(np.abs(found.values - 1)))
     left = float(np.abs(root.residual[:n] / scale).max())
-    if closing.phase is None and left > RUNAWAY and abs(found.values[nearest] - 1) <= found.bound[nearest]:
+    if problem.phase is None and left > RUNAWAY and abs(found.values[nearest] - 1) <= found.bound[nearest]:
         # Relative to a motion that ran away, what is left is small.
         return _failed(free, root, _unbounded(system, x))
     still, words = rests(place, run), f"closes to {root.size:.1e} after {root.iterations} iterations"
@@ -366,11 +375,11 @@ def _ended(root: Root) -> str:
     return f"shooting did not converge in {counted(root.iterations, 'iteration')}"
 
 
-def _failed(closing: IntegratedClosing, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
-    place, n, nan = closing.map, closing.size, float("nan")
-    assert closing.last is not None
-    system, run = place.system, closing.last.run
-    if outcome is None and run.end is not End.REACHED:
+def _failed(problem: IntegratedShooting, root: Root, outcome: Outcome | None = None) -> PeriodicOrbit:
+    place, n, nan = problem.map, problem.size, float("nan")
+    assert problem.last is not None
+    system, run = place.system, problem.last.run
+    if outcome is None and run.end is not IntegrationEnd.REACHED:
         guards = system.regimes.guards if system.regimes else ()
         broken = outcome_of(system, run, place.tolerance, guards)
         outcome = Outcome(False, broken.kind, f"a trial motion failed: {broken.sentence}")

@@ -20,13 +20,13 @@ from trunnion.response.kinetostatics.turn import kinetostatics
 from trunnion.studies.bicardan_elastic.conclusions import Turns, change, conclusions
 from trunnion.studies.bicardan_elastic.errata import errata
 from trunnion.studies.bicardan_elastic.published import bicardan_elastic as published
-from trunnion.studies.shared.result import Comparison, PaperFigure, Reproduction, Row
+from trunnion.studies.shared.result import ComparisonTable, PaperFigure, Reproduction, TableRow
 
 NAME = "bicardan-elastic"
 SOURCE = "Săulescu, Bercan and Hudan, Dynamic modeling of cardan transmissions in modular variant, part III, 2007"
 
 
-def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction:
+def bicardan_elastic(points: int, report_progress: Callable[[float], None]) -> Reproduction:
     """Reproduce S2 on ``points`` angles a turn."""
 
     def turn(rigid: bool = False, **changes: Any) -> Kinetostatics:
@@ -41,7 +41,7 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
         "c₁₂ in N·m/rad": Turns(stiff, rigid, turn(homokinetic=True, printed_stiffness=True), even_rigid),
     }
     worst = turn(rigid=True, plane_angle=1.5 * np.pi)
-    tell(0.8)
+    report_progress(0.8)
     shown = "1 rad/s, 150 N·m, ν₁₂ = 180°, β₁₂ = 266.4°. "
     figures = (
         PaperFigure("3", "Angles, speeds, accelerations and torques, intermediate shaft elastic",
@@ -60,28 +60,28 @@ def bicardan_elastic(points: int, tell: Callable[[float], None]) -> Reproduction
     )  # fmt: skip
 
 
-def _assumed(elastic: Kinetostatics, stiff: Kinetostatics) -> Comparison:
+def _assumed(elastic: Kinetostatics, stiff: Kinetostatics) -> ComparisonTable:
     """What the text leaves open, and what another value changes."""
     twists = [float(largest(k.twist[1])) for k in (elastic, stiff)]
-    return Comparison(
+    return ComparisonTable(
         "What is assumed",
         (
-            Row("unit of c₁₂", "N·m/rad", "N·mm/rad",
+            TableRow("unit of c₁₂", "N·m/rad", "N·mm/rad",
                 f"no diameters to check it by; the largest twist is {twists[0]:.4g} rad, in the printed unit "
                 f"{twists[1]:.4g} rad; every conclusion is judged in both"),
-            Row("sense of ν₁₂, β₁₂", "(2)", "both against the rotation",
+            TableRow("sense of ν₁₂, β₁₂", "(2)", "both against the rotation",
                 "the other sense mirrors the curves: the extremes of 0.7801 and 1.2819 stay"),
-            Row("J₁, J₁₂, J₃", "0", "0", "as stated: inertia torques of 0"),
+            TableRow("J₁, J₁₂, J₃", "0", "0", "as stated: inertia torques of 0"),
         ),
     )  # fmt: skip
 
 
-def _numbers(rigid: Kinetostatics) -> Comparison:
-    def row(words: str, values: Array, unit: str) -> Row:
+def _numbers(rigid: Kinetostatics) -> ComparisonTable:
+    def row(words: str, values: Array, unit: str) -> TableRow:
         low, high = extremes(values)
-        return Row(words, "Figure 4", f"{low:.5g} … {high:.5g} {unit}")
+        return TableRow(words, "Figure 4", f"{low:.5g} … {high:.5g} {unit}")
 
-    return Comparison(
+    return ComparisonTable(
         "Extremes over a turn, rigid",
         (
             row("angle, output − input", np.degrees(rigid.output_angle - rigid.mean_ratio * rigid.input_angle), "°"),
@@ -90,22 +90,22 @@ def _numbers(rigid: Kinetostatics) -> Comparison:
             row("acceleration of the output", rigid.output_acceleration, "rad/s²"),
             row("torque of the drive", rigid.drive_torque, "N·m"),
             *(
-                Row(f"tilt θ of the cross in fork {fork}", "(4), not drawn", f"{low:.5g} … {high:.5g} °")
+                TableRow(f"tilt θ of the cross in fork {fork}", "(4), not drawn", f"{low:.5g} … {high:.5g} °")
                 for fork, low, high in zip(rigid.forks, *extremes(np.degrees(rigid.cross_tilt)), strict=True)
             ),
         ),
     )
 
 
-def _differences(elastic: Kinetostatics, rigid: Kinetostatics, stiff: Kinetostatics) -> Comparison:
+def _differences(elastic: Kinetostatics, rigid: Kinetostatics, stiff: Kinetostatics) -> ComparisonTable:
     """What the elasticity changes, absolutely and relative to the fluctuation over a turn."""
     rows = []
     for words, unit in (("speed", "rad/s"), ("acceleration", "rad/s²"), ("torque", "N·m")):
         mended, printed = (change(one, rigid, words) for one in (elastic, stiff))
         rows.append(
-            Row(
+            TableRow(
                 f"{words}, elastic − rigid", "Figure 3 against 4", f"{mended[0]:.2g} {unit}",
                 f"{mended[1]:.1e} of its fluctuation over a turn; with c₁₂ in the printed unit {printed[0]:.1g} {unit}",
             )
         )  # fmt: skip
-    return Comparison("What the elasticity of the shaft changes", tuple(rows))
+    return ComparisonTable("What the elasticity of the shaft changes", tuple(rows))

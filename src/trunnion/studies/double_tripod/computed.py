@@ -39,7 +39,7 @@ CERTIFIED = {"input": (0.0016, 0.0114), "output": (0.0016, 0.0112)}
 
 
 @dataclass(frozen=True)
-class Case:
+class ElementCase:
     """One element at one damping ratio: exponents over the range, the bound of every motion, and, at the damping ratios
     ``CERTIFIED``, verdicts at 2Ω of both sets of equations, "given" and "own"."""
 
@@ -79,9 +79,9 @@ def sweep_of(shaft: DoubleTripod, element: str, points: int, effort: int = 1, *,
     )
 
 
-def cases(points: int, tell: Callable[[float], None]) -> list[Case]:
+def cases(points: int, report_progress: Callable[[float], None]) -> list[ElementCase]:
     """Every damping ratio of S4 for both elements, printed χ_n and consistent Ī."""
-    found: list[Case] = []
+    found: list[ElementCase] = []
     wanted = [(e, z, c) for e, rows in DAMPINGS.items() for z, c in rows]
     for element, ratio, claimed in wanted:
         shaft = DoubleTripod(damping_ratio=ratio)
@@ -89,8 +89,8 @@ def cases(points: int, tell: Callable[[float], None]) -> list[Case]:
         verdicts = {
             phase: certified(shaft, element, phase) for phase in ("given", "own") if ratio in CERTIFIED[element]
         }
-        found.append(Case(element, ratio, claimed, sweep_of(shaft, element, points), bound, verdicts))
-        tell(len(found) / len(wanted))
+        found.append(ElementCase(element, ratio, claimed, sweep_of(shaft, element, points), bound, verdicts))
+        report_progress(len(found) / len(wanted))
     return found
 
 

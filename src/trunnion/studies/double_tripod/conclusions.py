@@ -6,10 +6,20 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from trunnion.studies.double_tripod.computed import ORDERS_OF_MOTOR, RANGES, Case, exponent_from
+from trunnion.studies.double_tripod.computed import ORDERS_OF_MOTOR, RANGES, ElementCase, exponent_from
 from trunnion.studies.double_tripod.contraction import contraction
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
-from trunnion.studies.shared.result import AGAINST, FOR, NEITHER, Comparison, Conclusion, Reading, Row, agreed, sign
+from trunnion.studies.shared.result import (
+    AGAINST,
+    FOR,
+    NEITHER,
+    ComparisonTable,
+    Conclusion,
+    Reading,
+    TableRow,
+    agreed,
+    sign,
+)
 
 PARTS = {"input": "DIE1", "output": "DOE3"}
 EQUATIONS = {
@@ -23,7 +33,7 @@ NOTICED = 0.01
 """Part of itself by which 2Ω must shift over the joint angles to count as varying; the paper has no number."""
 
 
-def dampings(found: list[Case]) -> Comparison:
+def dampings(found: list[ElementCase]) -> ComparisonTable:
     """Every damping ratio of the paper: exponents over its range of frequencies, and the bound of every motion."""
     rows = []
     for case in found:
@@ -33,7 +43,7 @@ def dampings(found: list[Case]) -> Comparison:
             for phase, c in case.verdicts.items()
         )
         rows.append(
-            Row(
+            TableRow(
                 f"{PARTS[case.element]}, {low:g}–{high:g} Hz, ζ = {case.damping_ratio:g}",
                 case.claimed,
                 "no chaos" if case.positive == 0 and case.bound.rate > 0 else f"{case.positive} positive exponents",
@@ -41,24 +51,24 @@ def dampings(found: list[Case]) -> Comparison:
                 f"{-case.bound.rate:.4g} 1/s{'; ' + verdicts if verdicts else ''}",
             )
         )
-    return Comparison(
+    return ComparisonTable(
         "Ranges of damping for which the paper concludes chaos", tuple(rows),
         "Half of the frequencies even over the range, half within 0.2 % of 2Ω, by the standard definition.",
     )  # fmt: skip
 
 
-def refuted() -> Comparison:
+def refuted() -> ComparisonTable:
     """Exponents at 2Ω, ζ = 0.0016: other speeds of the motor, and starts of 1 rad."""
     rows = []
     for order in ORDERS_OF_MOTOR:
         found = {phase: exponent_from("input", phase, order, 0.0) for phase in ("given", "own")}
         said = ", ".join(f"{EQUATIONS['input', phase]} {value:.1f}" for phase, value in found.items())
-        rows.append(Row(f"DIE1, Ω_AEM = {100 * order}π rad/s", "chaos", f"{said} 1/s", "from rest"))
+        rows.append(TableRow(f"DIE1, Ω_AEM = {100 * order}π rad/s", "chaos", f"{said} 1/s", "from rest"))
     for (element, phase), equation in EQUATIONS.items():
         value = exponent_from(element, phase, 6, START)
         remark = f"largest exponent over 1.5 s from φ = {START:g} rad"
-        rows.append(Row(f"{PARTS[element]} {equation} from {START:g} rad", "chaos", f"{value:.1f} 1/s", remark))
-    return Comparison(
+        rows.append(TableRow(f"{PARTS[element]} {equation} from {START:g} rad", "chaos", f"{value:.1f} 1/s", remark))
+    return ComparisonTable(
         "The same at every speed of the motor, and from far away", tuple(rows),
         "η = 2Ω, ζ = 0.0016; largest exponent besides the phase's 0, over 1.5 s, in which two that lie "
         "close together have not quite sorted. That no case was missed the bound says.",
@@ -66,7 +76,7 @@ def refuted() -> Comparison:
 
 
 def conclusions(
-    found: list[Case],
+    found: list[ElementCase],
     opened: Mapping[str, tuple[float, float]],
     beats: Mapping[str, tuple[str, float, int]],
     turning: Mapping[str, Mapping[float, int]],
@@ -87,12 +97,12 @@ def conclusions(
     )
 
 
-def _refutes(case: Case) -> int:
+def _refutes(case: ElementCase) -> int:
     """Against chaos where no exponent is positive and every two motions approach each other."""
     return AGAINST if case.positive == 0 and case.bound.rate > 0 else NEITHER
 
 
-def _chaos(found: list[Case]) -> Conclusion:
+def _chaos(found: list[ElementCase]) -> Conclusion:
     readings = [
         Reading(
             f"{PARTS[c.element]}, ζ = {c.damping_ratio:g}, printed χ_n",
@@ -125,7 +135,7 @@ def _bounded(name: str, rates: list[float]) -> Reading:
     return Reading(name, shown, AGAINST if min(rates) > 0 else NEITHER)
 
 
-def _ergodic(found: list[Case]) -> Conclusion:
+def _ergodic(found: list[ElementCase]) -> Conclusion:
     readings = []
     for case in found:
         for phase, certificate in case.verdicts.items():
@@ -146,7 +156,7 @@ def _ergodic(found: list[Case]) -> Conclusion:
     )
 
 
-def _transition(found: list[Case]) -> Conclusion:
+def _transition(found: list[ElementCase]) -> Conclusion:
     weak = {e: next(c for c in found if c.element == e) for e in PARTS}
     return Conclusion(
         "It is then in transition to chaos.",
@@ -162,7 +172,7 @@ def _transition(found: list[Case]) -> Conclusion:
     )
 
 
-def _criteria(found: list[Case]) -> Conclusion:
+def _criteria(found: list[ElementCase]) -> Conclusion:
     """(38) and (39) on motions known to be regular: met there, they certify nothing."""
     regular = [c for case in found for c in case.verdicts.values() if c.verdict == "regular" and c.kind != "at rest"]
     readings = []
@@ -211,7 +221,7 @@ def _all_or_none(counts: Iterable[int]) -> int:
     return agreed([sign(count > 0) for count in counts])
 
 
-def _decay(found: list[Case]) -> Conclusion:
+def _decay(found: list[ElementCase]) -> Conclusion:
     readings = []
     for element, name in PARTS.items():
         rates = [(c.damping_ratio, -c.largest) for c in found if c.element == element]
@@ -257,7 +267,7 @@ def _literature() -> Conclusion:
     )
 
 
-def _pitting(found: list[Case]) -> Conclusion:
+def _pitting(found: list[ElementCase]) -> Conclusion:
     refuted = sum(_refutes(c) == AGAINST for c in found)
     return Conclusion(
         "Chaos explains the pitting, and the ergodic motion the cracks, found on such joints.",

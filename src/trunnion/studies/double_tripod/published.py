@@ -44,7 +44,7 @@ _OPTIONS = {
 
 
 @dataclass(frozen=True)
-class Element:
+class OuterElement:
     """One outer element, in the paper's letters: lengths [m], S_B [m²], half_sum = ½(J₁ + J₂) [m⁴], χ_nB.
 
     torque [N m] and torque_nonuniformity: M̄ and χ of Table 4; mill: driven by the mill, else by the motor.
@@ -109,12 +109,12 @@ class Element:
         return float(tripod.amplitude(angle, self.R / MIDSHAFT_LENGTH))
 
 
-INPUT = Element(
+INPUT = OuterElement(
     name="DIE1", L_B=0.190, L_A=0.130, R=0.070, d_A=0.054, d_C=0.098, S_B=0.0076, half_sum=1.4645e-5, chi_B=0.22,
     chi_printed=0.0026, torque=2550.0, torque_nonuniformity=0.05, mill=False,
 )  # fmt: skip
 """Table 1 and 4: the driven input element at the motor."""
-OUTPUT = Element(
+OUTPUT = OuterElement(
     name="DOE3", L_B=0.209, L_A=0.143, R=0.077, d_A=0.059, d_C=0.108, S_B=0.0092, half_sum=2.1442e-5, chi_B=0.24,
     chi_printed=0.0027, torque=2100.0, torque_nonuniformity=0.15, mill=True,
 )  # fmt: skip
@@ -147,7 +147,7 @@ class DoubleTripod:
     steiner: str = "printed"
     motor_order: int = 6
     motor_frequency: float | None = None
-    elements: Mapping[str, Element] = field(default_factory=lambda: dict(_ELEMENTS), repr=False)
+    elements: Mapping[str, OuterElement] = field(default_factory=lambda: dict(_ELEMENTS), repr=False)
 
     def __post_init__(self) -> None:
         if not 0 <= self.angle < np.pi / 2:
@@ -178,7 +178,7 @@ class DoubleTripod:
     def _mean_angle(self) -> float:
         return 0.0 if self.mean_inertia == "straight" else self.angle
 
-    def element(self, which: str) -> Element:
+    def element(self, which: str) -> OuterElement:
         """The "input" or the "output" element.
 
         Raises

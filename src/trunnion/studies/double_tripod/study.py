@@ -16,7 +16,7 @@ from trunnion.studies.double_tripod import figures as drawn
 from trunnion.studies.double_tripod.computed import (
     BELOW,
     RANGES,
-    Case,
+    ElementCase,
     cases,
     exponents_at_resonance,
     floquet_exponents,
@@ -27,7 +27,7 @@ from trunnion.studies.double_tripod.conclusions import PARTS, START, conclusions
 from trunnion.studies.double_tripod.contraction import argument, contraction
 from trunnion.studies.double_tripod.errata import errata
 from trunnion.studies.double_tripod.published import WORST_ANGLE, DoubleTripod
-from trunnion.studies.shared.result import Comparison, PaperFigure, Reproduction, Row
+from trunnion.studies.shared.result import ComparisonTable, PaperFigure, Reproduction, TableRow
 
 NAME = "double-tripod"
 MOTIONS = (
@@ -48,24 +48,24 @@ TURNING = {"input": (2950.0, 3066.5, 3200.0), "output": (2650.0, 2750.0, 2791.9,
 ASSUMED = "9°, printed χ_n, consistent Ī, Ω_AEM = 600π rad/s."
 
 
-def double_tripod(points: int, tell: Callable[[float], None]) -> Reproduction:
+def double_tripod(points: int, report_progress: Callable[[float], None]) -> Reproduction:
     """Reproduce S4; a sixteenth of ``points``, 8 or more, for each curve over frequency: these are runs, not pixels."""
     points = max(points // 16, 8)
-    found = cases(points, lambda share: tell(0.5 * share))
+    found = cases(points, lambda share: report_progress(0.5 * share))
     by_damping = {(c.element, c.damping_ratio): c for c in found}
     motions = {number: drawn.motion_of(element, ratio) for number, element, ratio in MOTIONS}
-    tell(0.6)
+    report_progress(0.6)
     figures = [
         *(_frequencies(number, element) for number, element in (("9", "input"), ("10", "output"))),
         *(_motion(number, _case(element, ratio), motions[number]) for number, element, ratio in MOTIONS),
         *(_exponents_over(n, _case(element, ratio), by_damping[element, ratio]) for n, element, ratio in SWEEPS),
         *(_map(*numbers) for numbers in MAPS),
     ]
-    tell(0.75)
+    report_progress(0.75)
     against = refuted()
-    tell(0.85)
+    report_progress(0.85)
     evidence = _evidence(points)
-    tell(0.97)
+    report_progress(0.97)
     opened = {e: opening_depth(e) for e in PARTS}
     beats = {number: (element, ratio, drawn.beats(motions[number])) for number, element, ratio in MOTIONS}
     return Reproduction(
@@ -79,27 +79,27 @@ def double_tripod(points: int, tell: Callable[[float], None]) -> Reproduction:
     )  # fmt: skip
 
 
-def _assumed() -> Comparison:
+def _assumed() -> ComparisonTable:
     """What the text leaves open, and what another value changes."""
     shafts = {"printed": DoubleTripod(), "derived": DoubleTripod(nonuniformity="derived")}
     rates = {k: contraction(s.system("input"), own=False).rate for k, s in shafts.items()}
     straight = contraction(DoubleTripod(mean_inertia="straight").system("input"), own=False).rate
     mended = DoubleTripod(steiner="mended").element("input").natural_frequency(WORST_ANGLE)
     taken = DoubleTripod().element("input").natural_frequency(WORST_ANGLE)
-    return Comparison(
+    return ComparisonTable(
         "What is assumed",
         (
-            Row("χ_n", "0.0026, 0.0027, and other values by Appendix B", "as printed in section 6",
+            TableRow("χ_n", "0.0026, 0.0027, and other values by Appendix B", "as printed in section 6",
                 f"the bound of DIE1's motions is {rates['printed']:.3g} 1/s, by Appendix B {rates['derived']:.3g} 1/s"),
-            Row("Ī", "of the straight shaft in c₁…c₄, at the angle in Ω", "at the angle in both",
+            TableRow("Ī", "of the straight shaft in c₁…c₄, at the angle in Ω", "at the angle in both",
                 f"the bound of DIE1 is {rates['printed']:.3g} 1/s, with the straight shaft's {straight:.3g} 1/s"),
-            Row("Steiner terms", "without sin²β", "as printed",
+            TableRow("Steiner terms", "without sin²β", "as printed",
                 f"Ω₁ = {taken:.0f} rad/s, with sin²β {mended:.0f} rad/s"),
-            Row("Ω_AEM", "100nπ, n one of 6, 12, 24, 48, 96, and πn_AEM/30", "600π rad/s",
+            TableRow("Ω_AEM", "100nπ, n one of 6, 12, 24, 48, 96, and πn_AEM/30", "600π rad/s",
                 "every one of the five stands in the table of other speeds"),
-            Row("φ in the cosines of (25), (26)", "the twist, and by (27), (28) a turning angle", "both",
+            TableRow("φ in the cosines of (25), (26)", "the twist, and by (27), (28) a turning angle", "both",
                 "motions and exponents of (25), (26) and of (29), (30); beats in a third reading"),
-            Row("start and length of Figures 11 to 16", "not stated", f"rest without twist, {drawn.HISTORY:g} s",
+            TableRow("start and length of Figures 11 to 16", "not stated", f"rest without twist, {drawn.HISTORY:g} s",
                 f"exponents from {START:g} rad stand in the table of other starts"),
         ),
     )  # fmt: skip
@@ -123,7 +123,7 @@ def _motion(number: str, title: str, motion: SystemSimulation) -> PaperFigure:
     return PaperFigure(number, f"Time history and portrait, {title}", assumed, draw)
 
 
-def _exponents_over(number: str, title: str, found: Case) -> PaperFigure:
+def _exponents_over(number: str, title: str, found: ElementCase) -> PaperFigure:
     draw = partial(drawn.exponents_figure, found.sweep, title)
     return PaperFigure(number, f"Lyapunov exponents and their sum, {title}", ASSUMED + " Natural logarithm.", draw)
 
@@ -157,22 +157,24 @@ def _evidence(points: int) -> tuple[PaperFigure, ...]:
     )  # fmt: skip
 
 
-def _numbers() -> Comparison:
+def _numbers() -> ComparisonTable:
     shaft = DoubleTripod()
     rows = []
     for element, name, printed in (("input", "Ω₁", "9632 rad/s, 3066 Hz"), ("output", "Ω₃", "8767 rad/s, 2792 Hz")):
         omega = shaft.element(element).natural_frequency(WORST_ANGLE)
-        rows.append(Row(f"{name}(9°)", printed, f"{omega:.1f} rad/s, {omega / np.pi:.1f} Hz", "2Ω/2π in Hz"))
+        rows.append(TableRow(f"{name}(9°)", printed, f"{omega:.1f} rad/s, {omega / np.pi:.1f} Hz", "2Ω/2π in Hz"))
     frequencies = shaft.midshaft_frequencies()
     table = ("1669.2", "3338.4", "5007.6", "6676.8", "8346")
     for order, (entry, value) in enumerate(zip(table, frequencies, strict=True), start=1):
         remark = "agrees" if order == 1 else "k times the rounded ν₁"
-        rows.append(Row(f"Table 3, ν_{order} [Hz]", entry, f"{value:.2f}", remark))
-    rows.append(Row("A of the input tripod", "", f"{shaft.element('input').joint_amplitude(WORST_ANGLE):.4g}", "(13)"))
-    return Comparison("Frequencies and Table 3", tuple(rows))
+        rows.append(TableRow(f"Table 3, ν_{order} [Hz]", entry, f"{value:.2f}", remark))
+    rows.append(
+        TableRow("A of the input tripod", "", f"{shaft.element('input').joint_amplitude(WORST_ANGLE):.4g}", "(13)")
+    )
+    return ComparisonTable("Frequencies and Table 3", tuple(rows))
 
 
-def _exponents() -> Comparison:
+def _exponents() -> ComparisonTable:
     rows = []
     for element, name in PARTS.items():
         for inertia, words in (("straight", "Ī of the straight shaft"), ("bent", "Ī at 9°")):
@@ -182,28 +184,28 @@ def _exponents() -> Comparison:
                 hill = floquet_exponents(shaft.system(element))
                 shown = ", ".join(f"{v:.3f}" for v in np.where(np.abs(values) < 5e-4, 0.0, values))
                 rows.append(
-                    Row(
+                    TableRow(
                         f"{name}, {chi} χ_n, {words}",
                         "",
                         f"{{{shown}}}",
                         f"Floquet without load: {hill[0]:.3f}, {hill[1]:.3f}",
                     )
                 )
-    return Comparison(
+    return ComparisonTable(
         "Lyapunov exponents [1/s] at η = 2Ω, ζ = 0.0016, equations (29) and (30)", tuple(rows),
         "The paper gives its values in figures only, of another definition.",
     )  # fmt: skip
 
 
-def _opening(opened: dict[str, tuple[float, float]]) -> Comparison:
+def _opening(opened: dict[str, tuple[float, float]]) -> ComparisonTable:
     rows = []
     for element, (chi, depth) in opened.items():
         shaft = DoubleTripod()
         rows.append(
-            Row(
+            TableRow(
                 f"{PARTS[element]}, ζ = 0.0016", f"depth {shaft.depth(element):.3g} (χ_n = {shaft.chi(element):g})",
                 f"depth {depth:.4g} (χ_n = {chi:.4g})",
                 f"needs {depth / shaft.depth(element):.3g} times the printed depth; 4ζ = 0.0064",
             )
         )  # fmt: skip
-    return Comparison("Parametric depth that opens the principal parametric resonance", tuple(rows))
+    return ComparisonTable("Parametric depth that opens the principal parametric resonance", tuple(rows))

@@ -29,12 +29,12 @@ from trunnion.studies.gear_rattle.published import gear_rattle as published
 from trunnion.studies.shared.result import (
     AGAINST,
     NEITHER,
-    Comparison,
+    ComparisonTable,
     Conclusion,
     PaperFigure,
     Reading,
     Reproduction,
-    Row,
+    TableRow,
     agreed,
     rounded,
     sign,
@@ -56,7 +56,7 @@ SMALL = 0.6
 """Below this frequency lie the smaller peaks."""
 
 
-def gear_rattle(points: int, tell: Callable[[float], None]) -> Reproduction:
+def gear_rattle(points: int, report_progress: Callable[[float], None]) -> Reproduction:
     """Reproduce S5; sweeps of 100 to 400 steps, about ``points``."""
     grid = np.linspace(LOW, HIGH, 1 + 100 * min(max(round(points / 100), 1), 4))
     loaded, unloaded = published(), published(mean_force=0.0)
@@ -65,20 +65,20 @@ def gear_rattle(points: int, tell: Callable[[float], None]) -> Reproduction:
     truth = frequency_response(loaded, LOW, HIGH)
     off = {r: _off(a, truth) for r, a in ranges.items()}
     used = min(off, key=lambda r: max(map(abs, off[r])))
-    tell(0.1)
+    report_progress(0.1)
     fit = {"fit_range": used * half_gap}
     steps = {"points": len(grid)}
     options: dict[str, dict[str, Any]] = {
         "averaging": fit, "multiple scales": fit, "sweep up": steps, "sweep down": steps,
     }  # fmt: skip
     found = compare_responses(loaded, LOW, HIGH, methods=METHODS, options=options)
-    tell(0.5)
+    report_progress(0.5)
     free = compare_responses(unloaded, LOW, HIGH, methods=METHODS, options=options)
     doubled = tuple(_doubled(loaded, at) for at in DOUBLED)
-    tell(0.8)
+    report_progress(0.8)
     up, down = sweep(loaded, grid), sweep(loaded, grid[::-1])
     at_08 = basins(loaded, np.linspace(-1, 1, 101), np.linspace(-1, 1, 101))
-    tell(0.95)
+    report_progress(0.95)
     assumed = (
         f"Table 1 of the paper. The range of the cubic fit is not stated; ±{used:g} b is drawn here, of "
         f"±{RANGES[0]:g} to ±{RANGES[-1]:g} b the nearest to the truth. The exact curve stands for Figure 3, multiple "
@@ -125,7 +125,7 @@ def _doubled(loaded: PiecewiseOscillator, at: float) -> FrequencyResponse:
     return frequency_response(loaded, LOW, HIGH, begin=at, start=start, periods=2)
 
 
-def _methods(found: ResponseComparison, what: str) -> Comparison:
+def _methods(found: ResponseComparison, what: str) -> ComparisonTable:
     exact = found["exact"]
     at, size = exact.peak
     rows = []
@@ -134,21 +134,21 @@ def _methods(found: ResponseComparison, what: str) -> Comparison:
         motions = ", ".join(f"{value:.5f}" for value, stable in r.at(0.8) if stable)
         words = f"height {100 * (a / size - 1):+.2f} %, place {100 * (f / at - 1):+.2f} %; {r.seconds:.2g} s"
         folds = ", ".join(f"{x:.5f}" for x in r.folds()) or "none in range"
-        rows.append(Row(name, "—", f"peak {a:.5f} at {f:.5f}; turns at {folds}; stable at 0.8: {motions}", words))
-    return Comparison(
+        rows.append(TableRow(name, "—", f"peak {a:.5f} at {f:.5f}; turns at {folds}; stable at 0.8: {motions}", words))
+    return ComparisonTable(
         f"Methods against the exact motion, {what} (half peak-to-peak, ω)", tuple(rows),
         "The paper draws its curves without numbers. Turns are folds, of sweeps the last frequency before a jump; "
         "motions at 0.8 are interpolated along the curves.",
     )  # fmt: skip
 
 
-def _sweeps(up: OscillatorSweep, down: OscillatorSweep) -> Comparison:
-    def row(words: str, one: OscillatorSweep) -> Row:
+def _sweeps(up: OscillatorSweep, down: OscillatorSweep) -> ComparisonTable:
+    def row(words: str, one: OscillatorSweep) -> TableRow:
         jumps = ", ".join(f"{a:.3f} → {b:.3f}" for a, b in one.jumps)
         kinds = ", ".join(f"{one.contact.count(k)} {k}" for k in ("none", "one-sided", "two-sided"))
-        return Row(words, "—", f"jumps {jumps}", f"contact {kinds}; {int((~one.settled).sum())} not of one period")
+        return TableRow(words, "—", f"jumps {jumps}", f"contact {kinds}; {int((~one.settled).sum())} not of one period")
 
-    return Comparison(
+    return ComparisonTable(
         "Sweeps, B₀ = 0.05", (row("up", up), row("down", down)),
         "Between the period doublings motions of twice the period are reached: the paper's smaller peaks and more.",
     )  # fmt: skip
@@ -160,12 +160,12 @@ def _epsilon_peak(epsilon: float, reach: float) -> tuple[float, float]:
     return multiple_scales(line, epsilon=epsilon, fit_range=reach * line.breakpoints[1]).response(0.1, 8).peak
 
 
-def _epsilons(used: float) -> Comparison:
+def _epsilons(used: float) -> ComparisonTable:
     rows = []
     for epsilon in (1e-4, 0.01, 0.1, 1.0):
         f, a = _epsilon_peak(epsilon, used)
-        rows.append(Row(f"ε = {epsilon:g}", "Figure 2" if epsilon == 0.01 else "—", f"peak {a:.8f} at {f:.8f}"))
-    return Comparison(
+        rows.append(TableRow(f"ε = {epsilon:g}", "Figure 2" if epsilon == 0.01 else "—", f"peak {a:.8f} at {f:.8f}"))
+    return ComparisonTable(
         f"Other ε, cubic fit to ±{used:g} b", tuple(rows),
         "ε scales U, μ, σ and B* so that it drops out of u(t): a small ε does not make the nonlinearity weak.",
     )  # fmt: skip
@@ -176,41 +176,41 @@ def _off(response: ApproximateResponse, truth: FrequencyResponse) -> tuple[float
     return response.peak[1] / truth.peak[1] - 1, response.peak[0] / truth.peak[0] - 1
 
 
-def _ranges(by_range: dict[float, ApproximateResponse], off: dict[float, tuple[float, float]]) -> Comparison:
+def _ranges(by_range: dict[float, ApproximateResponse], off: dict[float, tuple[float, float]]) -> ComparisonTable:
     rows = [
-        Row(f"fit to ±{r:g} b", "not stated", f"peak {a.peak[1]:.4f} at {a.peak[0]:.4f}",
+        TableRow(f"fit to ±{r:g} b", "not stated", f"peak {a.peak[1]:.4f} at {a.peak[0]:.4f}",
             f"height {100 * off[r][0]:+.1f} %, place {100 * off[r][1]:+.1f} %; {a.note}")
         for r, a in by_range.items()
     ]  # fmt: skip
-    return Comparison(
+    return ComparisonTable(
         "The range of the cubic fit", tuple(rows),
         "Least squares, evenly over the range. The truth is in the first table; its peak is 4 b high.",
     )  # fmt: skip
 
 
-def _errata() -> Comparison:
+def _errata() -> ComparisonTable:
     rows = (
-        Row("(13)", "λ₁²T² = 1", "λ₁T² = 1", "λ₁ already is a frequency squared"),
-        Row("(50), (63)", "B₁²T²/(4ω²ε²)", "B₁²T⁴/(4ε²U²)", "from (18) and (49)"),
-        Row("(51), (52)", "U² = ελ₁²/λ₂, T² = 1/λ₁²", "U² = ελ₁/λ₂, T² = 1/λ₁", "as (13)"),
-        Row("(9)", "range not stated", "decides the answer", "see the table of ranges"),
+        TableRow("(13)", "λ₁²T² = 1", "λ₁T² = 1", "λ₁ already is a frequency squared"),
+        TableRow("(50), (63)", "B₁²T²/(4ω²ε²)", "B₁²T⁴/(4ε²U²)", "from (18) and (49)"),
+        TableRow("(51), (52)", "U² = ελ₁²/λ₂, T² = 1/λ₁²", "U² = ελ₁/λ₂, T² = 1/λ₁", "as (13)"),
+        TableRow("(9)", "range not stated", "decides the answer", "see the table of ranges"),
     )
-    return Comparison("Misprints", rows)
+    return ComparisonTable("Misprints", rows)
 
 
-def _assumed(used: float, off: dict[float, tuple[float, float]], truth: FrequencyResponse) -> Comparison:
+def _assumed(used: float, off: dict[float, tuple[float, float]], truth: FrequencyResponse) -> ComparisonTable:
     """What the text leaves open, and what another value changes."""
     worst = max(off, key=lambda r: max(map(abs, off[r])))
-    return Comparison(
+    return ComparisonTable(
         "What is assumed",
         (
-            Row("(9), range of the cubic fit", "not stated", f"±{used:g} b where one is drawn, the best",
+            TableRow("(9), range of the cubic fit", "not stated", f"±{used:g} b where one is drawn, the best",
                 f"±{worst:g} b is off by {100 * off[worst][0]:+.1f} % in height and {100 * off[worst][1]:+.1f} % in "
                 "place; every range is a reading of its own among the conclusions"),
-            Row("b", "10° beside nondimensional numbers", f"{published().breakpoints[1]:.5f} rad",
+            TableRow("b", "10° beside nondimensional numbers", f"{published().breakpoints[1]:.5f} rad",
                 f"u is in radians: the static rotation is {_static():.3f}, just outside the gap"),
-            Row("(1), impact damping D_MI", "left out", "left out", IMPACT),
-            Row("amplitude of Figures 2, 3", "pictures without numbers", "half peak-to-peak",
+            TableRow("(1), impact damping D_MI", "left out", "left out", IMPACT),
+            TableRow("amplitude of Figures 2, 3", "pictures without numbers", "half peak-to-peak",
                 f"half peak-to-peak of the peak is {truth.peak[1]:.4f}, its fundamental by energy balance B₁/(cω) = "
                 f"{FORCE / (published().damping * truth.peak[0]):.4f}"),
         ),

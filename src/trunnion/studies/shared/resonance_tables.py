@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.modes.resonance_speeds import Resonance, resonance_speeds
 from trunnion.results.chart import StabilityChart
 from trunnion.results.verdict import Verdict
-from trunnion.studies.shared.result import Comparison, Row
+from trunnion.studies.shared.result import ComparisonTable, TableRow
 from trunnion.studies.shared.tips import FOLLOWED, Tip, tip
 
 Printed = tuple[str, tuple[int, ...], int, float]
@@ -20,7 +20,7 @@ def resonance_table(
     charts: tuple[StabilityChart, ...],
     faint: tuple[StabilityChart, ...],
     note: str,
-) -> Comparison:
+) -> ComparisonTable:
     """Printed resonance speeds, one a row.
 
     Parameters
@@ -28,10 +28,10 @@ def resonance_table(
     charts : the paper's, speed × angle; the one that holds the speed best is used, and its pixels.
     faint : the same line with a hundredth of the damping, in which tongues start near β = 0.
     """
-    return Comparison(title, tuple(_row(one, charts, faint) for one in printed), note)
+    return ComparisonTable(title, tuple(_row(one, charts, faint) for one in printed), note)
 
 
-def _row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]) -> Row:
+def _row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[StabilityChart, ...]) -> TableRow:
     kind, modes, order, value = printed
     assert charts[0].line is not None
     every = tuple(resonance_speeds(charts[0].line, max(3, order)))
@@ -41,9 +41,9 @@ def _row(printed: Printed, charts: tuple[StabilityChart, ...], faint: tuple[Stab
     off = "" if abs(named.speed - value) < 0.6e-3 else f"printed {value - named.speed:+.4f} off; "
     pixel = float(np.diff(_holding(charts, named).x).max())
     if kind == "difference":
-        return Row(f"{named}", f"{value:.3f}", computed, off + _stays_shut(_holding(charts, named), named, pixel))
+        return TableRow(f"{named}", f"{value:.3f}", computed, off + _stays_shut(_holding(charts, named), named, pixel))
     at, low = (tip(_holding(group, named), named, others) for group in (charts, faint))
-    return Row(f"{named}", f"{value:.3f}", computed, off + _tongue(at, low, pixel))
+    return TableRow(f"{named}", f"{value:.3f}", computed, off + _tongue(at, low, pixel))
 
 
 def _holding(charts: tuple[StabilityChart, ...], named: Resonance) -> StabilityChart:
@@ -82,11 +82,11 @@ def _stays_shut(chart: StabilityChart, named: Resonance, pixel: float) -> str:
     return f"does not open: stable within a pixel of it up to β = {reach:.2f} rad{tail}"
 
 
-def frequency_rows(place: str, printed: tuple[float, ...], computed: np.ndarray, remark: str) -> tuple[Row, ...]:
+def frequency_rows(place: str, printed: tuple[float, ...], computed: np.ndarray, remark: str) -> tuple[TableRow, ...]:
     """Natural frequencies as printed and computed."""
     below = str.maketrans("123", "₁₂₃")
     return tuple(
-        Row(
+        TableRow(
             f"{place}, ω{str(i).translate(below)}",
             f"{p:.3f}",
             f"{w:.5f}",

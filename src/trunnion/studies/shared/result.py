@@ -30,7 +30,7 @@ def rounded(value: float) -> str:
 
 
 @dataclass(frozen=True)
-class Row:
+class TableRow:
     """One number: where the paper has it, what it prints, what is computed, and what is to be said."""
 
     place: str
@@ -40,11 +40,11 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class ComparisonTable:
     """A table of rows with a title and a word on how it was computed."""
 
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
     note: str = ""
 
     def __str__(self) -> str:
@@ -185,13 +185,13 @@ class Reproduction:
     title: str
     source: str
     figures: tuple[PaperFigure, ...]
-    tables: tuple[Comparison, ...]
-    errata: Comparison
+    tables: tuple[ComparisonTable, ...]
+    errata: ComparisonTable
     evidence: tuple[PaperFigure, ...]
     conclusions: tuple[Conclusion, ...]
     figures_note: str = CHARTS_NOTE
     argument: Argument | None = None
-    assumed: Comparison | None = None
+    assumed: ComparisonTable | None = None
 
     def figure(self, number: str | int) -> PaperFigure:
         """A figure by its number in the paper."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.floquet.stability.stability import stability
-from trunnion.studies.shared.result import Comparison, Row
+from trunnion.studies.shared.result import ComparisonTable, TableRow
 from trunnion.studies.shared.shares import sampled_share
 from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
 from trunnion.studies.three_shaft_cardan.published import three_shaft_cardan
@@ -17,7 +17,7 @@ RULED = np.linspace(0.15, 1.95, 121)
 """Speeds at which the printed criterion is applied."""
 
 
-def errata() -> Comparison:
+def errata() -> ComparisonTable:
     """Printed, derived with the second joint at τ, derived, and the general equations, at β₁ = 0.2, β₂ = 0.5."""
     radius = {
         version: np.array(
@@ -34,19 +34,19 @@ def errata() -> Comparison:
     unstable = {version: f"{sampled_share(of > 1 + 1e-6, 0)} of speeds unstable" for version, of in radius.items()}
     shift = float(np.max(np.abs(radius["second at input"] - radius["derived"])))
     agree = float(np.max(np.abs(radius["derived"] - general)))
-    return Comparison(
+    return ComparisonTable(
         "Errata",
         (
-            Row("E₂₁, E₃₁, E₃₂, F₂₁, F₃₁, F₃₂ as printed", "η₁′ …, +η₁/Ω² …", unstable["printed"],
+            TableRow("E₂₁, E₃₁, E₃₂, F₂₁, F₃₁, F₃₂ as printed", "η₁′ …, +η₁/Ω² …", unstable["printed"],
                 "factors 2 on slopes, terms in η″ and signs are missing: everything would be unstable"),
-            Row("η₂ taken at τ", "η₂(τ)", unstable["second at input"],
+            TableRow("η₂ taken at τ", "η₂(τ)", unstable["second at input"],
                 f"it belongs at ψ₁(τ), behind joint 1: spectral radii move by up to {shift:.2g}"),
-            Row("Figures 4 to 6, captions", "β₂ = 0.2, 0.2, 0.4 rad", "β₁",
+            TableRow("Figures 4 to 6, captions", "β₂ = 0.2, 0.2, 0.4 rad", "β₁",
                 "their axis is β₂; the text varies β₁ = 0.2, 0.4 (mended in the captions here)"),
-            Row("criterion of stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1",
+            TableRow("criterion of stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1",
                 f"the second is a rule for exponents: of multipliers it calls {wrong} of {right} unstable ones among "
                 f"{len(RULED)} speeds stable, those of subharmonic tongues"),
-            Row("derived", "η₂(ψ₁(τ))", unstable["derived"],
+            TableRow("derived", "η₂(ψ₁(τ))", unstable["derived"],
                 f"agrees with the general equations of this program to {agree:.0e}"),
         ),
         f"β₁ = {ANGLES[0]}, β₂ = {ANGLES[1]} rad, γ₂ = 10, ζ = 0.001, {len(SPEEDS)} evenly spaced speeds from "

@@ -13,7 +13,7 @@ from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
 from trunnion.studies.shared.drawing import charts_figure, panel
 from trunnion.studies.shared.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.shared.result import Comparison, Reproduction, Row
+from trunnion.studies.shared.result import ComparisonTable, Reproduction, TableRow
 from trunnion.studies.shared.shares import share
 from trunnion.studies.three_shaft_cardan.conclusions import PRACTICAL, conclusions
 from trunnion.studies.three_shaft_cardan.errata import errata
@@ -50,7 +50,7 @@ TABLE_2: tuple[Printed, ...] = (
 )  # fmt: skip
 
 
-def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction:
+def three_shaft_cardan(points: int, report_progress: Callable[[float], None]) -> Reproduction:
     """Reproduce S3 on ``points`` × ``points`` pixels a chart."""
 
     def chart(tolerance: float = 1e-9, ends: tuple[float, float] = (LOW, HIGH), **changes: Any) -> StabilityChart:
@@ -64,12 +64,12 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
     alone = chart(angle_1=0.0)
     parts = (((LOW, 0.2), 1e-9), ((0.15, HIGH), 1e-10))
     faint = tuple(chart(tolerance, ends, angle_1=0.0, damping_ratio=1e-5) for ends, tolerance in parts)
-    tell(0.4)
+    report_progress(0.4)
     cases = {"4": (0.2, 10.0), "5": (0.2, 100.0), "6": (0.4, 10.0)}
     worst = {n: chart(angle_1=b, inertia_of_disk_3=g) for n, (b, g) in cases.items()}
-    tell(0.65)
+    report_progress(0.65)
     inline = {n: chart(angle_1=b, inertia_of_disk_3=g, fork_offset=0.0) for n, (b, g) in cases.items()}
-    tell(0.85)
+    report_progress(0.85)
     two, limits = "joint angle β₂ [rad]", (0.0, HIGH)
     beside = (
         "Left as the paper has it, both joints in phase (forks of shaft 2 at 90°); right, which the paper does not "
@@ -92,7 +92,7 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
     modes = natural_frequencies(base_case()).undamped_frequency
     note = "γ₂ = 10, α = μ = γ₁ = 1, β₁ = 0. Tongues are followed at a hundredth of the damping down to β₂ = 0."
     tables = (
-        Comparison("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),
+        ComparisonTable("Natural frequencies", frequency_rows("eq 20", (0.178, 1.025, 1.737), modes, "rounded")),
         resonance_table("Table 1, harmonic and subharmonic resonance", TABLE_1, (alone,), faint, note),
         resonance_table("Table 2, combination resonance", TABLE_2, (alone,), faint, note),
     )
@@ -109,22 +109,22 @@ def three_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproducti
     )
 
 
-def _assumed(alone: StabilityChart, four: StabilityChart, inline: StabilityChart) -> Comparison:
+def _assumed(alone: StabilityChart, four: StabilityChart, inline: StabilityChart) -> ComparisonTable:
     """What the text leaves open, and what another value changes."""
     practical = (0.0, PRACTICAL)
     shares = [share(c, y=practical) for c in (alone, four, inline)]
     drawn = share(four)
-    return Comparison(
+    return ComparisonTable(
         "What is assumed",
         (
-            Row("Figures 2 to 6, range of speeds", "pictures without numbers", f"{LOW:g} to {HIGH:g}",
+            TableRow("Figures 2 to 6, range of speeds", "pictures without numbers", f"{LOW:g} to {HIGH:g}",
                 "conclusions are judged below and above Ω = 1 and together"),
-            Row("Figures 2 to 6, range of angles", "pictures without numbers", f"0 to {TOP:g} rad",
+            TableRow("Figures 2 to 6, range of angles", "pictures without numbers", f"0 to {TOP:g} rad",
                 f"Figure 4 up to 45°: {shares[1]} % unstable, as drawn {drawn} %"),
-            Row("Figure 3, β₁", "not stated", "0, as for equation 20",
+            TableRow("Figure 3, β₁", "not stated", "0, as for equation 20",
                 f"up to 45°: {shares[0]} % unstable, with β₁ = 0.2 rad (Figure 4) {shares[1]} %"),
-            Row("Figure 2, ζ, α₁, μ₁, γ₁", "0.001, 1, 1, 10", "as stated", "the line of S1 with its γ = 10"),
-            Row("forks of shaft 2", "by (7), η₂ in phase with η₁", "90° from one another",
+            TableRow("Figure 2, ζ, α₁, μ₁, γ₁", "0.001, 1, 1, 10", "as stated", "the line of S1 with its γ = 10"),
+            TableRow("forks of shaft 2", "by (7), η₂ in phase with η₁", "90° from one another",
                 f"forks in line: {shares[2]} % of Figure 4 up to 45° for {shares[1]} %"),
         ),
     )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.floquet.stability.stability import stability
 from trunnion.studies.shared.drawing import curves
-from trunnion.studies.shared.result import Comparison, PaperFigure, Row
+from trunnion.studies.shared.result import ComparisonTable, PaperFigure, TableRow
 from trunnion.studies.shared.shares import sampled_share
 from trunnion.studies.two_shaft_cardan.printed_matrices import VERSIONS, printed_system
 
@@ -101,7 +101,7 @@ def _multipliers(speed: float) -> Complex:
     return np.asarray(stability(system, tolerance=1e-9).multipliers)
 
 
-def errata() -> Comparison:
+def errata() -> ComparisonTable:
     """The misprints, and what the matrices give with and without them."""
     radii = _radii()
 
@@ -110,21 +110,21 @@ def errata() -> Comparison:
     band = SPEEDS[(radii["single"] > 1 + 1e-5) & (np.abs(SPEEDS - HALF) < 0.06)]
     spans = f"{band.min():.2f}–{band.max():.2f}" if len(band) else "nowhere"
     printed = _as_printed(1.0, 100.0)
-    return Comparison(
+    return ComparisonTable(
         "Errata",
         (
-            Row("E₂₁, P₂₁ as printed", "η′ − …, +η/Ω²", f"{unstable['printed']} of speeds unstable",
+            TableRow("E₂₁, P₂₁ as printed", "η′ − …, +η/Ω²", f"{unstable['printed']} of speeds unstable",
                 "everything would be unstable"),
-            Row("sign of P₂₁ mended", "−η/Ω²", f"{unstable['sign']} unstable", "nothing would be unstable"),
-            Row("η″ added, η′ single", "η″ − η/Ω²", f"ρ up to {height:.5f} at {peak:.4f}",
+            TableRow("sign of P₂₁ mended", "−η/Ω²", f"{unstable['sign']} unstable", "nothing would be unstable"),
+            TableRow("η″ added, η′ single", "η″ − η/Ω²", f"ρ up to {height:.5f} at {peak:.4f}",
                 f"a false tongue near (ω₂−ω₁)/4, and a false band at {spans}"),
-            Row("derived", "2η′, η″ − η/Ω²", f"ρ = {below:.5f} at {peak:.4f}",
+            TableRow("derived", "2η′, η″ − η/Ω²", f"ρ = {below:.5f} at {peak:.4f}",
                 f"no difference tongue; {unstable['derived']} of the speeds unstable"),
-            Row("eq 14", "ζ = c₁/√(k₁J₁)", "ζ = c₁/(2√(k₁J₁))", "the 2ζ/Ω of its matrix E needs the factor 2"),
-            Row("eq 25", "√(1 + μ(1/γ+1)² − 4μ/γ)", "√((1 + μ(1/γ+1))² − 4μ/γ)",
+            TableRow("eq 14", "ζ = c₁/√(k₁J₁)", "ζ = c₁/(2√(k₁J₁))", "the 2ζ/Ω of its matrix E needs the factor 2"),
+            TableRow("eq 25", "√(1 + μ(1/γ+1)² − 4μ/γ)", "√((1 + μ(1/γ+1))² − 4μ/γ)",
                 f"bracket: as printed it gives {printed[0]:.3f} and {printed[1]:.3f} for μ = 1, γ = 100"),
-            Row("(25), stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1", _rule()),
-            Row("Figure 6, text", "damping ratio × 20", "stiffness ratio × 20", "slip in the text"),
+            TableRow("(25), stability", "mod σ ≤ 1, or Re σ ≤ 0", "mod σ ≤ 1", _rule()),
+            TableRow("Figure 6, text", "damping ratio × 20", "stiffness ratio × 20", "slip in the text"),
         ),
         f"The first four rows: β = {BETA} rad, γ = {GAMMA:g}, {len(SPEEDS)} evenly spaced speeds from {SPEEDS[0]:g} to "
         f"{SPEEDS[-1]:g}, with the standard error of so many independent samples; maxima are refined between them.",

@@ -15,7 +15,7 @@ from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.chart import StabilityChart
 from trunnion.studies.shared.drawing import charts_figure, panel
 from trunnion.studies.shared.resonance_tables import Printed, frequency_rows, resonance_table
-from trunnion.studies.shared.result import Comparison, Reproduction, Row
+from trunnion.studies.shared.result import ComparisonTable, Reproduction, TableRow
 from trunnion.studies.shared.shares import percents, share
 from trunnion.studies.two_shaft_cardan.conclusions import PRACTICAL, WIDE, Charts, conclusions
 from trunnion.studies.two_shaft_cardan.errata import errata, versions_figure
@@ -54,7 +54,7 @@ TABLE_2: tuple[Printed, ...] = (
 )  # fmt: skip
 
 
-def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction:
+def two_shaft_cardan(points: int, report_progress: Callable[[float], None]) -> Reproduction:
     """Reproduce S1 on ``points`` × ``points`` pixels a chart."""
     heavy = {"inertia_of_disk_2": 100.0}
 
@@ -64,21 +64,21 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
 
     slow = over_angle(0.015, 0.4, 1e-10, **heavy)
     fast = over_angle(0.25, 2.0, **heavy)
-    tell(0.2)
+    report_progress(0.2)
     faint = tuple(over_angle(*ends, 1e-10, damping_ratio=1e-5, **heavy) for ends in ((0.015, 0.4), (0.25, 2.0)))
-    tell(0.4)
+    report_progress(0.4)
     base, damped, stiff = (
         over_angle(0.04, 2.0),
         over_angle(0.04, 2.0, damping_of_shaft_2=20.0),
         over_angle(0.06, 2.0, stiffness_of_shaft_2=20.0),
     )
-    tell(0.6)
+    report_progress(0.6)
     damping, stiffness = _over_group(DAMPING_OF_SHAFT_2, points), _over_group(STIFFNESS_OF_SHAFT_2, points)
-    tell(0.65)
+    report_progress(0.65)
     low_alpha, twenty = (over_angle(0.04, 2.0, damping_of_shaft_2=alpha) for alpha in PRINTED_ALPHA)
     twists = tuple(chart_in_twists(chart, 100.0) for chart in (slow, fast))
     wide = _wide(1.0, points), _wide(20.0, points)
-    tell(0.75)
+    report_progress(0.75)
     beta = "joint angle β [rad]"
     whole = (0.0, 2.0)
     from_zero = "Hatched: not computed, a turn there spans very many vibrations."
@@ -106,14 +106,14 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
     modes = natural_frequencies(base_case(**heavy)).undamped_frequency
     note = "γ = 100, α = μ = 1. Tongues are followed at a hundredth of the damping down to β = 0."
     tables = (
-        Comparison(
+        ComparisonTable(
             "Natural frequencies",
             frequency_rows("eq 26", (0.072, 1.422), modes, "equation 25 gives the computed value, its bracket mended"),
         ),
         resonance_table("Table 1, harmonic and subharmonic resonance", TABLE_1, (slow, fast), faint, note),
         resonance_table("Table 2, combination resonance", TABLE_2, (slow, fast), faint, note),
     )
-    tell(0.8)
+    report_progress(0.8)
     evidence = (
         versions_figure(),
         charts_figure("stiffness", "β–Ω with 1 and 20 times the stiffness of shaft 2, up to 30° and Ω = 12",
@@ -134,7 +134,7 @@ def two_shaft_cardan(points: int, tell: Callable[[float], None]) -> Reproduction
     )
 
 
-def _assumed(base: StabilityChart, printed: StabilityChart) -> Comparison:
+def _assumed(base: StabilityChart, printed: StabilityChart) -> ComparisonTable:
     """What the text leaves open or says otherwise, and what another value changes."""
     shares = share(base), share(printed)
     differ = 100 * float(np.mean(base.verdict != printed.verdict))
@@ -142,16 +142,17 @@ def _assumed(base: StabilityChart, printed: StabilityChart) -> Comparison:
         [share(_over_group(label, 120, beta)) for beta in BETAS] for label in (DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2)
     ]
     told = [f"{', '.join(f'{b:g}' for b in BETAS)} rad give {percents(found)} unstable" for found in angles]
-    return Comparison(
+    return ComparisonTable(
         "What is assumed",
         (
-            Row("Figures 3 to 7, ζ", "not stated", "0.001", "the value of the three-shaft study (S3)"),
-            Row("Figures 3, 6, α", f"{PRINTED_ALPHA[0]:g}", "1",
+            TableRow("Figures 3 to 7, ζ", "not stated", "0.001", "the value of the three-shaft study (S3)"),
+            TableRow("Figures 3, 6, α", f"{PRINTED_ALPHA[0]:g}", "1",
                 f"taken as ζ = 0.001, α = 1, the names exchanged; with α = {PRINTED_ALPHA[0]:g} the unstable share of "
                 f"Figure 3 is {shares[1]} % for {shares[0]} %, and {differ:.2g} % of its points change"),
-            Row("Figure 4, α", f"20 times {PRINTED_ALPHA[0]:g}", "20", "a reading of its own among the conclusions"),
-            Row("Figure 5, β and largest α", "not stated", f"{BETA:g} rad, {MOST:g}", told[0]),
-            Row("Figure 7, β and largest μ", "not stated", f"{BETA:g} rad, {MOST:g}", told[1]),
+            TableRow("Figure 4, α", f"20 times {PRINTED_ALPHA[0]:g}", "20",
+                "a reading of its own among the conclusions"),
+            TableRow("Figure 5, β and largest α", "not stated", f"{BETA:g} rad, {MOST:g}", told[0]),
+            TableRow("Figure 7, β and largest μ", "not stated", f"{BETA:g} rad, {MOST:g}", told[1]),
         ),
     )  # fmt: skip
 

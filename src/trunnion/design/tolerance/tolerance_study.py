@@ -1,0 +1,325 @@
+"""How probable it is that a line within its tolerances is stable, by quasi-Monte Carlo, and what its worst corner is.
+
+Points are scrambled Sobol sequences, in several independent scrambles: each gives an estimate of its own, and their
+scatter the interval. Where every scramble gives the same share, none or all, the interval comes from the count alone
+(Clopper and Pearson), which is wider than need be.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array, Codes
+from trunnion.design.tolerance.checks import CheckStudy, study_checks
+from trunnion.driveline.arguments import one_number, speeds_of, whole_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.features import left_out
+from trunnion.floquet.charts.chart_pixels import Pixels
+from trunnion.floquet.tolerance.many_lines import FIRST, UNKNOWN, ManyLines
+from trunnion.floquet.tolerance.sampling import SCRAMBLES, interval, sobol
+from trunnion.floquet.tolerance.spread import (
+    ZERO,
+    Spread,
+    Tolerances,
+    numbers_at,
+    read_tolerances,
+    tables,
+    values_in_words,
+)
+from trunnion.results.chart import require_pixels
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
+from trunnion.results.finding import Finding, Gravity
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
+from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime, keeps_time, limited, time_is_up, to_the_end
+
+TOLERANCE = 1e-8
+"""Error asked of monodromy matrices: radii within it of 1 count as undecided."""
+GROWTH = "of every sample; where the radius is smaller than its error that of the error; NaN where it is not known"
+RANKING = "parameters by the share of the scatter of the growth rate, where it is fastest, that each explains alone"
+CLIMBS = 6
+"""Steps of the search for the worst corner."""
+STEP = 1e-4
+"""Of differences, as a share of a tolerance."""
+BINS = 32
+"""Classes of a parameter between which the mean growth rate is compared."""
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The line of fastest growth found within the tolerances: values by parameter, speed, growth rate, verdict."""
+
+    values: dict[str, float]
+    speed: float
+    growth_rate: float
+    verdict: Verdict
+
+
+@labelled
+class ToleranceStudy(Result):
+    """Probability that a line within its tolerances is stable at all speeds; undecided lines count as unstable."""
+
+    parameters: tuple[str, ...] = coordinate("parameter")
+    low: Array = variable("parameter")
+    high: Array = variable("parameter")
+    speeds: Array = coordinate("speed", "rad/s")
+    samples: int = attribute("lines in all")
+    probability: float = attribute("share of stable lines")
+    interval: tuple[float, float] = attribute("of the probability")
+    confidence: float = attribute("of the interval")
+    undecided: float = attribute("share of lines whose radius is 1 to within its error")
+    stable_share: Array = variable("speed", "1")
+    growth_rate: Array = internal(GROWTH, "1/s", "speed sample")
+    worst: Worst = internal("by gradient from the fastest sample")
+    ranking: tuple[tuple[str, float], ...] = internal(RANKING)
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = internal("what was left out", default=())
+    checks: CheckStudy | None = internal("the same for the checks of ``assess``, if asked for", default=None)
+    ended: str = attribute("what ended the study before it was done, as a clause", default="")
+
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """Tolerances with their ranking, shares over speed, the worst line."""
+        yield from super().declared()
+        rank, worst = dict(self.ranking), self.worst
+        yield Variable("explained", np.array([rank[p] for p in self.parameters]), "parameter", "1")
+        yield Variable("worst", np.array([worst.values[p] for p in self.parameters]), "parameter")
+        yield Coordinate("quantile", np.array(QUANTILES), "quantile", "1")
+        growth = np.nanquantile(self.growth_rate, QUANTILES, axis=1).T
+        yield Variable("growth_rate", growth, "speed quantile", "1/s")
+        yield from attributes(worst_speed=worst.speed, worst_growth_rate=worst.growth_rate, worst_verdict=worst.verdict)
+        if self.checks is not None:
+            yield from self.checks.declared()
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """The growth rate's distribution, and the parameters by rank; see ``pictures.design.tolerance``."""
+        return drawing(self, "plot")(self, axes)
+
+    def _lines(self) -> Iterator[str]:
+        low, high = self.interval
+        several = f"at {len(self.speeds)} speeds"
+        yield (
+            f"stable {several if len(self.speeds) > 1 else f'at {self.words.speed(float(self.speeds[0]))}'} "
+            f"with probability {self.probability:.5g}, {100 * self.confidence:g} % interval "
+            f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances"
+            f"{f'; {self.ended}, which left out the rest' if self.ended else ''}"
+        )
+        yield (
+            f"  worst line found: {self.worst.verdict}, "
+            f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
+            f"{self.words.speed(self.worst.speed)}, with {values_in_words(self.worst.values)}"
+        )
+        yield "  what matters: " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in self.ranking[:5])
+        if self.undecided:
+            yield (
+                f"  {100 * self.undecided:.3g} % of the lines are undecided, within their error of the boundary, and "
+                "count as not stable"
+            )
+        if self.checks is not None:
+            yield str(self.checks)
+
+
+QUANTILES = (0.0, 0.05, 0.5, 0.95, 1.0)
+
+
+@keeps_time
+def tolerance_study(
+    line: Driveline | Assembly,
+    tolerances: Tolerances | None = None,
+    speeds: ArrayLike | None = None,
+    *,
+    checks: bool | int = False,
+    samples: int = 1 << 14,
+    confidence: float = 0.95,
+    seed: int = 0,
+    statically_twisted: bool = True,
+    threads: int | None = None,
+    within: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> ToleranceStudy:
+    """The probability that a line within its tolerances is stable at every one of ``speeds`` [rad/s].
+
+    Parameters
+    ----------
+    tolerances : parameter path → 0.1 (uniform within ±10 %), ("range", low, high) in SI units, or ("normal", 0.03)
+        (standard deviation as a share, cut at three of them), ("deviation", 0.01) in SI units; by default those that
+        the description states.
+    speeds : one speed or several, by default the operating speed of the description; a range is as dense as these are.
+    checks : also judges lines by ``assess``, from the lowest to the highest of the speeds: True for as many as half a
+        minute allows, or how many (rounded up to 16 powers of two, 64 to 4096).
+    samples : lines in all, rounded up to 16 powers of two.
+    seed : of the scrambles; the same seed gives the same numbers.
+    within : seconds that it may take; the lines judged until then are counted, and ``ended`` says so.
+
+    Raises
+    ------
+    InputError : see ``read_tolerances`` and ``stability_chart``; speeds that are not positive; fewer than 256 samples.
+    """
+    description = line.line if isinstance(line, Assembly) else line
+    at = speeds_of(operating_speed(description, None) if speeds is None else speeds, "tn.rpm(1500)")
+    if not np.all(np.isfinite(at)) or not np.all(at > 0):
+        raise InputError("must be positive numbers", key="speeds", value=speeds, remedy="tn.rpm(1500)")
+    samples, seed = whole_number(samples, "samples", 256), whole_number(seed, "seed", 0)
+    if not isinstance(checks, bool | int | np.integer) or checks < 0:
+        raise InputError("must be True, False or a number of lines", key="checks", value=checks)
+    if not 0.5 <= one_number(confidence, "confidence", "0.95, say") < 1:
+        raise InputError("must lie between 0.5 and 1", key="confidence", value=confidence, remedy="0.95, say")
+    assembly, spreads, taken = _read(line, tolerances)
+    each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
+    require_pixels(each * SCRAMBLES, len(at))
+    lines = ManyLines.of(
+        assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
+        statically_twisted, threads or os.cpu_count() or 1,
+    )  # fmt: skip
+    shares = sobol(len(spreads), each, seed)
+    report_progress = progress or (lambda share: None)
+    growth, verdict, ended = _judged(lines, spreads, shares, at, report_progress)
+    shares = shares[: growth.shape[1]]
+    fine = np.isin(verdict, (Verdict.STABLE, Verdict.MARGINAL))
+    stable, at_each = fine.all(axis=0), fine.mean(axis=1)
+    undecided = np.any(~fine & (verdict != Verdict.UNSTABLE), axis=0)
+    judged = None
+    if checks and not ended:
+        count = None if checks is True else int(checks)
+        try:
+            judged = study_checks(
+                assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, report_progress
+            )
+            ended = judged.ended
+        except OutOfTime as error:
+            ended = error.why
+    probability = float(stable.mean())
+    fastest = int(np.nanmax(growth, axis=1).argmax())
+    return ToleranceStudy(
+        parameters=tuple(s.label for s in spreads), low=np.array([s.low for s in spreads]),
+        high=np.array([s.high for s in spreads]), speeds=at, samples=len(shares), probability=probability,
+        interval=interval(stable.reshape(-1, each), confidence), confidence=confidence,
+        undecided=float(undecided.mean()), stable_share=at_each, growth_rate=growth,
+        worst=_worst(lines, spreads, shares, growth, at), ranking=_ranking(spreads, shares, growth[fastest]),
+        unit=speed_unit(assembly.line), findings=(*taken, *left_out("tolerance_study", assembly.line)), checks=judged,
+        ended=ended,
+    )  # fmt: skip
+
+
+def _read(
+    line: Driveline | Assembly, tolerances: Tolerances | None
+) -> tuple[Assembly, tuple[Spread, ...], tuple[Finding, ...]]:
+    """The line and what scatters. A share of a load that load cases alone state is one of the case that loads the line
+    most, under which the line then is, as a finding says."""
+    assembly = assemble(line)
+    try:
+        return assembly, read_tolerances(assembly, tolerances), ()
+    except InputError as error:
+        name, _, key = error.key.rpartition(".")
+        operation = assembly.line.operation
+        cases = [case.name for case in (operation.load_cases if operation else ()) if case.loads.get(name)]
+        if error.problem != ZERO or key != "load_torque" or not cases:
+            raise
+        path = error.key
+    loaded = {case: assemble(assembly.line.with_load(case)) for case in cases}
+    most = max(cases, key=lambda case: abs(loaded[case].packed.value(path)))
+    said = f"{path} is 0 as stated: the line is studied under load case {most}, where it is largest"
+    assembly = loaded[most]
+    return assembly, read_tolerances(assembly, tolerances), (Finding(Gravity.NOTE, f"{said}."),)
+
+
+def _judged(
+    lines: ManyLines,
+    spreads: tuple[Spread, ...],
+    shares: Array,
+    speeds: Array,
+    report_progress: Callable[[float], None],
+) -> tuple[Array, Codes, str]:
+    """Growth rates and verdicts (speeds, samples) of all lines, or of as many scrambles as a time limit allows, and
+    what ended it then, as a clause.
+
+    Raises
+    ------
+    OutOfTime : the time was up before two scrambles, whose scatter is the interval, were judged.
+    """
+    each = len(shares) // SCRAMBLES
+    size = each if limited() else len(shares)
+    growth, verdict = np.empty((len(speeds), len(shares))), np.empty((len(speeds), len(shares)), dtype=np.int8)
+    for speed in speeds.tolist():
+        _require_known(lines.judged(tables(lines.assembly, spreads, shares[:FIRST], speed), TOLERANCE), speed)
+    for first in range(0, len(shares), size):
+        here = slice(first, first + size)
+        try:
+            for k, speed in enumerate(speeds.tolist()):
+                table = tables(lines.assembly, spreads, shares[here], speed)
+                found = lines.judged(table, TOLERANCE)
+                growth[k, here], verdict[k, here] = lines.growth(table, found), found.verdict
+                report_progress((first + size * (k + 1) / len(speeds)) / (len(shares) * (1 + 1 / len(speeds))))
+        except OutOfTime as error:
+            if first < 2 * each:
+                raise
+            return growth[:, :first], verdict[:, :first], error.why
+    return growth, verdict, ""
+
+
+def _require_known(found: Pixels, speed: float) -> None:
+    """Refuse a speed at which the motion of none of the first lines is known: its share of stable lines would be 0 for
+    nothing. The first few tell before many are integrated in vain."""
+    if not np.any(found.error <= UNKNOWN):
+        raise InputError(
+            "is too slow for such stiff lines: over one turn their fastest modes make too many cycles to be followed",
+            key="speeds", value=speed, remedy="leave it out, or take the stiffest parts as rigid",
+        )  # fmt: skip
+
+
+def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth: Array, speeds: Array) -> Worst:
+    """Climb from the fastest sample along the gradient: first to the corner it points to, else part of the way."""
+    k, start = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
+    speed, place, best = float(speeds[k]), shares[start].copy(), float(growth[k, start])
+
+    def rates(points: Array) -> Array:
+        table = tables(lines.assembly, spreads, points, speed)
+        return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE))
+
+    size = len(spreads)
+    for _ in range(0 if time_is_up() else CLIMBS):
+        inside = np.clip(place, STEP, 1 - STEP)
+        probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
+        try:
+            found = rates(probes)
+        except OutOfTime:  # the fastest so far stands, as the study says that it was ended
+            break
+        gradient = found[:size] - found[size:]
+        corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
+        parts = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01])[:, None]
+        tried = place + parts * (corner - place)
+        with to_the_end():
+            reached = rates(tried)
+        top = int(np.nanargmax(reached))
+        if not reached[top] > best:
+            break
+        place, best = tried[top], float(reached[top])
+    table = tables(lines.assembly, spreads, place[None], speed)
+    with to_the_end():
+        verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
+    return Worst(numbers_at(spreads, place), speed, best, verdict)
+
+
+def _ranking(spreads: tuple[Spread, ...], shares: Array, growth: Array) -> tuple[tuple[str, float], ...]:
+    """Share of the growth rate's variance between classes of each parameter, less what chance alone would make."""
+    known = np.isfinite(growth)
+    shares, growth = shares[known], growth[known]
+    total, count = float(growth.var()), len(growth)
+    found = []
+    for k, one in enumerate(spreads):
+        member = np.minimum((shares[:, k] * BINS).astype(int), BINS - 1)
+        number = np.bincount(member, minlength=BINS)
+        mean = np.bincount(member, growth, BINS) / np.maximum(number, 1)
+        between = float((number * (mean - growth.mean()) ** 2).sum() / count)
+        chance = (BINS - 1) / count * (total - between)
+        found.append((one.label, float(np.clip((between - chance) / total, 0.0, 1.0)) if total > 0 else 0.0))
+    return tuple(sorted(found, key=lambda pair: -pair[1]))

@@ -1,0 +1,122 @@
+"""Rows of lines of more than three unknowns without patches: every meeting of two Floquet exponents looked at.
+
+Regions open where two exponents meet, so such speeds also tell where to look between rows that were searched
+completely. Patches of a long line's matrices cost far more than the few rows that a window takes. On each row
+``unstable_ranges`` looks at an even grid of speeds and at every meeting that may open, and closes in on the ends of
+what it finds. Tips are solved for as of any other rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import UnstableRanges, exponent_collisions, unstable_ranges
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
+from trunnion.floquet.tongues.boundary_traces import Search
+from trunnion.floquet.tongues.region import Region
+from trunnion.floquet.tongues.rows import BY_ROWS, UNTOLD, TongueRow, kind_of
+from trunnion.results.verdict import Verdict
+
+RISES = 0.02
+"""Growth is largest on a level where it rises by this share of itself above that beside."""
+WORDS = (
+    "were searched at an even grid of speeds and at every meeting of two Floquet exponents that joints and meshes can "
+    "open: a heuristic, so narrow regions may be missing"
+)
+
+
+@dataclass(frozen=True)
+class RowFamily:
+    """A line over its speed and a parameter, row by row; ``family`` has the speed along x."""
+
+    family: LineFamily
+
+    def span(self, y: float) -> Span:
+        """The speeds of the row at ``y``."""
+        low, high = self.family.x.values[[0, -1]].tolist()
+        return Span(self.family.assembly, low, high, lambda table: self.family.y.columns.put(table, y))
+
+    def judged(self, span: Span, speed: Array) -> StabilityOverSpeed:
+        """Stability at speeds (speed,) of a row."""
+        twisted = self.family.statically_twisted
+        return stability_along(self.family.assembly, speed, statically_twisted=twisted, table=span.table(speed))
+
+    def unstable(self, y: float) -> UnstableRanges:
+        """Unstable speeds of the row at ``y``."""
+        span = self.span(y)
+        return unstable_ranges(span, lambda speed: self.judged(span, speed))
+
+    def met(self, y: float) -> tuple[Array, Array]:
+        """Speeds (collisions,) of the row at ``y`` at which two exponents meet that may open, and growth rates
+        there."""
+        span = self.span(y)
+        speed = np.unique(exponent_collisions(span, span.start, span.high)[0])
+        return speed, self.judged(span, speed).growth_rate if len(speed) else np.zeros(0)
+
+
+def rows_by_collisions(region: Region, family: LineFamily) -> Search:
+    """The search of rows y = const of a line over its speed."""
+    along = RowFamily(family)
+
+    def search(v: Array) -> list[TongueRow]:
+        v = np.atleast_1d(np.asarray(v, dtype=float))
+        return [_row(family, float(own), along.unstable(float(y))) for own, y in zip(v, region.y(v), strict=True)]
+
+    return search
+
+
+def tops(v: Array, met: list[tuple[Array, Array]]) -> Array:
+    """Heights v (tops,) between levels ``v`` at which growth where exponents meet is largest and has not begun on the
+    levels beside: there a region may lie that no level shows; ``met``: speeds and growth rates on every level."""
+    found = []
+    for k in range(1, len(v) - 1):
+        for speed, growth in zip(*met[k], strict=True):
+            beside = [_nearest(met[j], speed) for j in (k - 1, k + 1)]
+            if growth <= 0 and max(beside) <= growth and min(beside) < (1 + RISES) * growth:
+                found.append(_vertex(v[k - 1 : k + 2], np.array([beside[0], growth, beside[1]])))
+    return np.unique(found)
+
+
+def _nearest(met: tuple[Array, Array], speed: float) -> float:
+    """The growth rate at the meeting nearest to a speed; NaN where there is none."""
+    return float(met[1][np.abs(met[0] - speed).argmin()]) if len(met[0]) else np.nan
+
+
+def _vertex(x: Array, y: Array) -> float:
+    """Of the parabola through three points (3,), the middle one highest, where it is highest."""
+    left, right = np.diff(y) / np.diff(x)
+    return float((x[0] + x[1]) / 2 + (x[2] - x[0]) / 2 * left / (left - right))
+
+
+def _row(family: LineFamily, v: float, found: UnstableRanges) -> TongueRow:
+    along, none = found.along, frozenset[int]()
+    growth = np.where(np.isfinite(along.growth_rate), along.growth_rate, -np.inf)
+    ranges = np.array(found.ranges).reshape(-1, 2)
+    within = [np.flatnonzero((along.speed >= low) & (along.speed <= high)) for low, high in found.ranges]
+    top = np.array([own[growth[own].argmax()] for own in within], dtype=np.intp)
+    beyond = np.sort(family.to_patch(family.x.values[[0, -1]], True))
+    ends = np.sort(family.to_patch(ranges, True), axis=1)
+    order = np.argsort(ends[:, 0])
+    ends, top = ends[order], top[order]
+    inside = family.to_patch(along.speed[top], True)
+    by = np.full(len(ends), BY_ROWS, dtype=np.int8)
+    undecided = _unknown(family, found)
+    return TongueRow(
+        v=v, low=ends[:, 0], high=ends[:, 1], inside=inside, kind=kind_of(along.critical[top]), clipped=ends == beyond,
+        unknown=undecided, by=by, of=(none,) * len(ends),
+    )  # fmt: skip
+
+
+def _unknown(family: LineFamily, found: UnstableRanges) -> Array:
+    """Stretches (stretches, 2) in u about speeds that could not be computed, or not closely enough to tell."""
+    along = found.along
+    blind = ~np.isfinite(along.radius) | ((along.verdict == Verdict.UNDECIDED) & (along.error > UNTOLD))
+    place = np.flatnonzero(blind)
+    last = len(along.speed) - 1
+    stretch = np.stack([along.speed[np.maximum(place - 1, 0)], along.speed[np.minimum(place + 1, last)]], axis=1)
+    return np.sort(family.to_patch(stretch, True), axis=1)

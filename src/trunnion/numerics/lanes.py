@@ -1,6 +1,0 @@
-"""How many points the kernels of charts take side by side."""
-
-from __future__ import annotations
-
-LANES = 16
-"""What the vector registers of a processor of today hold twice over."""

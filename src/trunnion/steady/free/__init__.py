@@ -1,0 +1,1 @@
+"""The periodic steady state of a free–free line, over its mean speed."""

@@ -1,0 +1,226 @@
+"""Periodic motions of a free–free line with joint angles, at many mean speeds at once, by the balance of their
+harmonics.
+
+    ẍ = a(t, x, ẋ) + T b(t, x, ẋ),    x = a₀ + Σ_k (a_k cos kbΩt + b_k sin kbΩt),    phaseᵀ a₀ = 0
+
+T is the torque of the drives beyond the balance of the loads, which keeps the mean speed; the last equation fixes the
+phase. Accelerations and their slopes come from the compiled nonlinear equations at samples of the period; Newton's
+steps are taken for all speeds together.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from trunnion.arrays import Array, Flags, Places
+from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.kinematics import base_motion
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
+from trunnion.equations.steady_base import refuse_dragged
+from trunnion.numerics import harmonics as fourier
+from trunnion.numerics.continuation.newton import solve_many
+from trunnion.numerics.integration.integration import Equations
+from trunnion.numerics.integration.sampled_rates import sampled_rates
+from trunnion.numerics.threads import on_one_thread
+
+FEWEST, MOST = 6, 48
+"""Harmonics of the period kept."""
+CLOSED = 1e-7
+"""Correction, in units of ``ANGLE_SCALE``, at which a motion is found."""
+NEGLIGIBLE = 1e-10
+"""Size of the outermost harmonics [rad] that is small enough."""
+CORRECTIONS = 8
+MOST_NUMBERS = 4_000_000
+"""Numbers of a batch of Newton's matrices."""
+
+
+@dataclass(frozen=True)
+class SteadyStates:
+    """Motions at ``speed`` (case,) [rad/s]: ``found`` (case,), rotations ``rows`` (case, n, 2h + 1) [rad] as series of
+    the period, ``torque`` (case,) [N m at the input] that drives beyond the balance; ``numbers`` (case, number): what
+    the compiled equations read, without it."""
+
+    balance: FreeBalance
+    speed: Array
+    found: Flags
+    rows: Array
+    torque: Array
+    numbers: Array
+
+    @property
+    def h(self) -> int:
+        """Harmonics kept."""
+        return fourier.order(self.rows)
+
+    @property
+    def times(self) -> int:
+        """Samples of the period that hold the motion and its slopes."""
+        return 4 * self.h + 4
+
+    @property
+    def tau(self) -> Array:
+        """Input angle [rad] of the samples, (time,)."""
+        return self.balance.period * np.arange(self.times) / self.times
+
+    @property
+    def resolved(self) -> Flags:
+        """Whether the outermost harmonics of all rotations are negligible (case,): as many as lie between those that
+        the fastest joint makes."""
+        h, last = self.h, self.balance.fastest
+        size = np.hypot(self.rows[..., h + 1 - last : h + 1], self.rows[..., 2 * h + 1 - last :])
+        return np.asarray(size.max(axis=(1, 2)) <= 2 * NEGLIGIBLE)
+
+    @property
+    def rate(self) -> Array:
+        """bΩ [rad/s], (case,)."""
+        return 2 * np.pi * self.speed / self.balance.period
+
+    @cached_property
+    def coefficients(self) -> LineCoefficients:
+        """Of the line at the speeds, about zero twist."""
+        return self.balance.untwisted(self.speed)
+
+    @property
+    def states(self) -> Array:
+        """States (case, time, 2n) at ``tau`` [rad, rad/s]."""
+        both = np.concatenate([self.rows, fourier.rate(self.rows, 1.0) * self.rate[:, None, None]], axis=1)
+        return np.ascontiguousarray(fourier.samples(both, self.times).transpose(0, 2, 1))
+
+    def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
+        """Rates (case, time, 2n) and their slopes (case, time, 2n, 2n) by the states, under ``more`` torque; NaN if
+        none."""
+        states, numbers = self.states, self._driven(more)
+        cases, times, size = states.shape
+        rates, slopes = np.full(states.shape, np.nan), np.full((cases, times, size, size), np.nan)
+        for i, speed in enumerate(self.speed):
+            equations = Equations(self.balance.address, size, numbers[i], self.balance.weight)
+            known = sampled_rates(equations, self.tau / speed, states[i], 0)
+            if known is not None:
+                rates[i], slopes[i] = known[:2]
+        return rates, slopes
+
+    def observed(self) -> LineMotion:
+        """Twist, torque (case, time, spring) and rotation (case, time, station) along the motions."""
+        each = [
+            self.balance.line.observed(self.tau / speed, states, numbers)
+            for speed, states, numbers in zip(self.speed, self.states, self._driven(0.0), strict=True)
+        ]
+        return LineMotion(*(np.stack([getattr(one, key) for one in each]) for key in ("twist", "torque", "rotation")))
+
+    def part(self, at: slice) -> SteadyStates:
+        """Some of them."""
+        return SteadyStates(
+            self.balance, self.speed[at], self.found[at], self.rows[at], self.torque[at], self.numbers[at]
+        )
+
+    def _driven(self, more: float) -> Array:
+        return self.numbers + (self.torque + more)[:, None] * self.balance.drive
+
+
+class FreeBalance:
+    """Motions of a free line by the balance of their harmonics."""
+
+    def __init__(self, assembly: Assembly, period: float) -> None:
+        """``period`` [rad of input angle]."""
+        refuse_dragged(assembly)
+        topo = assembly.topology
+        self.assembly, self.period, self.turn = assembly, period, rigid_rotation(topo)
+        self.phase = np.eye(topo.size)[topo.coordinate[topo.group_of(0)]]
+        self.fastest = max(1, int(np.ceil(max(float(rate) for rate in topo.rates) * period / (2 * np.pi) - 1e-9)))
+        self.fewest = max(FEWEST, 3 * self.fastest)
+        self.line = LineSystem(assembly, 1.0)
+        self.address, self.weight = self.line.system.rate.address, np.ones(2 * topo.size)
+
+    @cached_property
+    def drive(self) -> Array:
+        """What one N m of the drives at the input changes of the numbers, (number,)."""
+        row = self._table(np.ones(1))[0]
+        return self.line.numbers(row, drive=1.0) - self.line.numbers(row)
+
+    def untwisted(self, speed: Array) -> LineCoefficients:
+        """The line's coefficients at ``speed`` (case,) about zero twist."""
+        return self.line.untwisted(self._table(speed))
+
+    def numbers(self, speed: Array, co: LineCoefficients) -> Array:
+        """What the compiled equations read (case, number)."""
+        table = self._table(speed)
+        return np.stack([self.line.numbers(row, known=co, case=i) for i, row in enumerate(table)])
+
+    def _table(self, speed: Array) -> Array:
+        table = self.assembly.table(len(speed))
+        table[:, 0] = speed
+        return table
+
+    def solve(self, speed: Array, h: int, guess: Array | None = None) -> SteadyStates:
+        """Motions of ``h`` harmonics at ``speed`` (case,) [rad/s], from a guess (case, n, 2h + 1) or rigid shafts."""
+        unknowns = len(self.turn) * (2 * h + 1) + 1
+        batch_size = max(1, MOST_NUMBERS // unknowns**2)
+        with on_one_thread():
+            parts = [
+                self._batch(speed[i : i + batch_size], h, None if guess is None else guess[i : i + batch_size])
+                for i in range(0, len(speed), batch_size)
+            ]
+        keys = ("speed", "found", "rows", "torque", "numbers")
+        return SteadyStates(self, *(np.concatenate([getattr(part, key) for part in parts]) for key in keys))
+
+    def _batch(self, speed: Array, h: int, guess: Array | None) -> SteadyStates:
+        co = self.untwisted(speed)
+        numbers, first = self.numbers(speed, co), self._rigid(speed, h, co) if guess is None else guess
+        inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
+        unit = ANGLE_SCALE * speed**2 * inertia / self.period
+
+        def motions(cases: Places, z: Array, found: Flags) -> SteadyStates:
+            rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
+            return SteadyStates(self, speed[cases], found, rows, unit[cases] * z[:, -1], numbers[cases])
+
+        def equations(cases: Places, z: Array) -> tuple[Array, Array]:
+            return self._equations(motions(cases, z, np.zeros(len(z), dtype=bool)), unit[cases])
+
+        start = np.append(first.reshape(len(speed), -1) / ANGLE_SCALE, np.zeros((len(speed), 1)), axis=1)
+        z, found = solve_many(equations, start, tolerance=CLOSED, most=CORRECTIONS)
+        z[~found] = 0.0
+        return motions(np.arange(len(speed)), z, found)
+
+    def _equations(self, motions: SteadyStates, unit: Array) -> tuple[Array, Array]:
+        """What is missing of the balance and of the phase (case, unknowns), and its derivative by the rows in units of
+        ``ANGLE_SCALE`` and by the torque in those of ``unit`` (case,)."""
+        n, h, rate = len(self.turn), motions.h, motions.rate
+        cases, wide = len(rate), 2 * h + 1
+        rates, slopes = motions.sampled()
+        by_torque = motions.sampled(1.0)[0] - rates
+        around, along = rates[..., n:].transpose(0, 2, 1), by_torque[..., n:].transpose(0, 2, 1)
+        speed = motions.speed
+        d = fourier.rate_matrix(h, 1.0)
+        by_angle, by_speed = (fourier.product_blocks(part, h) for part in np.split(slopes[..., n:, :], 2, axis=-1))
+        # Products with D from the right: D is minus its transpose.
+        matrix = fourier.rate(by_speed, 1.0) * rate[:, None, None, None, None] - by_angle
+        matrix[:, np.arange(n), :, np.arange(n), :] += (d @ d) * (rate**2)[:, None, None]
+        size = n * wide
+        whole = np.zeros((cases, size + 1, size + 1))
+        whole[:, :size, :size] = matrix.reshape(cases, size, size) / (speed**2)[:, None, None]
+        column = fourier.rows_of(along, h).reshape(cases, size)
+        whole[:, :size, size] = -column * (unit / (ANGLE_SCALE * speed**2))[:, None]
+        whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
+        inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
+        left = inertial - fourier.rows_of(around, h)
+        missing = np.zeros((cases, size + 1))
+        missing[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
+        missing[:, size] = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
+        return missing, whole
+
+    def _rigid(self, speed: Array, h: int, co: LineCoefficients) -> Array:
+        """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""
+        topo, times = self.assembly.topology, 4 * h + 4
+        tau = self.period * np.arange(times) / times
+        base, plain = (base_motion(topo, case, tau).angle for case in (co, co.straight))
+        statically_loaded = self.assembly.coefficients(self._table(speed), free_play=True)
+        loaded, loose = (base_motion(topo, case, np.zeros(1)).angle[:, 0] for case in (statically_loaded, co))
+        rows = fourier.rows_of((base - plain)[..., topo.firsts].transpose(0, 2, 1), h)
+        rows[..., 0] += (loaded - loose)[:, topo.firsts]
+        rows[..., 0] -= np.outer(rows[..., 0] @ self.phase, self.phase) / (self.phase @ self.phase)
+        return rows

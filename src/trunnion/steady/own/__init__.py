@@ -1,1 +1,0 @@
-"""The periodic steady state of a line that starts free, over its mean speed."""

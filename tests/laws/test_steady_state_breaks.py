@@ -1,0 +1,118 @@
+"""Own motions of free–free lines with joint angles where they swing far: followed over the speed, their folds, what
+grows.
+
+Against the equations of motion integrated in time (``oracles.own_shooting``), without harmonics or linearisation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.free_shooting import Shooting, growth_of_own, leads_over
+from oracles.line_equations import Steady
+from oracles.scanned_lines import scanned_line
+
+import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, breaks
+
+
+def test_a_motion_on_the_flank_of_a_steep_resonance_is_followed_to():
+    """At 577 rpm rigid shafts lead nowhere; the input swings by 0.76 rad there."""
+    line, speed = scanned_line("free", 90), np.array([577 * np.pi / 30])
+    known = SteadyStatesBySpeed(line.driveline).at_all(speed)
+    assert known.found.all() and known.resolved.all()
+    true = Shooting(Steady(line)).motions(speed)
+    assert true.found.all()
+    assert known.torque == pytest.approx(true.extra, rel=1e-7)
+    assert known.observed().torque.mean(axis=1) == pytest.approx(true.mean_torque, rel=1e-7)
+
+
+@pytest.mark.slow
+def test_between_two_folds_motions_from_either_side_do_not_meet():
+    line = scanned_line("free", 117)
+    steady, solved = Steady(line), SteadyStatesBySpeed(line.driveline)
+    (found,) = breaks(solved, np.linspace(line.low, line.high, 33))
+    assert (found.low, found.high) == pytest.approx((66.979466, 67.024574), rel=2e-6)  # the shooting's, by arc length
+    assert "several" in found.why
+    assert not leads_over(steady, found.low * (1 - 1e-5), found.high * (1 + 1e-5))
+    assert leads_over(steady, found.low * (1 - 1e-3), found.low * (1 - 1e-5))
+
+
+@pytest.mark.parametrize(
+    ("seed", "speeds"),
+    [
+        # The swing turns into a pair of real multipliers.
+        pytest.param(3, (43.6, 43.7, 43.796, 43.9, 44.1, 44.201, 44.5), marks=pytest.mark.slow),
+        # Three real ones, one of the speed.
+        (90, (60.0, 60.6, 60.66, 60.67, 61.0, 62.4)),
+        # Unstable besides.
+        pytest.param(7, (62.0, 90.2, 173.0, 180.5), marks=pytest.mark.slow),
+        # Loaded by speed: that of the speed counts.
+        pytest.param(9, (58.44, 58.65, 58.66, 60.0), marks=pytest.mark.slow),
+    ],
+)
+def test_growth_about_own_motions_leaves_out_the_speed_wherever_it_is(seed, speeds):
+    line, at = scanned_line("free", seed), np.array(speeds)
+    found = stability_along(assemble(line.driveline), at)
+    true = growth_of_own(Steady(line), at)
+    assert np.isfinite(true).all()
+    known_to = found.error / found.radius * found.speed / found.period
+    assert (np.abs(found.growth_rate - true) <= known_to + 3e-6 + 2e-5 * np.abs(true)).all()
+
+
+@pytest.mark.slow
+def test_ends_of_unstable_ranges_are_located_to_a_hundred_thousandth():
+    line = scanned_line("free", 9)
+    ranges = tn.assess(line.driveline).check("parametric stability").barred
+    assert len(ranges) == 2
+    outside, inside = (
+        np.array([one * (1 + share) for a, b in ranges for one, share in ((a, -away), (b, away))])
+        for away in (1e-5, -1e-5)
+    )
+    assert (growth_of_own(Steady(line), outside) < 0).all()
+    assert (growth_of_own(Steady(line), inside) > 0).all()
+
+
+def test_checks_cover_all_but_the_speeds_where_the_motion_folds():
+    line = scanned_line("free", 117)
+    still = replace(line, masses=tuple(replace(mass, shakes=()) for mass in line.masses))
+    plain = still.driveline
+    generous = tn.Driveline(plain.elements, limits=[tn.Limit(of="s1", max_torque=1e6)], operation=plain.operation)
+    judged = tn.assess(generous)
+    for name in ("max torque of s1", "parametric stability"):
+        check = judged.check(name)
+        assert str(check.status) == "not judged"
+        assert "not judged: the free line's own motion folds back there" in check.because
+        (first, second) = check.covered
+        assert (first[0], second[1]) == pytest.approx((line.low, line.high))
+        assert (first[1], second[0]) == pytest.approx((66.979466, 67.024574), rel=2e-6)
+    assert 100 < judged.check("max torque of s1").value < 1e6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [115, 117])
+def test_at_a_fold_the_line_is_judged_by_the_motion_that_goes_on_outside(seed):
+    """Not by the one that ends there, which is another beside it: growth and values are those of just outside."""
+    line = scanned_line("free", seed)
+    solved = SteadyStatesBySpeed(line.driveline)
+    (found,) = breaks(solved, np.linspace(line.low, line.high, 65))
+    solved.broken = (found,)
+    for fold, away in ((found.low, -1), (found.high, 1)):
+        at = fold * (1 + away * np.array([0.0, 1e-7, 1e-6, 1e-5]))
+        growth = stability_along(assemble(line.driveline), np.sort(at), motions=solved).growth_rate
+        assert growth == pytest.approx(np.full(4, growth.mean()), rel=0.05)
+
+
+@pytest.mark.slow
+def test_speeds_beyond_a_fold_at_which_the_line_loses_its_speed_are_found():
+    """Beyond it the torque falls with the speed: growth by the equations of motion integrated in time."""
+    line = scanned_line("free", 115)
+    check = tn.assess(line.driveline).check("parametric stability")
+    (low, high) = check.barred[0]
+    assert (low, high) == pytest.approx((66.6377, 67.7435), rel=1e-5)
+    grows = growth_of_own(Steady(line), np.array([low * 1.001, 67.0, high * (1 - 1e-4), high * (1 + 1e-4)]))
+    assert (grows[:3] > 0).all() and grows[3] < 0
