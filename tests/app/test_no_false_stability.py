@@ -9,6 +9,7 @@ import trunnion as tn
 from trunnion.driveline.starter import starter
 
 
+@pytest.mark.slow
 def test_the_stable_limit_is_that_of_every_speed_and_not_of_some(look: Look) -> None:
     """The two-shaft starter is unstable at 17° and 708 rpm, between the five speeds that are asked for."""
     look.at("?view=limits&limits.speeds=5")

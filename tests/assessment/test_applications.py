@@ -340,6 +340,7 @@ def test_the_search_finds_what_helps_the_gear_stage() -> None:
     assert helped.remedies[0].verdict is Status.SATISFIED
 
 
+@pytest.mark.slow
 def test_the_take_off_grows_unstable_where_it_is_raised() -> None:
     found = tn.envelope(tn.load(ROOT / "examples" / "pto-shaft.toml"), points=2)
     assert found.verdict is Status.EXCEEDED

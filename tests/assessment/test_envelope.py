@@ -82,6 +82,7 @@ def test_the_stable_limit_of_every_place() -> None:
     assert f"angle of joint: stable up to {np.degrees(found.limit.min()):.6g}°, least" in str(found)
 
 
+@pytest.mark.slow
 def test_between_the_points_of_a_schedule_over_speed_the_largest_torque_is_found() -> None:
     """A resonance of order 2 at 27.4 rad/s lies between two points, where the joint is bent most of all."""
     bends = tn.Schedule(name="bend", speed=[20.0, 27.0, 40.0], angles={"joint": ["2 deg", "20 deg", "2 deg"]})

@@ -117,6 +117,7 @@ def test_every_remedy_is_judged_again_and_breaks_nothing(found):
                 assert before[check.name].status is Status.EXCEEDED
 
 
+@pytest.mark.slow
 def test_a_change_that_breaks_another_check_is_no_remedy(found):
     """A limit on the load's motion: a lighter load would satisfy the torque and exceed that one."""
     lighter = next(r for r in found.remedies if r.variable == "load.inertia").after

@@ -29,6 +29,7 @@ def slow(ratio: float, damping: float) -> tn.System:
     return oscillator((0.0, 0.0), d=2 * damping * ratio, a=ratio**2, force=1.0)
 
 
+@pytest.mark.slow
 def test_a_motion_that_settles_slowly_is_said_to_settle() -> None:
     """n = 1/4, ζ = 0.004: its fourth returns are near long before the first ones are."""
     system = slow(0.25, 0.004)

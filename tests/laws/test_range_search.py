@@ -94,6 +94,7 @@ def test_an_unstable_range_is_as_narrow_as_it_is() -> None:
         )
 
 
+@pytest.mark.slow
 def test_joints_of_different_speeds_make_sums_of_their_orders() -> None:
     """Behind a ratio of 1.5 a joint excites with 4/3 a turn; with the first joint's 2 it makes 10/3."""
     parts = [

@@ -320,6 +320,7 @@ def test_an_ending_that_hangs_on_the_tolerance_is_not_decided(monkeypatch: pytes
     )
 
 
+@pytest.mark.slow
 def test_a_linearity_check_says_that_a_line_does_not_pass() -> None:
     found = tn.linearity_check(hanging_line(), 40.0, acceleration=4.0)
     assert found.passage.kind == "captured" and found.data.attrs["passing_outcome"] == "captured"

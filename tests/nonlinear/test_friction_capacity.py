@@ -386,6 +386,7 @@ def _false(lines: list[tn.Driveline], settling: int) -> tuple[list[str], dict[st
     return found, kinds
 
 
+@pytest.mark.slow
 def test_a_few_clutches_about_what_they_hold() -> None:
     found, kinds = _false([_random(seed) for seed in range(10)], 60)
     assert not found, "\n".join(found)

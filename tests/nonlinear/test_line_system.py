@@ -185,6 +185,7 @@ def test_loads_act_on_the_disk_they_belong_to() -> None:
     assert change[1] == pytest.approx(10.0 / 0.6, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_energy_of_a_free_line_over_a_thousand_turns() -> None:
     """Two discs, Hooke's joint, no damping: energy constant to 1e-10 of itself."""
     line = tn.Driveline(

@@ -150,6 +150,7 @@ def test_matrices_that_cannot_be_computed_stop_nothing() -> None:
     assert eigenvalues(np.stack([good, np.full((2, 2), np.nan)])) == pytest.approx(np.array([[2.0, 0.5], [1.0, 1.0]]))
 
 
+@pytest.mark.slow
 def test_damping_up_to_where_nothing_can_be_integrated() -> None:
     line = bent(long_line(0, 4, 1e-5), 0.5)
     damping = tn.minimum_damping(line, speeds=(200.0, 220.0), maximum=2000.0, rows=3)

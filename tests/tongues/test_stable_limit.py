@@ -42,6 +42,7 @@ def test_edges_of_the_published_tongues(gamma: float, beta: float, edges: str) -
         assert np.abs(found.unstable[0] - beta).min() < 60 * half_a_digit, text
 
 
+@pytest.mark.slow
 def test_every_edge_has_radius_one() -> None:
     """By an integration of the equations in twists, which shares nothing with the package."""
     found = tn.stable_limit(LINE, ANGLE, [0.31, 0.56, 0.65, 1.1, 1.58], high=1.3)
