@@ -122,7 +122,7 @@ def test_the_first_charts_of_an_installation_take_numpy_and_later_ones_the_kerne
     axes = ("speed", 0.8, 2.0, 30), (ANGLES, 0.0, 0.3, 20)
     built = []
     monkeypatch.setattr(
-        stability_chart_module, "build_plainly", lambda *of: built.append(build_with_numpy(*of)) or built[-1]
+        stability_chart_module, "build_with_numpy", lambda *of: built.append(build_with_numpy(*of)) or built[-1]
     )
     by_kernels = stability_chart(catalogue("two-shaft-cardan"), *axes)
     assert not built  # see conftest: compiling pays in tests

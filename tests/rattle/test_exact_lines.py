@@ -183,7 +183,7 @@ def test_parts_make_the_whole() -> None:
 
 
 @pytest.mark.parametrize(
-    ("law", "clock"), [("in contact", "speed"), ("never pulling", "speed"), ("always", "frequency")]
+    ("law", "independent_variable"), [("in contact", "speed"), ("never pulling", "speed"), ("always", "frequency")]
 )
 def test_tangents_through_crossings(law: str, independent_variable: str) -> None:
     """Against central differences of the motion over a period, by start and by speed or frequency."""

@@ -378,5 +378,5 @@ def test_a_region_that_another_parts_from_goes_on() -> None:
         )  # fmt: skip
 
     strands, _ = joined(search, np.linspace(0.0, 1.0, 5), lambda share: None)
-    assert len(strands) == 2 and all(s.held[-1].v == 1.0 for s in strands)
+    assert len(strands) == 2 and all(s.intervals[-1].v == 1.0 for s in strands)
     assert strands[1].into[0] is strands[0] and strands[0].beyond[1] is None

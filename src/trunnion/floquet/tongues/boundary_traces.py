@@ -60,7 +60,7 @@ class BoundaryTrace:
     @property
     def by(self) -> int:
         """Which searches found any of its intervals, as ``TongueRow.by``."""
-        return reduce(or_, (intervals.by for intervals in self.intervals))
+        return reduce(or_, (one.by for one in self.intervals))
 
     def moved(self, v: float) -> tuple[float, float]:
         """Its interval as it would be at ``v`` if it went on as it came: as the edge that moved less, since the other
