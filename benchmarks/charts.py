@@ -157,7 +157,7 @@ def heyoka_seconds(line: tn.Driveline, chart: StabilityChart, sample: int) -> tu
     rng = np.random.default_rng(2)
     sample -= sample % width
     rows, columns = rng.integers(len(chart.y), size=sample), rng.integers(len(chart.x), size=sample)
-    # Slow and fast lanes in one batch wait for each other; neighbours stand together.
+    # Slow and fast lines in one batch wait for each other; neighbours stand together.
     order = np.argsort(chart.x[columns])
     rows, columns = rows[order], columns[order]
     apart, begin = 0.0, time.perf_counter()
@@ -213,7 +213,7 @@ def main() -> None:
     print(f"{processor()}, {os.cpu_count()} cores")
     print(
         f"Python {platform.python_version()}, numpy {np.__version__}, numba {numba.__version__}, "
-        f"scipy {scipy.__version__}; {threads} threads, {BATCH} lanes\n"
+        f"scipy {scipy.__version__}; {threads} threads, batches of {BATCH}\n"
     )
     two, three, eight = tn.catalogue("two-shaft-cardan"), tn.catalogue("three-shaft-cardan"), equal_chain(8)
 

@@ -1,4 +1,4 @@
-"""Whether charts choose the cheaper way: the cost model of ``floquet.charts.prices`` against measured seconds.
+"""Whether charts choose the cheaper way: the cost model of ``floquet.charts.cost_model`` against measured seconds.
 
     PYTHONPATH=src python benchmarks/cost_model.py
 
