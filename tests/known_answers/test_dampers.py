@@ -420,3 +420,44 @@ def test_the_page_runs() -> None:
     printed, names = run_page("components")
     assert names["best"].damping_ratio == pytest.approx(0.288675, abs=1e-6)
     assert "amplification 3" in printed and "oil alone drags it along" in printed
+
+
+def test_the_optimum_on_a_leg_of_a_differential_is_that_of_masses_that_are_coupled() -> None:
+    """Case a, right leg r and wheel w: the left leg turns 2a − r (with the final drive 1), so M couples a and r."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1), tn.Differential(name="d"),
+            tn.Disk(inertia=0.2, name="left"), tn.Disk(inertia=0.3, name="right", after="d.right"),
+            tn.Shaft(stiffness=2e3), tn.Disk(inertia=0.5),
+            tn.ViscousDamper(name="damper", ring_inertia=0.05, damping=1.0, after="right"),
+        ]
+    )  # fmt: skip
+    mass = np.array([[0.9, -0.4, 0.0], [-0.4, 0.5, 0.0], [0.0, 0.0, 0.5]])
+    stiffness = np.array([[1e4, 0.0, 0.0], [0.0, 2e3, -2e3], [0.0, -2e3, 2e3]])
+    squares, shapes = np.linalg.eig(np.linalg.solve(mass, stiffness))
+    order = np.argsort(squares)
+    for mode, k in enumerate(order[1:], start=1):
+        shape = shapes[:, k] / shapes[1, k]
+        found, effective = tn.damper_optimum(line, "damper", mode), shape @ mass @ shape
+        assert found.frequency == pytest.approx(np.sqrt(squares[k]), rel=1e-9)
+        assert found.effective_inertia == pytest.approx(effective, rel=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["x", None, 1.0, True, [1], 0, 2])
+def test_a_mode_is_a_number_of_one(mode: object) -> None:
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1),
+            tn.ViscousDamper(name="damper", ring_inertia=0.05, damping=1.0),
+        ]
+    )  # fmt: skip
+    with pytest.raises(tn.InputError, match="is no elastic mode"):
+        tn.damper_optimum(line, "damper", mode)  # type: ignore[arg-type]
+
+
+def test_a_loop_onto_its_own_shaft_and_a_belt_to_nothing_are_refused() -> None:
+    front = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1, name="a")]
+    with pytest.raises(tn.InputError, match="closes onto the shaft that it starts from"):
+        tn.natural_frequencies(tn.Driveline([*front, tn.Shaft(name="x", stiffness=1e6, to="a")]))
+    with pytest.raises(tn.InputError, match="Belt 1: has no inertia behind it; put a Disk behind Belt 1"):
+        tn.natural_frequencies(tn.Driveline([*front, tn.Belt(radius_in=0.1, radius_out=0.1, span_stiffness=1e5)]))

@@ -450,6 +450,11 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                 case Sprung(to, closes) if closes is not None:
                     end = line.index(closes)
                     here, plane = coordinates[end][line.elements[end].onward]
+                    if here == own[to]:
+                        raise InputError(
+                            "closes onto the shaft that it starts from, and would never twist", element=line.names[i],
+                            key="to", value=closes, remedy="name an element behind another spring",
+                        )  # fmt: skip
                     found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
                     _require_closed(line, found, i, own[to], here)
                 case Sprung(to) | Dragged(to):
@@ -563,7 +568,10 @@ def _bare(line: Driveline, draft: LineStations, group: int) -> InputError:
     """What refuses a group that nothing can accelerate."""
     tied = [s.element for s in draft.stations if s.group == group and s.link in TIED]
     element = line.names[tied[0] if tied else draft.stations[draft.reference[group]].element]
-    if tied:
+    behind = next(s for s in draft.stations if s.group == group)
+    if tied and behind.link is LinkKind.SHAFT and behind.element == tied[0]:
+        problem, remedy = "has no inertia behind it", f"put a Disk behind {element}"
+    elif tied:
         problem = "has no inertia rigidly in front of it"
         remedy = f"put a Disk in front of {element} (half the joint's own inertia is a good start)"
     else:

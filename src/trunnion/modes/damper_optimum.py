@@ -12,7 +12,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import DAMPING, INERTIA, STIFFNESS, shown
 from trunnion.driveline.refusals import nearest
-from trunnion.equations.aligned import aligned_matrices
+from trunnion.equations.aligned import UnitMasses, aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.laws.dampers import tuned_optimum, viscous_optimum
@@ -75,25 +75,25 @@ def damper_optimum(line: Driveline | Assembly, damper: str, mode: int = 1) -> Da
         dampers = [name for name, one in described.parts if isinstance(one, Damper)]
         raise InputError("is no damper of this driveline", key="damper", value=damper, remedy=nearest(damper, dampers))
     compliance = next(e for e, one in enumerate(topo.compliances) if place in one.shafts)
-    ring, housing = topo.ends[compliance]
+    ring, near = topo.ends[compliance][0], topo.compliances[compliance].near
     co = assembly.coefficients(assembly.table(1), any_frequency=True)
     stiffness = co.stiffness.copy()
     stiffness[:, compliance] = 0.0
     matrices = aligned_matrices(topo, replace(co, stiffness=stiffness))
     kept = np.delete(np.arange(topo.size), ring)
-    mass, root = matrices.mass[0, kept], np.sqrt(matrices.mass[0, kept])
-    squares, shapes = np.linalg.eigh(matrices.stiffness[0][np.ix_(kept, kept)] / np.outer(root, root))
+    masses = UnitMasses(matrices.inertia[0][np.ix_(kept, kept)])
+    squares, shapes = np.linalg.eigh(masses.of_matrix(matrices.stiffness[0][np.ix_(kept, kept)]))
     rigid = topo.still - (compliance in topo.dragged)
     elastic = len(kept) - rigid
-    if not 1 <= mode <= elastic:
+    if isinstance(mode, bool) or not isinstance(mode, int | np.integer) or not 1 <= mode <= elastic:
         raise InputError("is no elastic mode", key="mode", value=mode, remedy=f"write a number from 1 to {elastic}")
-    frequency, shape = float(np.sqrt(squares[rigid + mode - 1])), shapes[:, rigid + mode - 1] / root
-    turned = shape[kept.tolist().index(housing)] if housing >= 0 else 0.0
-    turned = float(turned * (topo.relative_ratios[topo.compliances[compliance].near]))
+    frequency = float(np.sqrt(squares[rigid + mode - 1]))
+    shape = masses.rotations(shapes[:, [rigid + mode - 1]])[:, 0]
+    turned = float(topo.turning[near, kept] @ shape)
     if abs(turned) < STANDS * np.abs(shape).max():
         remedy = "put the damper where the mode moves, at a free end of the line"
         raise InputError(f"stands in a node of mode {mode}, which moves nothing there", element=damper, remedy=remedy)
-    effective = float(shape**2 @ mass) / turned**2
+    effective = 1 / turned**2  # of a shape of unit modal mass
     inertia = element.ring_inertia
     ratio, spring = inertia / effective, 0.0
     if isinstance(element, ViscousDamper):

@@ -22,7 +22,9 @@ from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.operation import Operation
+from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
+from trunnion.floquet.stability.stability import shaken_stages
 from trunnion.numerics.threads import on_threads
 from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
@@ -73,7 +75,7 @@ def assess(
 def judgement(subject: AssessmentInput, checks: tuple[Check, ...]) -> Assessment:
     """What follows from the checks of a line."""
     verdict, barred = verdict_of(checks, subject.speed)
-    findings = _findings(subject.cases, subject.unit)
+    findings = by_gravity([*_findings(subject.cases, subject.unit), *shaken_stages(assemble(subject.line))])
     return Assessment(
         verdict=verdict, checks=checks, barred=barred, low=subject.low, high=subject.high, speed=subject.speed,
         unit=subject.unit, findings=findings, operation=subject.line.operation or Operation(),
