@@ -15,6 +15,8 @@ from trunnion.driveline.record import one_of
 from trunnion.errors import InputError
 
 SHAFTS = ("sun", "carrier", "ring")
+SHIFTED = 2
+"""Teeth by which profile shift may make planets larger or smaller than their room."""
 STILL = 1e-9
 """Share of the input's speed below which an output does not turn."""
 WRITE = 'write one of "sun", "carrier", "ring"'
@@ -103,6 +105,10 @@ class Planetary(Element):
         if (self.teeth_sun + self.teeth_ring) % self.planets:
             problem = f"cannot be spaced evenly: {self.teeth_sun} + {self.teeth_ring} teeth are no multiple of them"
             yield ("planets", problem, "check the tooth numbers")
+        room = (self.teeth_ring - self.teeth_sun) / 2
+        if self.teeth_planet and abs(self.teeth_planet - room) > SHIFTED:
+            problem = f"hardly fit between {self.teeth_sun} and {self.teeth_ring} teeth, which leave {room:g}"
+            yield ("teeth_planet", problem, "check the tooth numbers")
 
     @property
     def driven(self) -> str:

@@ -39,7 +39,7 @@ HEADROOM = 1.75
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
-    "TunedDamper": 0.7, "Differential": 0.9,
+    "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (SpringElement, PiecewiseShaft)
@@ -309,6 +309,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "Planetary": _planetary,
     "Differential": _differential,
     "PiecewiseShaft": _stages,
+    "Clutch": _stages,
 }
 
 

@@ -24,7 +24,7 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit, stat
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
-from trunnion.floquet.stability.stability import shaken_stages
+from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.numerics.threads import on_threads
 from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity

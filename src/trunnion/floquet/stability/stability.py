@@ -19,11 +19,8 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import feature
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
-from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.equations.topology import require_period
@@ -31,6 +28,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
+from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.modes.resonance_speeds import Resonance, Source, sources
@@ -236,24 +234,6 @@ def stability(
         found, left_out=(*left_out("stability", assembly.line), *shaken_stages(assembly)),
         unit=speed_unit(assembly.line), dragged=len(assembly.topology.dragged),
     )  # fmt: skip
-
-
-def shaken_stages(assembly: Assembly) -> tuple[Finding, ...]:
-    """What is said of a line that is judged about its own periodic motion, without its excitations, where these may
-    move it across the stages of a spring: then they move its multipliers."""
-    backlash = set(feature("backlash").places(assembly.line))
-    staged = [
-        name for name, one in assembly.line.parts
-        if (isinstance(one, PiecewiseShaft) and one.breakpoints) or any(at.startswith(f"{name}.") for at in backlash)
-    ]  # fmt: skip
-    acting = [one.name for one in line_harmonics(assembly) if one.acts]
-    if not (has_periodic_base(assembly) and staged and acting):
-        return ()
-    sentence = (
-        f"{', '.join(dict.fromkeys(acting))} may move {', '.join(dict.fromkeys(staged))} across its stages, which the "
-        "periodic motion that is judged leaves out: ask periodic_response"
-    )
-    return (Finding(Gravity.CAUTION, sentence),)
 
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
