@@ -77,8 +77,8 @@ class OverviewAssessment(AssessedLine):
     """The verdict on a line over its running range, and what belongs to it.
 
     operation: the description's, at the ``speed`` asked for; along: stability along the range at the joints' own
-    angles, None where nothing makes the coefficients vary or where each speed takes its own motion; resonance_speeds:
-    those in the range.
+    angles, None where nothing makes the coefficients vary or where each speed takes its own periodic steady state;
+    resonance_speeds: those in the range.
     """
 
     operation: Operation

@@ -155,8 +155,10 @@ def response_findings(
     if not sweep.linear[which]:
         said = f"{said}. Resonance at {words.about(at)}; do not use this amplitude: it is beyond linear theory."
     else:
+        operation = assembly.line.operation
+        loads = "under the loads as described " if operation and operation.load_cases else ""
         said = (
-            f"{said}: the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
+            f"{said}: {loads}the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
             f"{words.rounded(at)}, {raised[which, shaft]:.2g} times its median over the range."
         )
     yield Finding(Gravity.CAUTION, said)

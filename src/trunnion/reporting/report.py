@@ -130,6 +130,7 @@ def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path |
         "joints": tables.joints(seen.line),
         "irregularity": tables.irregularity(contents),
         "torques": tables.torques(contents, unit),
+        "load_cases": bool(seen.line.operation and seen.line.operation.load_cases),
         "under_load": tables.under_load(contents),
         "contacts": tables.contacts(contents),
         "bending": tables.bending(contents, unit),
