@@ -5,7 +5,7 @@ With σ = 1 behind the clutch and −1 in front of it, rotations and torques tak
     T = σ (J a + M + Σ T_in − Σ T_out),
 
 J, a and M inertia, acceleration and loads of what turns with the clutch on that side, T_in the spring that drives it
-and T_out those that it drives. A side will do where nothing but ratios ties it and no excitation acts on it.
+and T_out those that it drives. A side will do where no angled joint is part of it and no excitation acts on it.
 """
 
 from __future__ import annotations
@@ -17,10 +17,9 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.slip_clutches import SlipClutch
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.loads import mean_loads
 from trunnion.equations.slip_capacity import stations_beyond, sticking_clutches
-from trunnion.equations.topology import LinkKind
 from trunnion.response.orders.result import OrderResponse
 
 
@@ -92,8 +91,9 @@ def _told_by(
     topo = assembly.topology
     if not side or topo.prescribed[topo.group_of(link)]:
         return None
-    # A joint between would vary the ratios.
-    if any(topo.stations[s].link is LinkKind.JOINT for s in side):
+    # An angled joint between would vary the ratios.
+    laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
+    if any(s in side and law.nonuniform for s, law in laws):
         return None
     for s, i in topo.disks:
         disk = assembly.line.elements[i]
