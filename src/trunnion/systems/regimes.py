@@ -18,7 +18,18 @@ SLACK = 1e-6
 
 
 class Switch(NamedTuple):
-    """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``."""
+    """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``.
+
+    Parameters
+    ----------
+    regime : name of the one that is left.
+    guard : name of the switching function.
+    direction : +1 where it rises through zero, −1 where it falls.
+    then : name of the regime behind.
+
+    >>> Switch("free", "x = 1", +1, "contact").then
+    'contact'
+    """
 
     regime: str
     guard: str

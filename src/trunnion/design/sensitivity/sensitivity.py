@@ -64,6 +64,7 @@ def sensitivity(
 
     Parameters
     ----------
+    line : whose numbers are varied.
     speeds : input speed or speeds [rad/s] of growth rates and torques; default the operating speed of the description,
         or the ends of its range, or none.
     parameters : paths; "HookeJoint *.angle" is each joint's, "factor of Shaft *.damping" all together; default
