@@ -139,7 +139,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     which a torque of any spring is largest.
 
     An even grid alone would step over the peaks of lightly damped modes. The largest torques over the range are those
-    at these speeds, to 0.1 % (``range_search.largest``).
+    at these speeds, to 0.1 % (``response.ranges.largest``).
 
     Parameters
     ----------

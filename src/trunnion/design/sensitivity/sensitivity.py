@@ -175,7 +175,7 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
 
 def _growth(problem: _SensitivityProblem) -> Iterator[SensitivityRows]:
     if has_periodic_base(problem.assembly):
-        # Its own motion follows every parameter, so lines beside it are judged.
+        # Its periodic steady state follows every parameter, so lines beside it are judged.
         if len(problem.at):
             here, slope, error = _by_differences(problem, free_line_growth)
             for k, speed in enumerate(problem.at.tolist()):

@@ -1,6 +1,6 @@
 """Every instability region in a box, as smooth curves with the resonance that names it.
 
-Rows y = const are searched from end to end (``rows``), joined into tongues (``joining``), and closed at their tips
+Rows y = const are searched from end to end (``rows``), joined into tongues (``shapes``), and closed at their tips
 (``ridges``). All that is printed of a tongue is solved for with integrations of its own at 1e-13; the patches only tell
 where to look.
 """
