@@ -15,10 +15,12 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import FEATURES, UNEVEN, feature
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import rounded_speed
 
 
 class Treatment(Enum):
@@ -65,6 +67,15 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
+def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
+    """What is said of pendulums where no speed is asked of: they are held as at the operating speed."""
+    if line.operation is None or line.operation.speed is None:
+        return ()
+    at = rounded_speed(line.operation.speed, speed_unit(line))
+    says = f"is held as at {at}, where the line operates; campbell_diagram has every speed"
+    return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
+
+
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} is dragged along by oil alone: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
 """What is said of the ring of a damper without a spring by what judges disturbances."""
@@ -100,6 +111,10 @@ _EVEN = {
 }
 _STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
 _NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
+PENDULUM = "centrifugal pendulum"
+_NO_SPEED = {PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated"}
+_OTHER_SPEEDS = {PENDULUM: "the square of the speed holds it, and equations here are of one speed"}
+_NO_PATH = {PENDULUM: "it swings along a path, which is not followed"}
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -155,7 +170,7 @@ _UNPROVABLE = {
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", SERIES, "slip clutch",
+            "quadratic load", SERIES, "slip clutch", PENDULUM,
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -193,6 +208,7 @@ _ONE_DRIVE = {
 _ANYWHERE = {DRAGGED: "its ring may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NO_PATH,
     **_NOT_SLIPPED,
     **_NOT_FOLLOWED,
     **_ANYWHERE,
@@ -205,6 +221,7 @@ _PASSING = {
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_NO_PATH,
     **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
@@ -217,7 +234,7 @@ _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no pha
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "angle of an ideal joint",
+        "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
@@ -234,9 +251,9 @@ _STEADY = "torques are those of steady running; ask periodic_response() or simul
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 ROWS: dict[str, Row] = {
-    "modes": _row(refused=_DRY_FRICTION, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
+    "modes": _row(refused={**_DRY_FRICTION, **_NO_SPEED}, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
     "resonances": _row(
-        refused=_DRY_FRICTION,
+        refused={**_DRY_FRICTION, **_NO_SPEED},
         said={
             "viscous load": "resonance speeds are those of the line without it",
             "quadratic load": "resonance speeds are those of the line without it",
@@ -252,7 +269,10 @@ ROWS: dict[str, Row] = {
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
     "multipliers": _row(
-        refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING}, set_aside=(DRAGGED,)
+        refused={**_BASE, **_OTHER_SPEEDS},
+        said=_SERIES,
+        inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
+        set_aside=(DRAGGED,),
     ),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
@@ -275,13 +295,17 @@ ROWS: dict[str, Row] = {
         },
         inert=_EVEN,
     ),
-    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
+    "derivatives": _row(refused={**_DRY_FRICTION, **_OTHER_SPEEDS}, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
     "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
     ),
     "turn": _row(
-        refused={**_TREES, "prescribed far end": "the output follows from the input"},
+        refused={
+            **_TREES,
+            PENDULUM: "it swings with the orders of the rotation, and a turn is quasi-static",
+            "prescribed far end": "the output follows from the input",
+        },
         said={
             "damping": _UNDAMPED_TURN,
             "loss factor": _UNDAMPED_TURN,
@@ -310,10 +334,10 @@ ROWS: dict[str, Row] = {
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
-    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED, **_NO_PATH}, said=_BY_PLACE, inert=_PASSIVE),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(
-        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
+        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_NO_PATH, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
     ),
     "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),

@@ -17,6 +17,7 @@ from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionE
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
@@ -30,6 +31,7 @@ from trunnion.driveline.tolerances import Tolerance
 
 __all__ = [
     "STARTERS",
+    "CentrifugalPendulum",
     "ConstantSpeed",
     "Differential",
     "Disk",

@@ -11,6 +11,7 @@ from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -29,6 +30,7 @@ KINDS: dict[str, type[Element]] = {
         Disk,
         ViscousDamper,
         TunedDamper,
+        CentrifugalPendulum,
         HookeJoint,
         IdealJoint,
         TripodJoint,

@@ -25,6 +25,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.quantities import (
     RATIO,
     Acceleration,
@@ -54,7 +55,9 @@ SHIP_SHAFTS = {
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
-_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt)
+_SPRING: tuple[type[Element], ...] = (
+    Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, CentrifugalPendulum, Belt,
+)  # fmt: skip
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),
     "vibratory_torque": (*_SPRING, GearPair),
