@@ -25,6 +25,7 @@ from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "SwitchedOff",
+    "TitleBlock",
     "Tolerance",
     "TransmissionError",
     "Belt",
