@@ -100,6 +100,7 @@ from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
+from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity

@@ -161,7 +161,7 @@ def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
 
 def _with_course(contents: SubmissionContents) -> list[Check]:
     """Checks of torque and stress that decide, the binding ones first."""
-    judged = [check for check in contents.seen.assessment.checks if check.decides and check.course is not None]
+    judged = [one for one in contents.seen.assessment.checks if one.decides and one.course and one.course.by_order.size]
     return judged[:MOST_CURVES]
 
 

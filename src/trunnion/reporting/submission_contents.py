@@ -68,10 +68,12 @@ class ShaftTorque:
 
 @dataclass(frozen=True)
 class Malfunction:
-    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range."""
+    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range; ``ended``: what ended
+    the search before it was done, "" where nothing did."""
 
     cylinder: str
     vibratory: tuple[Largest, ...]
+    ended: str
 
 
 @dataclass(frozen=True)
@@ -106,13 +108,18 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(seen.assembly, speeds))
     left_out += [f"Torques{case.suffix}: {case.answer}" for case in seen.subject.cases if case.response is None]
     cases = _searched(case for case in seen.subject.cases if case.response is not None)
+    powers = unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case)))
+    shafts = unless_refused("Torques of the shafts", lambda: _shafts(cases))
+    misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, cases, progress)))
+    left_out += [f"Torques{case.suffix}: searched in part, {why}" for case in cases for why in {*case.ended_by}]
+    left_out += [f"Misfire of {one.cylinder}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
     return SubmissionContents(
         seen=seen,
         campbell=campbell,
         holzer=tuple(holzer(seen.natural_frequencies, mode) for mode in _modes(seen, campbell)),
-        powers=unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case))) or (),
-        shafts=unless_refused("Torques of the shafts", lambda: _shafts(cases)) or (),
-        misfiring=unless_refused("Misfire", lambda: tuple(_misfiring(seen, cases, progress))) or (),
+        powers=powers or (),
+        shafts=shafts or (),
+        misfiring=misfiring or (),
         cases=cases,
         left_out=tuple(left_out),
     )
@@ -186,7 +193,8 @@ def _misfiring(
         called = f"cylinder {number} of {name}" if len(disk.firing_angles) > 1 else name
         failing = tuple(_with_misfire(case, name, number) for case in cases)
         springs = range(len(cases[0].answered.springs))
-        yield Malfunction(called, tuple(_largest(failing, "vibratory", s) for s in springs))
+        found = tuple(_largest(failing, "vibratory", s) for s in springs)
+        yield Malfunction(called, found, "; ".join({why: None for case in failing for why in case.ended_by}))
         if progress is not None:
             progress(done / len(cylinders))
 
