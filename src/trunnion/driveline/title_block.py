@@ -26,6 +26,9 @@ class TitleBlock(Record):
     revision : of the document, "A" say.
     plant : what the line belongs to: ship and yard number, vehicle, mill.
     author, checked_by, approved_by : names in the signature block; lines to sign on stay empty without them.
+
+    >>> TitleBlock(number="TV-2031", revision="B").revision
+    'B'
     """
 
     what: ClassVar[str] = "document"

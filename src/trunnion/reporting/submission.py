@@ -71,6 +71,14 @@ def submission(
     Raises
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> disk = tn.Disk(inertia=0.8, excitation=[{"order": 2, "amplitude": 10.0}])
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), disk])
+    >>> tn.submission(line, speed=30.0)
+    report to hand in on a driveline, 0.1 MB of HTML; .save(path) writes it
     """
     seen = line if isinstance(line, OverviewAssessment) else answer(judged(asked(line, speed=speed, unit=unit)))
     contents = gather(seen, progress)

@@ -68,8 +68,10 @@ class ShaftTorque:
 
 @dataclass(frozen=True)
 class Malfunction:
-    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range; ``ended``: what ended
-    the search before it was done, "" where nothing did."""
+    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range.
+
+    ended: what ended the search before it was done, "" where nothing did.
+    """
 
     cylinder: str
     vibratory: tuple[Largest, ...]
