@@ -42,7 +42,7 @@ class MeanPower:
 
 
 @dataclass(frozen=True)
-class Largest:
+class LargestTorque:
     """A largest value over range and load cases; its input speed [rad/s], its case, and what it may be low by."""
 
     value: float
@@ -59,10 +59,10 @@ class ShaftTorque:
     """
 
     spring: str
-    vibratory: Largest
-    peak: Largest
+    vibratory: LargestTorque
+    peak: LargestTorque
     stress: float
-    heat: Largest
+    heat: LargestTorque
     leading: str
 
 
@@ -74,7 +74,7 @@ class Malfunction:
     """
 
     cylinder: str
-    vibratory: tuple[Largest, ...]
+    vibratory: tuple[LargestTorque, ...]
     ended: str
 
 
@@ -170,18 +170,18 @@ def _shaft(cases: tuple[LoadCaseResponse, ...], spring: int, name: str) -> Shaft
         vibratory=vibratory,
         peak=_largest(cases, "peak", spring),
         stress=vibratory.value * float(leads.stress_factor[spring]),
-        heat=Largest(*max(heats)),
+        heat=LargestTorque(*max(heats)),
         leading=leads.leading(name)[0],
     )
 
 
-def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> Largest:
+def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> LargestTorque:
     """Of all cases; infinite where a steady state is missing."""
     tops = []
     for case in cases:
         (measure,) = torque_measures(case.assembly, ((word, spring),))
         found = case.largest(measure)
-        tops.append(Largest(found.value, float(case.speeds[found.at]), case.name, found.error))
+        tops.append(LargestTorque(found.value, float(case.speeds[found.at]), case.name, found.error))
     return max(tops, key=lambda top: top.value)
 
 
