@@ -32,6 +32,7 @@ from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
+from trunnion.driveline import SlipClutch as SlipClutch
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock

@@ -28,6 +28,7 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    SlipClutch,
     TunedDamper,
     ViscousDamper,
     deg,
@@ -72,6 +73,13 @@ COMPONENTS = [
     ),
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
+    SlipClutch(
+        torque="1200 N*m",
+        sliding_torque="900 N*m",
+        stribeck_speed="20 rpm",
+        clamping_times=["0 s", "300 ms"],
+        clamping_shares=[0.2, 1],
+    ),
 ]
 WITH_STAGES = [
     RzeppaJoint(

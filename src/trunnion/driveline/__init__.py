@@ -23,6 +23,7 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
@@ -58,6 +59,7 @@ __all__ = [
     "Belt",
     "Clutch",
     "Slider",
+    "SlipClutch",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

@@ -23,6 +23,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.title_block import TitleBlock
 
@@ -225,6 +226,11 @@ FEATURES = (
         "dry friction",
         ("Clutch.friction", "DualMassFlywheel.friction", "Slider.torque", "Slider.stiffness"),
         _dry_friction(False),
+    ),
+    Feature(
+        "slip clutch",
+        _of("SlipClutch", "torque", "sliding_torque", "stribeck_speed", "clamping_times", "clamping_shares"),
+        _kind(SlipClutch),
     ),
     Feature(
         "dry friction at one motion",

@@ -44,6 +44,14 @@ _RULES: dict[str, dict[str, Any]] = {
     "Clutch": {
         "dependentRequired": {"linear_amplitude": ["linear_frequency"], "linear_frequency": ["linear_amplitude"]}
     },
+    "SlipClutch": {
+        "dependentRequired": {
+            "sliding_torque": ["stribeck_speed"],
+            "stribeck_speed": ["sliding_torque"],
+            "clamping_times": ["clamping_shares"],
+            "clamping_shares": ["clamping_times"],
+        }
+    },
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
         "dependentRequired": {

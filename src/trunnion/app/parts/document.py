@@ -328,6 +328,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Shaft": {"stiffness": "12 kN*m/rad", "damping": "3 N*m*s/rad"},
     "Coupling": {"stiffness": "12 kN*m/rad", "relative_damping": 0.8},
     "Clutch": {"stiffnesses": ["800 N*m/rad"], "friction": [{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}]},
+    "SlipClutch": {"torque": "1200 N*m"},
     "Disk": {"inertia": "0.4 kg*m^2"},
     "HookeJoint": {"angle": "12 deg"},
     "IdealJoint": {"angle": "12 deg"},
