@@ -26,6 +26,7 @@ from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
@@ -60,6 +61,8 @@ __all__ = [
     "RzeppaJoint",
     "TripodJoint",
     "TunedDamper",
+    "Tyre",
+    "Vehicle",
     "ViscousDamper",
     "deg",
     "dump",

@@ -14,6 +14,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 KINDS: dict[str, type[Element]] = {
     kind.__name__: kind
@@ -37,5 +38,7 @@ KINDS: dict[str, type[Element]] = {
         GearPair,
         Planetary,
         Differential,
+        Tyre,
+        Vehicle,
     )
 }
