@@ -171,7 +171,10 @@ SLIP = TYRE.but(slip_stiffness=4e3, radius=0.1, travel_speed=8.0, inertia=0.01)
 
 def rolling(tyre: object = SIDE, **vehicle: float) -> Change:
     """A vehicle beside the hub."""
-    return beside_the_hub(tyre, tn.Vehicle(mass=8.0, wheel_radius=0.1, name="car", **vehicle))
+    return beside_the_hub(tyre, tn.Vehicle(**{"mass": 8.0, "wheel_radius": 0.1, "name": "car"} | vehicle))
+
+
+HEAVY = {"mass": 200.0, "wheel_radius": 0.02}
 
 
 def clutch(rubs: bool = False, **more: float) -> Change:
@@ -257,7 +260,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "tyre": (same, rolling(TYRE)),
     "slip of a tyre": (rolling(TYRE), rolling(SLIP)),
     "vehicle": (same, rolling()),
-    "rolling resistance": (rolling(), rolling(rolling_resistance=0.05, grade=0.5)),
+    "rolling resistance": (rolling(**HEAVY), rolling(**HEAVY, rolling_resistance=0.05, grade=2.0)),
     "air drag": (rolling(), rolling(drag_area=8.0)),
     "planetary set": (same, behind("hub", planetary())),
     "shafts tied to two others": (unbent, tied),

@@ -81,7 +81,7 @@ def test_a_car_against_equations_with_multipliers(slips: bool) -> None:
 
 
 def test_resistance_by_hand() -> None:
-    """Weight 15.69 kN: 0.012 of it, and its part along a road of 5 %; air at 25 m/s, ½ · 1.2 · 0.65 · 25² = 243.75 N."""
+    """0.012 of the weight, and its part along a road of 5 %; air at 25 m/s: ½ · 1.2 · 0.65 · 25² = 243.75 N."""
     resists = {"rolling_resistance": ROLLING, "drag_area": AREA, "grade": GRADE}
     line, alpha, wheels = car(False, **resists), np.arctan(GRADE), 25.0 / RADIUS
     weight = MASS * 9.80665

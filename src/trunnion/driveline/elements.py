@@ -179,7 +179,22 @@ class Loaded(Element):
 _ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
 
 
-class Disk(Loaded):
+class DiskInertia(Element):
+    """What a disk weighs: its fields stand before those of what acts on it."""
+
+    inertia: Maybe[Inertia] = optional(default=None, description="polar moment of inertia; or give the geometry")
+    outer_diameter: Maybe[Length] = optional(default=None, description="of the disk")
+    inner_diameter: Maybe[Length] = optional(default=None, description="of its bore; 0 by default")
+    thickness: Maybe[Length] = optional(default=None, description="of the disk")
+    material: str | None = Field(
+        default=None, json_schema_extra={"enum": list(MATERIALS)}, description='"steel", say, instead of the density'
+    )
+    density: Maybe[Density] = optional(default=None, description="of its material; steel 7850 kg/m^3")
+    mass: Maybe[Mass] = optional(default=None, description="of a vehicle on wheels, instead of an inertia")
+    radius: Maybe[Length] = optional(default=None, description="rolling radius of the wheels that move the mass")
+
+
+class Disk(Loaded, DiskInertia):
     """A rigid inertia: flywheel, flange, gear, roll, wheel.
 
     Parameters
@@ -197,16 +212,6 @@ class Disk(Loaded):
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
 
-    inertia: Maybe[Inertia] = optional(default=None, description="polar moment of inertia; or give the geometry")
-    outer_diameter: Maybe[Length] = optional(default=None, description="of the disk")
-    inner_diameter: Maybe[Length] = optional(default=None, description="of its bore; 0 by default")
-    thickness: Maybe[Length] = optional(default=None, description="of the disk")
-    material: str | None = Field(
-        default=None, json_schema_extra={"enum": list(MATERIALS)}, description='"steel", say, instead of the density'
-    )
-    density: Maybe[Density] = optional(default=None, description="of its material; steel 7850 kg/m^3")
-    mass: Maybe[Mass] = optional(default=None, description="of a vehicle on wheels, instead of an inertia")
-    radius: Maybe[Length] = optional(default=None, description="rolling radius of the wheels that move the mass")
     firing_angles: Annotated[Several[Angle], BeforeValidator(_ANGLES)] = optional(
         default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
     )

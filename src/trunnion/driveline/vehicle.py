@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Loaded, not_negative, positive
+from trunnion.driveline.elements import Doubt, Element, Loaded, not_negative, positive
 from trunnion.driveline.parts import Dragged, Heavy, Numbers, Part, Sprung
 from trunnion.driveline.quantities import (
     Area,
@@ -118,7 +118,19 @@ class Tyre(Elastic):
         return (walls, (0.0, number("slip_stiffness") * number("radius") ** 2 / number("travel_speed")))
 
 
-class Vehicle(Loaded):
+class VehicleMass(Element):
+    """What a vehicle weighs and what resists it: its fields stand before those of what else acts on it."""
+
+    mass: Mass = Field(description="with its load")
+    wheel_radius: Length = Field(description="rolling radius of the driven wheels")
+    wheel_inertia: Inertia = optional(default=0.0, description="of the wheels that roll along undriven")
+    rolling_resistance: Dimensionless = optional(default=0.0, description="force over weight")
+    grade: Dimensionless = optional(default=0.0, description="tangent of the road's slope, uphill")
+    drag_area: Area = optional(default=0.0, description="drag coefficient times frontal area")
+    air_density: Density = optional(default=1.2, description="of the air it drives through")
+
+
+class Vehicle(Loaded, VehicleMass):
     """The mass that driven wheels move, as the inertia that they feel: J = m r² and the wheels that are not driven.
 
     Its resistance is (f m g cos α + m g sin α) r, and ½ ρ c_w A r³ by the square of the wheels' speed (Mitschke,
@@ -143,14 +155,6 @@ class Vehicle(Loaded):
     """
 
     example: ClassVar[str] = 'mass = "1600 kg" and wheel_radius = "0.31 m"'
-
-    mass: Mass = Field(description="with its load")
-    wheel_radius: Length = Field(description="rolling radius of the driven wheels")
-    wheel_inertia: Inertia = optional(default=0.0, description="of the wheels that roll along undriven")
-    rolling_resistance: Dimensionless = optional(default=0.0, description="force over weight")
-    grade: Dimensionless = optional(default=0.0, description="tangent of the road's slope, uphill")
-    drag_area: Area = optional(default=0.0, description="drag coefficient times frontal area")
-    air_density: Density = optional(default=1.2, description="of the air it drives through")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
