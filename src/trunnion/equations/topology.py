@@ -153,15 +153,19 @@ class Topology:
     def loose(self) -> Array:
         """Rotations (n, k), as columns, that no spring of the aligned line resists: the ``rigid`` ones, and those of
         what hangs on each of the ``dragged`` links."""
-        if self.graph:
-            sprung = np.delete(self.elongations, self.dragged, axis=0)
-            return _fixed(np.hstack([self.rigid, _null_space(np.vstack([sprung, self.rigid.T]))]))
         dragged = np.zeros((self.size, len(self.dragged)))
         for k, e in enumerate(self.dragged):
             unknowns = np.unique([u for u in self.unknown_of[self.stations_behind[e]] if u >= 0])
             own = self.mean_speeds[self.reference[self.compliances[e].far_group]]
             dragged[unknowns, k] = self.mean_speeds[self.firsts][unknowns] / own
-        return _fixed(np.hstack([self.rigid, dragged]))
+        if not self.graph:
+            return _fixed(np.hstack([self.rigid, dragged]))
+        # What hangs on a link may be held by springs elsewhere, and several of them may let go of more together.
+        sprung = np.delete(self.elongations, self.dragged, axis=0)
+        alone = np.array([self.compliances[e].far is None for e in self.dragged], dtype=bool)
+        alone &= np.abs(sprung @ dragged).max(axis=0, initial=0.0) < RANK
+        found = np.hstack([self.rigid, dragged[:, alone]])
+        return _fixed(np.hstack([found, _null_space(np.vstack([sprung, found.T]))]))
 
     @property
     def still(self) -> int:
@@ -290,7 +294,7 @@ class Topology:
     def stations_behind(self) -> tuple[Places, ...]:
         """Per compliance all stations that it drives: those of its far group and of every group behind that."""
         behind = [[s for s, one in enumerate(self.stations) if one.group == c.far_group] for c in self.compliances]
-        into = {c.far_group: e for e, c in enumerate(self.compliances)}
+        into = {c.far_group: e for e, c in enumerate(self.compliances) if c.far is None}
         for e in range(len(self.compliances) - 1, -1, -1):
             before = into.get(self.group_of(self.compliances[e].near))
             if before is not None:
