@@ -320,6 +320,7 @@ NOT_ANALYSES = {
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",
+    "submission": "shows the analyses above as a document to sign",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",
     "exact_oscillator": "one spring with stages between two inertias as one equation; refuses every other line",

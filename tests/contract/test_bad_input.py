@@ -25,6 +25,7 @@ from trunnion.driveline import (
     Schedule,
     Shaft,
     SwitchedOff,
+    TitleBlock,
     Tolerance,
     TunedDamper,
     Tyre,
@@ -784,6 +785,9 @@ PYTHON = [
     ),
     # operation
     (lambda: Operation(speed=0), "operation.speed = 0: must be positive", "at rest"),
+    (lambda: line(document="TV-1"), "driveline.document = 'TV-1': is not a TitleBlock", "tn.TitleBlock("),
+    (lambda: TitleBlock(numbr="TV-1"), "document.numbr = 'TV-1': unknown key", 'did you mean "number"?'),
+    (lambda: TitleBlock(revision=2), "document.revision = 2: is not a name", "one line of text"),
     (lambda: Operation(sped=1), "operation.sped = 1: unknown key", 'did you mean "speed"?'),
     (lambda: Operation(speed_unit="RPM"), "operation.speed_unit = 'RPM': is not a speed unit", '"rpm"'),
     (

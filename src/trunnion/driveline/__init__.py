@@ -25,6 +25,7 @@ from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
@@ -52,6 +53,7 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "SwitchedOff",
+    "TitleBlock",
     "Tolerance",
     "TransmissionError",
     "Belt",

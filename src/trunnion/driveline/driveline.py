@@ -21,6 +21,7 @@ from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
 from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError, InputRemark
@@ -38,6 +39,7 @@ class Driveline(ElementChain):
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
+    document : title block of the report that is handed in.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class Driveline(ElementChain):
     operation: Operation | None = None
     limits: Limits = ()
     tolerances: Tolerances = ()
+    document: TitleBlock | None = None
 
     def __init__(
         self,
@@ -67,6 +70,7 @@ class Driveline(ElementChain):
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
+        document: TitleBlock | None = None,
     ) -> None:
         data: dict[str, Any] = {
             "elements": checked(elements),
@@ -77,6 +81,7 @@ class Driveline(ElementChain):
             "operation": operation,
             "limits": limits,
             "tolerances": tolerances,
+            "document": document,
         }
         super().__init__(**data)
         if self.damping_ratio is not None and self.damping_ratio < 0:
@@ -90,6 +95,13 @@ class Driveline(ElementChain):
     def _is_operation(cls, value: object) -> object:
         if value is not None and not isinstance(value, Operation):
             raise InputError("is not an Operation", remedy='write tn.Operation(speed="1500 rpm"), say')
+        return value
+
+    @field_validator("document", mode="before")
+    @classmethod
+    def _is_document(cls, value: object) -> object:
+        if value is not None and not isinstance(value, TitleBlock):
+            raise InputError("is not a TitleBlock", remedy='write tn.TitleBlock(number="TV-2031", revision="B"), say')
         return value
 
     @model_validator(mode="after")

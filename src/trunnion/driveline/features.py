@@ -24,7 +24,11 @@ from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
+<<<<<<< HEAD
 from trunnion.driveline.vehicle import Tyre, Vehicle
+=======
+from trunnion.driveline.title_block import TitleBlock
+>>>>>>> main
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -291,8 +295,10 @@ NOT_FEATURES = {
     "Driveline.name": "a label",
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",

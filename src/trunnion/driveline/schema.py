@@ -17,6 +17,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
@@ -100,6 +101,7 @@ def json_schema() -> dict[str, Any]:
                 **json_schema_of(FREQUENCY),
                 "description": "frequency at which damping_ratio holds; default: the lowest elastic mode",
             },
+            "document": {"$ref": "#/$defs/TitleBlock"},
             "operation": {"$ref": "#/$defs/Operation"},
             "limit": {
                 "type": "array",
@@ -126,6 +128,7 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **definitions,
+            "TitleBlock": _model(TitleBlock),
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),
