@@ -24,11 +24,8 @@ from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
-<<<<<<< HEAD
-from trunnion.driveline.vehicle import Tyre, Vehicle
-=======
 from trunnion.driveline.title_block import TitleBlock
->>>>>>> main
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 Finder = Callable[[Driveline], list[str]]
 
