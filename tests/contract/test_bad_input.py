@@ -27,8 +27,11 @@ from trunnion.driveline import (
     Shaft,
     SlipClutch,
     SwitchedOff,
+    TitleBlock,
     Tolerance,
     TunedDamper,
+    Tyre,
+    Vehicle,
     ViscousDamper,
     dump,
     load,
@@ -652,6 +655,29 @@ PYTHON = [
         "SlipClutch.clamping_shares = [-0.1]: must not be negative",
         "write 0 for an open clutch",
     ),
+    (lambda: Vehicle(mass=900), "Vehicle.wheel_radius: is missing", ""),
+    (lambda: Vehicle(mass=900, wheel_radius=0), "Vehicle.wheel_radius = 0: must be positive", '"76 mm"'),
+    (
+        lambda: Vehicle(mass=900, wheel_radius=1, grade=-0.1),
+        "Vehicle.grade = -0.1: must not be negative",
+        "load_torque",
+    ),
+    (lambda: Vehicle(mass=900, wheel_radius=1, drag_area="2 m"), "Vehicle.drag_area = '2 m'", "m^2"),
+    (lambda: Tyre(stiffness=0), "Tyre.stiffness = 0: must be positive", "write for example"),
+    (lambda: Tyre(stiffness=1, radius=0.3), "Tyre.slip_stiffness: is missing beside radius", "needs slip_stiffness"),
+    (lambda: line(Vehicle(mass=9, wheel_radius=1, name="car")), "car: has no wheels", "behind a Tyre"),
+    (
+        lambda: line(Disk(inertia=1), Tyre(stiffness=1, name="tyre"), Disk(inertia=1)),
+        "tyre: carries no vehicle",
+        "put a Vehicle behind it",
+    ),
+    (
+        lambda: line(
+            Disk(inertia=1, name="hub"), Shaft(stiffness=1), Disk(inertia=1), Tyre(stiffness=1, name="tyre", to="hub")
+        ),
+        "tyre.to = 'hub': is no Vehicle",
+        "name a Vehicle",
+    ),
     (lambda: belt(radius_in=0), "Belt.radius_in = 0: must be positive", '"76 mm"'),
     (lambda: belt(radius_out=-0.1), "Belt.radius_out = -0.1: must be positive", '"76 mm"'),
     (lambda: belt(span_stiffness=0), "Belt.span_stiffness = 0: must be positive", "write for example"),
@@ -802,6 +828,9 @@ PYTHON = [
     ),
     # operation
     (lambda: Operation(speed=0), "operation.speed = 0: must be positive", "at rest"),
+    (lambda: line(document="TV-1"), "driveline.document = 'TV-1': is not a TitleBlock", "tn.TitleBlock("),
+    (lambda: TitleBlock(numbr="TV-1"), "document.numbr = 'TV-1': unknown key", 'did you mean "number"?'),
+    (lambda: TitleBlock(revision=2), "document.revision = 2: is not a name", "one line of text"),
     (lambda: Operation(sped=1), "operation.sped = 1: unknown key", 'did you mean "speed"?'),
     (lambda: Operation(speed_unit="RPM"), "operation.speed_unit = 'RPM': is not a speed unit", '"rpm"'),
     (

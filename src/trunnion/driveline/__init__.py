@@ -27,7 +27,9 @@ from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
@@ -54,6 +56,7 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "SwitchedOff",
+    "TitleBlock",
     "Tolerance",
     "TransmissionError",
     "Belt",
@@ -64,6 +67,8 @@ __all__ = [
     "RzeppaJoint",
     "TripodJoint",
     "TunedDamper",
+    "Tyre",
+    "Vehicle",
     "ViscousDamper",
     "deg",
     "dump",
