@@ -50,9 +50,11 @@ from trunnion.motion.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.motion.chaos.lyapunov_spectrum import FEWEST, FIRST, LyapunovSpectrum, lyapunov_spectrum, shear_bound
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.numerics.integration.integration import IntegrationEnd
-from trunnion.results.declared import DatasetItem, Result, data_attribute, data_attributes
 from trunnion.results.drawing import Figure, drawing
+from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.shooting.repetition import modulo
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -172,42 +174,34 @@ class Witness:
     reasons: tuple[str, ...]
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ChaosCertificate(Result):
-    """A verdict with its evidence.
+    """A verdict with its evidence: the exponents, the map, the 0–1 test and the sweep."""
 
-    verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion, "at rest on an unstable equilibrium"
-    of an undecided one; repeat: forcing periods, or returns
-    to the section, after which a periodic motion closes, and period [s], its time; reasons: one sentence each;
-    criteria (37)–(39); spectrum, map, zero_one, sweep (or None): the evidence.
-    """
+    system: System = internal("that was judged")
+    verdict: ChaosVerdict = attribute()
+    kind: str = attribute(
+        '"periodic", "quasi-periodic" or "at rest" of a regular motion, "at rest on an unstable equilibrium" of an '
+        "undecided one"
+    )
+    repeat: int = attribute("forcing periods, or returns to the section, after which a periodic motion closes")
+    period: float = internal("time after which it closes, NaN of another", "s")
+    reasons: tuple[str, ...] = internal("one sentence each")
+    criteria: tuple[Criterion, ...] = internal("(37) to (39)")
+    spectrum: LyapunovSpectrum = internal("the exponents")
+    map: PoincareMap | None = internal("of the motion")
+    zero_one: ZeroOne | None = internal("the 0–1 test of its points")
+    sweep: LyapunovSweep | None = internal("exponents over a parameter")
 
-    system: System
-    verdict: ChaosVerdict
-    kind: str
-    repeat: int
-    period: float
-    reasons: tuple[str, ...]
-    criteria: tuple[Criterion, ...]
-    spectrum: LyapunovSpectrum
-    map: PoincareMap | None
-    zero_one: ZeroOne | None
-    sweep: LyapunovSweep | None
-
-    def declared(self) -> Iterator[DatasetItem]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """The exponents, with the verdict and its reasons."""
         yield from self.spectrum.declared()
-        yield from data_attributes(
-            verdict=str(self.verdict),
-            kind=self.kind,
-            repeat=self.repeat,
-            reasons="\n".join(self.reasons),
-            criteria="\n".join(map(str, self.criteria)),
-        )
+        yield from super().declared()
+        yield from attributes(reasons="\n".join(self.reasons), criteria="\n".join(map(str, self.criteria)))
         if self.zero_one is not None:
-            yield data_attribute("zero_one_test", self.zero_one.k)
+            yield Attribute("zero_one_test", self.zero_one.k)
         if np.isfinite(self.period):
-            yield data_attribute("period", self.period)
+            yield Attribute("period", self.period)
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""

@@ -31,10 +31,10 @@ from trunnion.motion.simulation.simulate import prolonged, simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.motion.simulation.strongest_order import StrongestOrder, strongest_order
 from trunnion.results.counts import few
-from trunnion.results.declared import DatasetItem, data_attributes
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_span, about_speed, frequency_unit, rounded_speed
 from trunnion.results.units import order_words
+from trunnion.results.variables import Attribute, attributes
 from trunnion.waiting import time_is_up
 
 WANDERS = 0.02
@@ -132,19 +132,19 @@ class RunUpEnding:
         """Whether the line reached the last speed when it was asked for, and hung nowhere."""
         return self.kind == "reached" and self.time <= self.scheduled and self.hanging is None
 
-    def declared(self) -> Iterator[DatasetItem]:
+    def declared(self) -> Iterator[Attribute]:
         """When, how fast, and where it hung."""
-        yield from data_attributes(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
+        yield from attributes(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
         if self.hanging is not None:
             hung = self.hanging
-            yield from data_attributes(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
-            yield from data_attributes(drive_torque=self.drive, load_torque=self.load)
+            yield from attributes(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
+            yield from attributes(drive_torque=self.drive, load_torque=self.load)
         if self.slip is not None:
-            yield from data_attributes(
+            yield from attributes(
                 slipped=self.slip.clutch, slipped_turns=self.slip.turns, slipped_speed=self.slip.speed
             )
         if self.hanging is not None and self.strongest is not None:
-            yield from data_attributes(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
+            yield from attributes(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
 
     def outcome(self, failed: Outcome, unit: str) -> Outcome:
         """The outcome, speeds in ``unit``; ``failed`` is the integration's, which counts where it did not get
