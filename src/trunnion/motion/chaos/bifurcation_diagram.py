@@ -75,10 +75,10 @@ class BifurcationDiagram(Result):
         ]
         for direction, repeat, settling in zip(self.directions, self.repeat, self.settling, strict=True):
             counts = {int(k): int(np.sum(repeat == k)) for k in np.unique(repeat[repeat > 0])}
-            told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
-            told = f"{told or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
+            known = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
+            known = f"{known or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
             late = f"; {int(np.sum(settling))} still settle: raise transient" if settling.any() else ""
-            rows.append(f"  {direction}: {told}{late}")
+            rows.append(f"  {direction}: {known}{late}")
         return "\n".join([*rows, f"  {self.outcome}"])
 
 
@@ -145,7 +145,7 @@ def bifurcation_diagram(
     found = np.full((len(directions), len(chosen), points, system.size), np.nan)
     repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
     settling = np.zeros(repeat.shape, dtype=bool)
-    told: list[str] = []
+    failed: list[str] = []
     shown: PoincareMap | None = None
     for d, direction in enumerate(directions):
         state = first
@@ -155,15 +155,16 @@ def bifurcation_diagram(
             mapped = poincare_map(here, points, section=section, start=state, transient=transient, tolerance=tolerance)
             report_progress((d + (done + 1) / len(chosen)) / len(directions))
             if not mapped.outcome.ok:
-                told.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
+                failed.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
                 state = first
                 continue
             shown = mapped
             found[d, i], repeat[d, i], settling[d, i] = mapped.wrapped, mapped.repeat, mapped.settling
             state = mapped.points[-1]
     outcome = Outcome(True, "reached", "every value was reached")
-    if told:
-        outcome = Outcome(False, "failed in part", f"{len(told)} of {repeat.size} values failed, the first {told[0]}")
+    if failed:
+        sentence = f"{len(failed)} of {repeat.size} values failed, the first {failed[0]}"
+        outcome = Outcome(False, "failed in part", sentence)
     words = shown.section if shown else ""
     return BifurcationDiagram(
         system,

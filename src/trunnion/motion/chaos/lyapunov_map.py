@@ -191,13 +191,13 @@ def lyapunov_sweep(
     chosen = values_of(system, parameter, values)
     count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)
     points = [{parameter: float(v)} for v in chosen]
-    mean, width, told = _all(
+    mean, width, failed = _all(
         system, points, count, periods, transient, start, interval, tolerance, _threads(threads), progress
     )
     order = np.argsort(-mean, axis=1, kind="stable")
     mean, width = np.take_along_axis(mean, order, 1), np.take_along_axis(width, order, 1)
     return LyapunovSweep(
-        system, parameter, chosen, mean, width, periods, transient, tolerance, _told(told, len(chosen))
+        system, parameter, chosen, mean, width, periods, transient, tolerance, _failed_in_part(failed, len(chosen))
     )
 
 
@@ -252,11 +252,11 @@ def lyapunov_map(
     require_memory(needed, key="x, y", value=f"{len(columns)} x {len(rows)}", remedy="ask for fewer values")
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     used = _threads(threads)
-    mean, width, told = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
+    mean, width, failed = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
     shape = (len(rows), len(columns))
     return LyapunovMap(
         system, (x[0], y[0]), columns, rows, mean.reshape(shape), width.reshape(shape), periods, transient, tolerance,
-        used, _told(told, len(points)),
+        used, _failed_in_part(failed, len(points)),
     )  # fmt: skip
 
 
@@ -268,7 +268,7 @@ def _all(
     whole_number("transient", transient, 0)
     state = first_starts(system, start, 1)[0]
     mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
-    told: list[str] = []
+    failed: list[str] = []
     report_progress = progress or (lambda share: None)
 
     def one(place: int) -> None:
@@ -279,7 +279,7 @@ def _all(
         if found.end is IntegrationEnd.REACHED:
             found = motion.run(periods)
         if found.end is not IntegrationEnd.REACHED:
-            told.append(str(points[place]))
+            failed.append(str(points[place]))
             return
         result, bound = average(found.growth / length), shear_bound(periods, length)
         mean[place], width[place] = result.mean, result.half_width
@@ -294,7 +294,7 @@ def _all(
                 report_progress(done / len(points))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-    return mean, width, told
+    return mean, width, failed
 
 
 def _threads(threads: int | None) -> int:
@@ -303,9 +303,8 @@ def _threads(threads: int | None) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _told(told: list[str], total: int) -> Outcome:
-    if not told:
+def _failed_in_part(failed: list[str], total: int) -> Outcome:
+    if not failed:
         return Outcome(True, "reached", "every point was reached")
-    return Outcome(
-        False, "failed in part", f"at {len(told)} of {total} points the motion did not reach its end, first {told[0]}"
-    )
+    sentence = f"at {len(failed)} of {total} points the motion did not reach its end, first {failed[0]}"
+    return Outcome(False, "failed in part", sentence)

@@ -63,8 +63,8 @@ SLOW = 1e-3
 """Growth per sample below which all exponents count as this large when widths are compared to them."""
 LEFT_OUT = 10
 """The default effort leaves out one in so many samples at the beginning, besides the transient."""
-TOLD = 2048
-"""Samples after which the share done is told."""
+REPORTED = 2048
+"""Samples after which the share done is reported."""
 MOST = 10_000_000
 """Samples that fit into memory."""
 DWARFED, MISSED = 10.0, 0.01
@@ -364,8 +364,8 @@ def _carry_on(motion: Motion, run: Run, samples: int, traced: bool) -> Run:
 
 
 def _parts(samples: int) -> list[int]:
-    """Samples in parts, between which the share done is told."""
-    return [min(TOLD, samples - i) for i in range(0, samples, TOLD)]
+    """Samples in parts, between which the share done is reported."""
+    return [min(REPORTED, samples - i) for i in range(0, samples, REPORTED)]
 
 
 def _later(run: Run, first: int) -> Run:

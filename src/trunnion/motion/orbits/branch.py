@@ -220,12 +220,12 @@ def follow_both_ways(
     curves: list[SolutionCurve] = []
     ways = [(d, end) for d, end in ((-1.0, low), (1.0, high)) if (end - begin) * d > 0]
     for i, (direction, end) in enumerate(ways):
-        told = _part(report_progress, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
+        report = _part(report_progress, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
         curves.append(
             follow(
                 problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
                 first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
-                tolerance=tolerance, on_point=_watched(stop, told, begin, end),
+                tolerance=tolerance, on_point=_watched(stop, report, begin, end),
             )
         )  # fmt: skip
         if curves[-1].ending is Ending.STOPPED:
@@ -253,7 +253,7 @@ def _part(report_progress: Progress, first: float, last: float) -> Progress:
 def _watched(
     stop: Callable[[CurvePoint], bool] | None, report_progress: Progress, begin: float, end: float
 ) -> Callable[[CurvePoint], bool]:
-    """``stop``, telling of every point how far the curve has come; it turns back at folds, what is told does not."""
+    """``stop``, telling of every point how far the curve has come, which only rises where it turns back."""
     farthest = 0.0
 
     def on_point(point: CurvePoint) -> bool:
@@ -322,8 +322,8 @@ def _special_points(
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
             ends, alike = (test(values[i]), test(values[i + 1])), len(values[i]) == len(values[i + 1])
-            told = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
-            if not told or (kind == "branch point" and i in folds):
+            crosses = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
+            if not crosses or (kind == "branch point" and i in folds):
                 continue
             met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
             if met is not None and (kind != "Neimark–Sacker" or _on_circle(problem.multipliers(met))):

@@ -413,7 +413,7 @@ def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settl
 
 
 def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
-    """The motion near ``start`` (2m,). Which sliders stick is told by the motion once it has settled, and again by
+    """The motion near ``start`` (2m,). Which sliders stick shows in the motion once it has settled, and again by
     every motion that closes."""
     begin, fixed = start[place.kept], tuple[int, ...]()
     if place.sliders:

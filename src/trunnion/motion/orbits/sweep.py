@@ -229,10 +229,10 @@ class LineSweep(Described, TorqueRange, Sweep):
             rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
         for row in zip(*self.contacts, strict=True):
             kinds = [contact.contact for contact in row]
-            told = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
+            counts = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
             worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
             impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
-            rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
+            rows.append(f"  contact of {row[0].spring}: {counts}{impact if row[worst].impacts else ''}")
         return "\n".join([self._head(self.line.name, "steps", unit), *rows, f"  {self._jumps(unit)}; {self.outcome}"])
 
 

@@ -315,11 +315,11 @@ def _followed(
         if _stopped(run.whole, schedule, begun.end) or not len(speeds):
             return run, "stalled"
         gain, left = schedule.sense * _gain(times, speeds), schedule.sense * (schedule.last - float(speeds[-1]))
-        held = run.end - schedule.duration
-        watched = held >= WANDERING * schedule.duration and held * float(speeds.mean()) >= WANDERING_TURNS * TURN
+        since = run.end - schedule.duration
+        watched = since >= WANDERING * schedule.duration and since * float(speeds.mean()) >= WANDERING_TURNS * TURN
         if left > PATIENCE * schedule.duration * gain and (watched or not wanders(speeds)):
             return run, "hanging"
-        if held > PATIENCE * schedule.duration + 2 * span and watched:
+        if since > PATIENCE * schedule.duration + 2 * span and watched:
             return run, "undecided"
         span *= 2
 
@@ -368,9 +368,9 @@ def _ending(kind: str, run: LineSimulation, schedule: SpeedSchedule, drive: floa
     times, speeds = mean_speeds(run.whole, 0.0)
     hanging = longest_hanging(times, speeds, schedule)
     if kind == "captured":
-        held = times >= schedule.duration
+        behind = times >= schedule.duration
         since = hanging.since if hanging else schedule.duration
-        hanging = SpeedCapture(since, run.end, float(speeds[held].mean()), *_range(speeds[held]))
+        hanging = SpeedCapture(since, run.end, float(speeds[behind].mean()), *_range(speeds[behind]))
     at = hanging.speed if hanging and kind == "captured" else max(speed, 0.0)
     column = assembly.packed.column
     last, load = (float(load_at_input(assembly.topology, column, assembly.table(1, w))[0]) for w in (schedule.last, at))

@@ -1,7 +1,7 @@
 """``run_up``: passage through resonance at constant acceleration, against the steady response.
 
 A line that passes a resonance quickly never reaches its steady amplitude; one that passes slowly does, and one
-that is accelerated briskly is twisted by its own inertia. The torque is therefore told apart: what the loads and the
+that is accelerated briskly is twisted by its own inertia. The torque is therefore divided: what the loads and the
 inertia behind a shaft ask for at each speed and acceleration (quasi-static), and what vibrates about that.
 
 The acceleration is that of the drive. Where a line is free–free, nothing turns at a prescribed speed: its disks with a
@@ -413,8 +413,8 @@ def _quasi_static(assembly: Assembly, asked: SpeedSchedule, own: _FreeInputSpeed
 
     def torque(times: Array) -> Array:
         speed, rate = (asked.profile.at(times), asked.rate(times)) if own is None else own.at(times)
-        held = np.stack([np.interp(speed, speeds, column) for column in static.T], axis=1)
-        return held + rate[:, None] * inertia
+        loads = np.stack([np.interp(speed, speeds, column) for column in static.T], axis=1)
+        return loads + rate[:, None] * inertia
 
     return torque
 

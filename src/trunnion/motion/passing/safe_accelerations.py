@@ -76,7 +76,7 @@ class SafeAccelerations(Described):
 
     @property
     def stretch(self) -> tuple[TrialRunUp, ...]:
-        """The quietest safe run, and its neighbours up to the next one on each side that is not safe; empty without."""
+        """The safe run with the least torque and its neighbours, up to one on each side that is not safe; or empty."""
         safe = [i for i, one in enumerate(self.trials) if one.safe]
         if not safe:
             return ()
@@ -117,7 +117,7 @@ class SafeAccelerations(Described):
         if reaching:
             best = min(reaching, key=lambda one: one.share)
             at = show_acceleration(best.acceleration, unit)
-            words.append(f"the quietest that reaches {last}, {at}, comes to {best.share:.3g} of the limit")
+            words.append(f"the best that reaches {last}, {at}, comes to {best.share:.3g} of the limit")
         return "; ".join([*words, *self._ended(unit)])
 
     def _safe(self, last: str, unit: str) -> str:

@@ -198,23 +198,23 @@ class SlowFlow(ABC):
         top = abs(o.force) / (o.damping * low)
         sizes = np.geomspace(1e-6 * top, CEILING * top, points)
         pairs = [self.frequencies(float(a)) for a in sizes]
-        held = [i for i, pair in enumerate(pairs) if pair is not None]
-        if not held:
+        reached = [i for i, pair in enumerate(pairs) if pair is not None]
+        if not reached:
             return ApproximateResponse(
                 self.method, np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool), self.note,
                 Outcome(False, "nothing", "no amplitude is held by any frequency of the range; widen it"),
             )  # fmt: skip
         # The tip, where both frequencies meet, belongs to the curve.
-        last = held[-1]
+        last = reached[-1]
         if last + 1 < len(sizes):
             inside, outside = float(sizes[last]), float(sizes[last + 1])
             for _ in range(60):
                 middle = 0.5 * (inside + outside)
                 inside, outside = (middle, outside) if self.frequencies(middle) is not None else (inside, middle)
             near = inside * (1 - np.geomspace(0.05, 1e-12, 60))
-            sizes = np.append(sizes[held], near[near > sizes[last]])
+            sizes = np.append(sizes[reached], near[near > sizes[last]])
         else:
-            sizes = sizes[held]
+            sizes = sizes[reached]
         both = np.array([self.frequencies(float(a)) or (np.nan, np.nan) for a in sizes])
         curve = np.stack([np.append(both[:, 0], both[::-1, 1]), np.append(sizes, sizes[::-1])], axis=1)
         kept = _parted(curve[np.isfinite(curve[:, 0])], low, high)
