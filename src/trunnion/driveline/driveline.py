@@ -11,6 +11,7 @@ from pydantic import field_validator, model_validator
 
 from trunnion.driveline.addressed import wrong_addresses
 from trunnion.driveline.chain import ElementChain, checked, wrong_places
+from trunnion.driveline.composite import Composite
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
@@ -30,7 +31,8 @@ class Driveline(ElementChain):
 
     Parameters
     ----------
-    elements : from the input to the output.
+    elements : from the input to the output. An ``Engine`` becomes its throws, "engine.throw 1" and so on, which
+        analyses, parameters and limits name; ``as_stated`` has it as it was given, ``within`` its throws alone.
     name, description : for titles and reports.
     damping_ratio : one damping ratio for the whole line instead of damping in the shafts.
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
@@ -125,19 +127,43 @@ class Driveline(ElementChain):
 
         Nothing is checked until all are changed.
         """
+        composites = {name: one for name, one in self.as_stated.parts if isinstance(one, Composite)}
+        if own_changes := {name: fields for name, fields in changes.items() if name in composites}:
+            whole = [_changed(one, name, own_changes.get(name, {})) for name, one in self.as_stated.parts]
+            rest = {name: fields for name, fields in changes.items() if name not in composites}
+            changed = self.but(elements=whole, **({} if rest else own))
+            return changed.replace_all(rest, **own) if rest else changed
         elements = list(self.elements)
         for name, fields in changes.items():
             place = self.index(name)
-            try:
-                elements[place] = elements[place].but(**fields)
-            except InputError as error:
-                raise about(error, name) from None
+            elements[place] = _changed(elements[place], name, fields)
         return self.but(elements=elements, **own)
+
+    def within(self, name: str) -> Driveline:
+        """What the engine called ``name`` is made of, as a line by itself: its throws and the shafts between them.
+
+        ``natural_frequencies(line.within("engine"))``
+        """
+        found = [one for one in self.elements if one.part_of is not None and one.part_of[0] == name]
+        if not found:
+            known = [n for n, one in self.as_stated.parts if isinstance(one, Composite)]
+            remedy = nearest(name, known) if known else "only an Engine is made of several elements"
+            raise InputError("is made of no other elements", key=str(name), remedy=remedy)
+        alone = [type(one)(**{**one.stated, "after": None}) for one in found[:1]]
+        return Driveline([*alone, *(type(one)(**one.stated) for one in found[1:])], name=name)
 
     def __repr__(self) -> str:
         return summary(self)
 
     __str__ = __repr__
+
+
+def _changed(element: Element, name: str, fields: Mapping[str, Any]) -> Element:
+    """An element with ``fields`` changed; complaints say its ``name``."""
+    try:
+        return element.but(**fields) if fields else element
+    except InputError as error:
+        raise about(error, name) from None
 
 
 _SPRINGS = (SpringElement, PiecewiseShaft, GearPair)

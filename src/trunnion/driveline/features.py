@@ -15,6 +15,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
@@ -248,6 +249,14 @@ FEATURES = (
         _excited(lambda one: one.varies),
     ),
     Feature("cylinders", ("Disk.firing_angles", "Disk.misfiring")),
+    Feature(
+        "engine",
+        (
+            *(f"Engine.{key}" for key in Engine.model_fields if key not in Element.model_fields),
+            *(f"PressureCurve.{key}" for key in ("angles", "pressures")),
+        ),
+        lambda line: [name for name, one in line.as_stated.parts if isinstance(one, Engine)],
+    ),
     Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited(lambda one: not one.order)),
     Feature("excitation by order and frequency", (), _excited(lambda one: one.order and one.frequency)),
     Feature(HELD, (), lambda line: [f"{name}.excitation" for name in prescribed_excitations(line)]),
@@ -263,6 +272,7 @@ FEATURES = (
 
 NOT_FEATURES = {
     "Element.name": "a label",
+    "PressureCurve.load": "a label",
     "Shaft.tensile_strength": "a rating, which checks compare with",
     **dict.fromkeys(
         (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
