@@ -1,4 +1,4 @@
-"""The Engine: gas torques against the slider crank by Pythagoras, throws against lines written by hand and dense solves,
+"""The Engine: gas torques against the slider crank by Pythagoras, throws against lines by hand and dense solves,
 misfires, pressure curves from files, what happens to the throws when their numbers change."""
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ def test_throws_are_those_written_by_hand():
     one, other = (tn.order_response(line, [30.0, 78.0]) for line in (ours, written))
     assert np.abs(one.torque - other.torque).max() < 1e-12 * np.abs(other.torque).max()
     one, other = (tn.natural_frequencies(tn.Driveline([*line.elements, pump])) for line in (ours, written))
-    assert one.elastic == pytest.approx(other.elastic, rel=1e-12) and len(one.elastic) == 8
+    assert one.elastic == pytest.approx(other.elastic, rel=1e-12) and len(one.elastic) == 7
     rigid = tn.order_response(ship(engine(gas_torque=GAS, rigid=True)), [30.0])
     disk = tn.Disk(inertia=27.0, drive_share=1, excitation=GAS, firing_angles=[f"{a} deg" for a in fired.values()])
     lumped = tn.order_response(ship(disk), [30.0])
@@ -270,3 +270,37 @@ def test_what_it_cannot_state_dissolves_it_and_keeps_every_name():
     assert tn.loads(tn.dumps(dissolved)) == dissolved
     hung = tn.Driveline([*line.as_stated.elements, tn.Disk(inertia=1.0, after="engine", name="gear")])
     assert hung.elements[-1].after == "engine.throw 6" and hung.as_stated.parents[-1] == 0
+
+
+def test_assess_finds_the_worst_cylinder():
+    """Of every check the worst over all cylinders out of work in turn, with and without a load case, at one speed."""
+    loads = [tn.LoadCase(name="towing", loads={"propeller": 4e3})]
+    limits = [tn.Limit(of=of, vibratory_torque="12 kN*m") for of in ("coupling", "engine.crank 2-3")]
+    one = engine(
+        pressure=[curve(60e5)], compression_ratio=14, charge_pressure=2e5, polytropic_exponent=1.34, **CYLINDER
+    )
+    asked = tn.Operation(speed=70.0, misfiring=True, load_cases=loads)
+    line = tn.Driveline(ship(one).as_stated.elements, operation=asked, limits=limits)
+    assert len(line.cases) == 13
+    judged = tn.assess(line, (70.0, 70.0))
+    responses = {
+        (case, n): tn.order_response(
+            (line.with_load(case) if case else line).replace("engine", **({"misfiring": n} if n else {})), 70.0
+        )
+        for case in ("", "towing") for n in range(7)
+    }  # fmt: skip
+    for limit in limits:
+        spring = responses["", 0].springs.index(limit.of)
+        largest = {key: r.vibratory_torque[0, spring] for key, r in responses.items()}
+        check = judged.check(f"vibratory torque of {limit.of}")
+        assert check.value == pytest.approx(max(largest.values()), rel=1e-9)
+        case, n = max(largest, key=largest.__getitem__)
+        assert check.load_case.endswith(f"engine cylinder {n} misfiring") and n
+    found = tn.misfire(line, [70.0])
+    spring = found.springs.index("coupling")
+    assert found.vibratory_torque[2, spring] == responses["", 3].vibratory_torque[0, spring]
+    quiet = tn.misfire(line, [70.0], cut_out=True)
+    assert quiet.line.as_stated.elements[0].cut_out == quiet.worst[1] and "cut-out: cylinder" in str(quiet)
+    assert line.with_load("towing, engine cylinder 2 cut out").elements[-1].load_torque == 4e3
+    with pytest.raises(tn.InputError, match="is not a load case"):
+        line.with_load("engine cylinder 9 misfiring")

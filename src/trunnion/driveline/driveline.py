@@ -20,6 +20,7 @@ from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
@@ -107,9 +108,40 @@ class Driveline(ElementChain):
         return tolerances_of(self.tolerances, self.parts)
 
     def with_load(self, case: str) -> Driveline:
-        """The same line under the torques of one of its load cases; disks not named there keep theirs."""
-        loads = (self.operation or Operation()).load_case(case).loads
-        return self.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in self.parts])
+        """The same line under the torques of one of its load cases; disks not named there keep theirs.
+
+        Or with one cylinder out of work: "engine cylinder 3 misfiring", "engine cylinder 3 cut out", also after the
+        name of a load case and a comma.
+        """
+        loads, silent = self.loads_of(case), self._silent_in(case)
+        line = self.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in self.parts])
+        return line.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else line
+
+    def loads_of(self, case: str) -> dict[str, float]:
+        """Load torques [N m] by disk of one of its load cases; none of one that only puts a cylinder out of work."""
+        known, operation = self._silent, self.operation or Operation()
+        if case in known and case not in [one.name for one in operation.load_cases]:
+            return {}
+        base = next((case.removesuffix(f", {one}") for one in known if case.endswith(f", {one}")), case)
+        return {name: float(torque) for name, torque in operation.load_case(base).loads.items()}  # type: ignore[arg-type]
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """What ``assess`` judges beside the line as stated: its load cases, and where the description asks for it every
+        cylinder out of work in turn, without and under each of them."""
+        operation = self.operation or Operation()
+        named = tuple(one.name for one in operation.load_cases)
+        asked = [name for name, (_, key) in self._silent.items() if getattr(operation, key)]
+        return (*named, *(f"{base}, {one}" if base else one for base in ("", *named) for one in asked))
+
+    @cached_property
+    def _silent(self) -> dict[str, tuple[Cylinder, str]]:
+        return silent_cases(self.as_stated.parts)
+
+    def _silent_in(self, case: str) -> tuple[Cylinder, str] | None:
+        if case in [one.name for one in (self.operation or Operation()).load_cases]:
+            return None
+        return next((one for name, one in self._silent.items() if case == name or case.endswith(f", {name}")), None)
 
     def at_schedule(self, name: str, value: float) -> Driveline:
         """The same line with the angles and loads of one of its schedules at a travel [m] or a speed [rad/s]."""

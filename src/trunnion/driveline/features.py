@@ -293,6 +293,10 @@ NOT_FEATURES = {
     "Operation.application": "which guidelines of assess decide",
     "Operation.switched_off": "which rules of assess are not to judge",
     **dict.fromkeys(("SwitchedOff.rule", "SwitchedOff.reason"), "a rule of assess that is not to judge, and why"),
+    **dict.fromkeys(
+        ("Operation.misfiring", "Operation.cut_out"),
+        "line.with_load puts a cylinder out of work; assess judges every one",
+    ),
     "Operation.load_cases": "line.with_load(case) puts a case's torques into the line",
     "Operation.schedules": "line.at_schedule(name, value) puts a point's angles and torques into the line",
     "Schedule.name": "a label",

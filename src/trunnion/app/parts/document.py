@@ -103,6 +103,8 @@ class Document:
             owner: Any = data
             for key, following in zip(path, path[1:], strict=False):
                 if isinstance(key, str) and key not in owner:
+                    if not text.strip():
+                        return  # what is not there need not be taken away
                     owner[key] = [] if isinstance(following, int) else {}
                 owner = owner[key]
             value = text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,)) else _read(text)
