@@ -173,6 +173,11 @@ def clutch(rubs: bool = False, **more: float) -> Change:
     return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}], **more))
 
 
+def clutched(**more: float) -> Change:
+    """A slip clutch behind the hub."""
+    return behind("hub", tn.SlipClutch(name="slips", **more), tn.Disk(inertia=0.05, name="plate"))
+
+
 def rippled() -> Change:
     ripple = [{"order": 1, "amplitude": 0.01}, {"order": 6, "amplitude": 2e-3, "phase": 0.3}]
     return jointed(tn.RzeppaJoint(angle=0.3, ripple=ripple, name="extra"))
@@ -262,6 +267,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "damping in contact only": (staged(), staged(damping_law="in contact")),
     "dry friction": (clutch(), clutch(True)),
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
+    "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),

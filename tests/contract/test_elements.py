@@ -29,6 +29,7 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    SlipClutch,
     TunedDamper,
     ViscousDamper,
     deg,
@@ -78,6 +79,13 @@ COMPONENTS = [
         pressure=[{"angles": [0.02 * i for i in range(629)], "pressures": [2e5] * 629}], bore="80 mm", stroke="90 mm",
         rod_length="150 mm", reciprocating_mass="0.8 kg", strokes=4, misfiring=2, loss_factor=0.02,
         compression_ratio=12, charge_pressure="1 bar", polytropic_exponent=1.3,
+    ),
+    SlipClutch(
+        torque="1200 N*m",
+        sliding_torque="900 N*m",
+        stribeck_speed="20 rpm",
+        clamping_times=["0 s", "300 ms"],
+        clamping_shares=[0.2, 1],
     ),
 ]  # fmt: skip
 WITH_STAGES = [

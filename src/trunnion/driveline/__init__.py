@@ -25,8 +25,10 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 
 __all__ = [
@@ -55,11 +57,13 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "SwitchedOff",
+    "TitleBlock",
     "Tolerance",
     "TransmissionError",
     "Belt",
     "Clutch",
     "Slider",
+    "SlipClutch",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

@@ -23,6 +23,7 @@ from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
 from trunnion.errors import InputError, InputRemark
 
@@ -40,11 +41,17 @@ class Driveline(ElementChain):
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
+    document : title block of the report that is handed in.
 
     Raises
     ------
     InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits or tolerances of
         elements that cannot have them.
+
+    >>> import trunnion as tn
+    >>> line = Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness="10 kN*m/rad"), tn.Disk(inertia=0.8)])
+    >>> line.names
+    ('ConstantSpeed 1', 'Shaft 1', 'Disk 1')
     """
 
     what: ClassVar[str] = "driveline"
@@ -52,6 +59,7 @@ class Driveline(ElementChain):
     operation: Operation | None = None
     limits: Limits = ()
     tolerances: Tolerances = ()
+    document: TitleBlock | None = None
 
     def __init__(
         self,
@@ -64,6 +72,7 @@ class Driveline(ElementChain):
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
+        document: TitleBlock | None = None,
     ) -> None:
         data: dict[str, Any] = {
             "elements": checked(elements),
@@ -74,6 +83,7 @@ class Driveline(ElementChain):
             "operation": operation,
             "limits": limits,
             "tolerances": tolerances,
+            "document": document,
         }
         super().__init__(**data)
         if self.damping_ratio is not None and self.damping_ratio < 0:
@@ -87,6 +97,13 @@ class Driveline(ElementChain):
     def _is_operation(cls, value: object) -> object:
         if value is not None and not isinstance(value, Operation):
             raise InputError("is not an Operation", remedy='write tn.Operation(speed="1500 rpm"), say')
+        return value
+
+    @field_validator("document", mode="before")
+    @classmethod
+    def _is_document(cls, value: object) -> object:
+        if value is not None and not isinstance(value, TitleBlock):
+            raise InputError("is not a TitleBlock", remedy='write tn.TitleBlock(number="TV-2031", revision="B"), say')
         return value
 
     @model_validator(mode="after")

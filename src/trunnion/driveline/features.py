@@ -24,7 +24,9 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.title_block import TitleBlock
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -227,6 +229,11 @@ FEATURES = (
         _dry_friction(False),
     ),
     Feature(
+        "slip clutch",
+        _of("SlipClutch", "torque", "sliding_torque", "stribeck_speed", "clamping_times", "clamping_shares"),
+        _kind(SlipClutch),
+    ),
+    Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
@@ -283,8 +290,10 @@ NOT_FEATURES = {
     "Driveline.name": "a label",
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",

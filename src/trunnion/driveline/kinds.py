@@ -14,6 +14,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 
 KINDS: dict[str, type[Element]] = {
@@ -24,6 +25,7 @@ KINDS: dict[str, type[Element]] = {
         Coupling,
         PiecewiseShaft,
         Clutch,
+        SlipClutch,
         DualMassFlywheel,
         Disk,
         Engine,

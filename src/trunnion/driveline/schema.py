@@ -18,6 +18,7 @@ from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
@@ -43,6 +44,14 @@ _RULES: dict[str, dict[str, Any]] = {
     "Coupling": {"required": ["type", "stiffness"]},
     "Clutch": {
         "dependentRequired": {"linear_amplitude": ["linear_frequency"], "linear_frequency": ["linear_amplitude"]}
+    },
+    "SlipClutch": {
+        "dependentRequired": {
+            "sliding_torque": ["stribeck_speed"],
+            "stribeck_speed": ["sliding_torque"],
+            "clamping_times": ["clamping_shares"],
+            "clamping_shares": ["clamping_times"],
+        }
     },
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
@@ -99,6 +108,7 @@ def json_schema() -> dict[str, Any]:
                 **json_schema_of(FREQUENCY),
                 "description": "frequency at which damping_ratio holds; default: the lowest elastic mode",
             },
+            "document": {"$ref": "#/$defs/TitleBlock"},
             "operation": {"$ref": "#/$defs/Operation"},
             "limit": {
                 "type": "array",
@@ -125,6 +135,7 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **definitions,
+            "TitleBlock": _model(TitleBlock),
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),

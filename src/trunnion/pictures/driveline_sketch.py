@@ -42,6 +42,7 @@ LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25,
+    "SlipClutch": 0.7,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 THROW = 0.5
@@ -203,6 +204,13 @@ def _stages(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     _bar(axes, *turns, lw=1.1, zorder=4)
 
 
+def _slip_clutch(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """Two linings that are pressed together."""
+    _bar(axes, place.start, place.end)
+    for begin, face in ((-0.17, SOLID), (-0.05, "#8a8a8a"), (0.05, SOLID)):
+        _box(axes, place.part(begin, begin + (0.1 if face != SOLID else 0.12)), 0.42, fc=face)
+
+
 def _dual_mass(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Springs between two flywheels."""
     _stages(axes, place, disks)
@@ -347,6 +355,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "Differential": _differential,
     "PiecewiseShaft": _stages,
     "Clutch": _stages,
+    "SlipClutch": _slip_clutch,
 }
 
 

@@ -47,7 +47,8 @@ class Table:
     @property
     def numeric(self) -> tuple[bool, ...]:
         """Whether a column holds numbers alone."""
-        return tuple(all(_is_number(row[i]) for row in self.rows) for i in range(len(self.heads)))
+        columns = [[row[i] for row in self.rows] for i in range(len(self.heads))]
+        return tuple(any(column) and all(map(_is_number, column)) for column in columns)
 
 
 def _is_number(text: str) -> bool:

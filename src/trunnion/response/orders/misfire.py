@@ -91,9 +91,25 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
     masses (``quadratic_amplitude``) is all that is left. ``misfire(...).line`` is the line with the worst one, for
     ``assess`` and all else.
 
+    Parameters
+    ----------
+    line : with cylinders.
+    speeds : (speed,) input speeds [rad/s].
+    load_case : name of one of the line's load cases; by default the loads of its disks.
+    cut_out : nothing is left of the gas torque, instead of what compression does.
+
     Raises
     ------
     InputError : no engine and no disk has cylinders; as of ``order_response``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> torque, angles = tn.Excitation(order=0.5, amplitude=40.0), ["0 deg", "180 deg", "450 deg", "540 deg"]
+    >>> engine = tn.Disk(inertia=0.2, excitation=[torque], firing_angles=angles, drive_share=1)
+    >>> line = tn.Driveline([engine, tn.Shaft(stiffness=2e4, damping=2.0), tn.Disk(inertia=2.0, load_torque=50.0)])
+    >>> tn.misfire(line, [100.0, 150.0])
+    <Misfire: misfire: cylinder 2 of Disk 1 is the worst of 4>
     """
     if load_case is not None:
         line = line.with_load(load_case)
