@@ -45,6 +45,11 @@ class PressureCurve(Record):
     angles : of the crank [rad], rising over one cycle, 0 at the top dead centre at which it fires.
     pressures : there [Pa]; the last is the first again, or the curve ends one step before that.
     load : by which messages call it, 0.75 say; the torque that belongs to it follows from the curve.
+
+    >>> angles = [f"{30 * i} deg" for i in range(25)]
+    >>> curve = PressureCurve(angles=angles, pressures=["90 bar", *["3 bar"] * 23, "90 bar"])
+    >>> round(max(curve.pressures))
+    9000000
     """
 
     what: ClassVar[str] = "pressure"
@@ -99,10 +104,27 @@ def read_pressure(path: str | os.PathLike[str]) -> tuple[PressureCurve, ...]:
 
     Without a column ``load`` all rows are one curve; rows of a curve may come in any order.
 
+    Parameters
+    ----------
+    path : of the file.
+
     Raises
     ------
     InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; too
         few rows of a load; an angle twice.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import trunnion as tn
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "pressure.csv")
+    ...     rows = ["angle [deg],pressure [bar]", *(f"{30 * i},{90 if i == 12 else 3}" for i in range(24))]
+    ...     _ = path.write_text("\\n".join(rows))
+    ...     (curve,) = tn.read_pressure(path)
+    >>> len(curve.angles), max(curve.pressures)
+    (24, 9000000.0)
     """
     by_load: dict[float | None, list[tuple[float, float]]] = {}
     for _, row in read_numbers(path, PRESSURES):
