@@ -42,6 +42,8 @@ from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
 from trunnion.driveline import TunedDamper as TunedDamper
+from trunnion.driveline import Tyre as Tyre
+from trunnion.driveline import Vehicle as Vehicle
 from trunnion.driveline import ViscousDamper as ViscousDamper
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump

@@ -53,7 +53,7 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     if TABLE[analysis]["dry friction"].treatment in (Treatment.REFUSED, Treatment.NOT_JUDGED):
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     if TABLE[analysis][DRAGGED].reason == SET_ASIDE:
-        own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(ring)) for ring in feature(DRAGGED).places(line))
+        own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(slip)) for slip in feature(DRAGGED).places(line))
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
@@ -65,9 +65,11 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
+_LIKE = {"rolling resistance": "load torque", "air drag": "quadratic load", "slip of a tyre": DRAGGED}
+"""Features that every analysis treats as another, whose equations they share."""
 SET_ASIDE = "the multiplier at 1 is set aside"
-DRAGGED_ALONG = "{} is dragged along by oil alone: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
-"""What is said of the ring of a damper without a spring by what judges disturbances."""
+DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
+"""What is said of a damper without a spring by what judges disturbances."""
 
 
 def _row(
@@ -89,6 +91,7 @@ def _row(
     for treatment, reasons in treated.items():
         for key, words in (reasons or {}).items():
             row[key] = Cell(treatment, *((words,) if isinstance(words, str) else words))
+    row |= {key: row[other] for key, other in _LIKE.items()}
     return {f.key: row[f.key] for f in FEATURES}
 
 
@@ -151,7 +154,7 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             *(key for key in UNEVEN if key != "Hooke's joint"),
-            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "planetary set",
+            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "tyre", "planetary set",
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
@@ -190,7 +193,7 @@ _ONE_DRIVE = {
     **_TREES,
     "prescribed far end": "the nonlinear equations have one prescribed speed",
 }
-_ANYWHERE = {DRAGGED: "its ring may stand anywhere, so that no periodic motion is the only one"}
+_ANYWHERE = {DRAGGED: "what it drags may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
     **_NOT_SLIPPED,
@@ -217,7 +220,7 @@ _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no pha
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "angle of an ideal joint",
+        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "tyre", "vehicle", "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",

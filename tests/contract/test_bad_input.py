@@ -30,6 +30,8 @@ from trunnion.driveline import (
     TitleBlock,
     Tolerance,
     TunedDamper,
+    Tyre,
+    Vehicle,
     ViscousDamper,
     dump,
     load,
@@ -723,6 +725,29 @@ PYTHON = [
         lambda: SlipClutch(torque=9, clamping_times=[0], clamping_shares=[-0.1]),
         "SlipClutch.clamping_shares = [-0.1]: must not be negative",
         "write 0 for an open clutch",
+    ),
+    (lambda: Vehicle(mass=900), "Vehicle.wheel_radius: is missing", ""),
+    (lambda: Vehicle(mass=900, wheel_radius=0), "Vehicle.wheel_radius = 0: must be positive", '"76 mm"'),
+    (
+        lambda: Vehicle(mass=900, wheel_radius=1, grade=-0.1),
+        "Vehicle.grade = -0.1: must not be negative",
+        "load_torque",
+    ),
+    (lambda: Vehicle(mass=900, wheel_radius=1, drag_area="2 m"), "Vehicle.drag_area = '2 m'", "m^2"),
+    (lambda: Tyre(stiffness=0), "Tyre.stiffness = 0: must be positive", "write for example"),
+    (lambda: Tyre(stiffness=1, radius=0.3), "Tyre.slip_stiffness: is missing beside radius", "needs slip_stiffness"),
+    (lambda: line(Vehicle(mass=9, wheel_radius=1, name="car")), "car: has no wheels", "behind a Tyre"),
+    (
+        lambda: line(Disk(inertia=1), Tyre(stiffness=1, name="tyre"), Disk(inertia=1)),
+        "tyre: carries no vehicle",
+        "put a Vehicle behind it",
+    ),
+    (
+        lambda: line(
+            Disk(inertia=1, name="hub"), Shaft(stiffness=1), Disk(inertia=1), Tyre(stiffness=1, name="tyre", to="hub")
+        ),
+        "tyre.to = 'hub': is no Vehicle",
+        "name a Vehicle",
     ),
     (lambda: belt(radius_in=0), "Belt.radius_in = 0: must be positive", '"76 mm"'),
     (lambda: belt(radius_out=-0.1), "Belt.radius_out = -0.1: must be positive", '"76 mm"'),

@@ -31,6 +31,8 @@ from trunnion.driveline import (
     Shaft,
     SlipClutch,
     TunedDamper,
+    Tyre,
+    Vehicle,
     ViscousDamper,
     deg,
     rpm,
@@ -87,6 +89,8 @@ COMPONENTS = [
         clamping_times=["0 s", "300 ms"],
         clamping_shares=[0.2, 1],
     ),
+    Tyre(stiffness=15e3, damping=200, slip_stiffness="60 kN", radius=0.3, travel_speed="90 km/h", inertia=0.6),
+    Vehicle(mass="1.6 t", wheel_radius=0.31, wheel_inertia=1.8, rolling_resistance="1.2 %", grade=0.05, drag_area=0.65),
 ]  # fmt: skip
 WITH_STAGES = [
     RzeppaJoint(

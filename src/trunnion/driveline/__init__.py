@@ -30,6 +30,7 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
@@ -68,6 +69,8 @@ __all__ = [
     "RzeppaJoint",
     "TripodJoint",
     "TunedDamper",
+    "Tyre",
+    "Vehicle",
     "ViscousDamper",
     "deg",
     "dump",

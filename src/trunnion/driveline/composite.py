@@ -50,7 +50,10 @@ class StatedChain:
 
     def index(self, name: str) -> int:
         """Place of the element called ``name``, or of the one that it is part of."""
-        return next(i for i, own in enumerate(self.names) if name == own or name.startswith(f"{own}."))
+        if name in self.names:
+            return self.names.index(name)
+        parts = enumerate(self.parts)
+        return next(i for i, (own, e) in parts if isinstance(e, Composite) and name.startswith(f"{own}."))
 
 
 def default_names(elements: Sequence[Element]) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 KINDS: dict[str, type[Element]] = {
     kind.__name__: kind
@@ -41,5 +42,7 @@ KINDS: dict[str, type[Element]] = {
         GearPair,
         Planetary,
         Differential,
+        Tyre,
+        Vehicle,
     )
 }

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from math import inf, isfinite
 
 from trunnion.driveline.chain import ElementChain
-from trunnion.driveline.elements import ConstantSpeed, Disk
+from trunnion.driveline.elements import ConstantSpeed, Loaded
 from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.shafts import Shaft, SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -28,7 +28,7 @@ def prescribed_excitations(line: ElementChain) -> tuple[str, ...]:
     return tuple(
         name
         for name, element, g in zip(line.names, line.elements, group, strict=True)
-        if isinstance(element, Disk) and g in fixed and any(one.largest for one in element.excitation)
+        if isinstance(element, Loaded) and g in fixed and any(one.largest for one in element.excitation)
     )
 
 

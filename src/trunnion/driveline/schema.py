@@ -25,6 +25,7 @@ _TUBE = ["outer_diameter", "length"]
 _SOLID = ["outer_diameter", "thickness"]
 _ROLLING = ["mass", "radius"]
 _TOOTHED = ["teeth_in", "teeth_out", "module"]
+_SLIP = ["slip_stiffness", "radius", "travel_speed", "inertia"]
 _BASE = ["base_radius_in", "base_radius_out"]
 
 
@@ -72,6 +73,7 @@ _RULES: dict[str, dict[str, Any]] = {
         "anyOf": [{"required": ["held"]}, {"required": ["output"]}],
         "dependentRequired": {"planet_mass": ["centre_distance"], "centre_distance": ["planet_mass"]},
     },
+    "Tyre": {"dependentRequired": {key: [one for one in _SLIP if one != key] for key in _SLIP}},
     "GearPair": {
         "oneOf": [{"required": _TOOTHED}, {"required": _BASE}],
         "dependentRequired": {**dict.fromkeys(_TOOTHED, _TOOTHED), **dict.fromkeys(_BASE, _BASE)},

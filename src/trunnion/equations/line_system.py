@@ -84,8 +84,8 @@ class LineSystem(Portable):
     @property
     def shafts(self) -> tuple[str, ...]:
         """Names of the compliances; massless shafts in series count as one."""
-        names = self.assembly.line.names
-        return tuple(" + ".join(names[i] for i in c.shafts) for c in self.assembly.topology.compliances)
+        line = self.assembly.line
+        return tuple(line.spring_name(c.shafts, c.number) for c in self.assembly.topology.compliances)
 
     @cached_property
     def torques(self) -> tuple[DiskTorque, ...]:

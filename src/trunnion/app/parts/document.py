@@ -353,6 +353,8 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     },
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
     "Differential": {"teeth_in": 10, "teeth_out": 41},
+    "Tyre": {"stiffness": "15 kN*m/rad", "damping": "200 N*m*s/rad"},
+    "Vehicle": {"mass": "1600 kg", "wheel_radius": "0.31 m"},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }
 """What a new element starts with."""

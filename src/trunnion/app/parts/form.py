@@ -260,7 +260,7 @@ def joints_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def disks_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
     """Names of the elements that a load acts on."""
-    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") == "Disk"]
+    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") in ("Disk", "Vehicle")]
 
 
 def _owns(error: InputError, owners: tuple[Any, ...]) -> bool:
