@@ -11,7 +11,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -36,6 +36,9 @@ from trunnion.driveline.quantities import (
 )
 from trunnion.driveline.record import Name, Record, as_tuple, is_name
 from trunnion.errors import InputError, InputRemark
+
+if TYPE_CHECKING:
+    from trunnion.laws.torque_curve import PowerCurve, TorqueCurve
 
 Doubt = tuple[str, str, str]
 """(key, what is odd, what to do about it)."""
@@ -124,10 +127,57 @@ class ConstantSpeed(Element):
         return (Prescribed(),)
 
 
+class Rotor(Element):
+    """What is heavy, and turned or resisted from outside: a disk, a machine.
+
+    Its outer torque at a speed is its ``load_of``; ``excitation`` are harmonic torques besides, which each of its
+    cylinders repeats where it has ``firing_angles``.
+    """
+
+    if TYPE_CHECKING:
+        inertia: Any
+        excitation: Excitations
+        firing_angles: Any
+        misfiring: Any
+
+    def parts(self) -> tuple[Part, ...]:
+        """An inertia on which outer torques act."""
+        return (Heavy(loaded=True),)
+
+    def load_of(self, number: Numbers) -> TorqueCurve:
+        """Outer torque over its own speed, positive where it resists, for the values of its numbers, one or many."""
+        raise NotImplementedError
+
+    @property
+    def load(self) -> TorqueCurve:
+        """The same as described."""
+        return self.load_of(lambda key: getattr(self, key))
+
+    @property
+    def tangent(self) -> bool:
+        """Whether equations of motion have its load by the tangent at the mean speed: any that is no polynomial."""
+        from trunnion.laws.torque_curve import PowerCurve  # a description alone loads without numpy
+
+        return not isinstance(self.load, PowerCurve)
+
+    @property
+    def loaded_by_speed(self) -> bool:
+        """Whether its load depends on the speed."""
+        from trunnion.laws.torque_curve import PowerCurve
+
+        load = self.load
+        return not isinstance(load, PowerCurve) or bool(load.viscous or load.quadratic)
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment [kg m²], all that turns rigidly with it."""
+        return self.inertia_values[0]
+
+
 _ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
 
 
-class Disk(Element):
+class Disk(Rotor):
     """A rigid inertia: flywheel, flange, gear, roll, wheel.
 
     Parameters
@@ -212,9 +262,11 @@ class Disk(Element):
             remedy = "write orders; a torque fixed in time has no cylinders"
             raise InputError("repeat orders, not a frequency", key="firing_angles", remedy=remedy)
 
-    def parts(self) -> tuple[Part, ...]:
-        """An inertia on which outer torques act."""
-        return (Heavy(loaded=True),)
+    def load_of(self, number: Numbers) -> PowerCurve:
+        """Constant, viscous and quadratic."""
+        from trunnion.laws.torque_curve import PowerCurve
+
+        return PowerCurve(number("load_torque"), number("viscous_load"), number("quadratic_load"))
 
     def inertias(self, number: Numbers) -> tuple[Any, ...]:
         """As stated, or from the mass or the geometry."""
@@ -223,11 +275,6 @@ class Disk(Element):
         if self.mass is not None:
             return (number("mass") * number("radius") ** 2,)
         return (disk_inertia(*map(number, ("outer_diameter", "inner_diameter", "thickness", "density"))),)
-
-    @property
-    def moment_of_inertia(self) -> float:
-        """Polar moment [kg m²], as stated or from the geometry or the mass."""
-        return self.inertia_values[0]
 
 
 MOST_TEETH = 100_000
