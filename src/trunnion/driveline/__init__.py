@@ -6,6 +6,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.curve_points import CurvePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
@@ -16,6 +17,7 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
@@ -30,6 +32,7 @@ from trunnion.driveline.tolerances import Tolerance
 __all__ = [
     "STARTERS",
     "ConstantSpeed",
+    "CurvePoint",
     "Differential",
     "Disk",
     "DoubleCardanJoint",
@@ -37,15 +40,20 @@ __all__ = [
     "DualMassFlywheel",
     "Element",
     "Excitation",
+    "Fan",
     "GearPair",
+    "Generator",
     "HookeJoint",
     "IdealJoint",
     "Limit",
     "LoadCase",
+    "Motor",
     "Operation",
     "Coupling",
     "PiecewiseShaft",
     "Planetary",
+    "Propeller",
+    "Pump",
     "Ratio",
     "Schedule",
     "Shaft",

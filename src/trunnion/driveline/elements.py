@@ -135,10 +135,15 @@ class Rotor(Element):
     """
 
     if TYPE_CHECKING:
-        inertia: Any
         excitation: Excitations
-        firing_angles: Any
-        misfiring: Any
+
+        @property
+        def firing_angles(self) -> Any:
+            """Angles [rad] at which cylinders repeat its excitation; empty without."""
+
+        @property
+        def misfiring(self) -> Any:
+            """Number of the cylinder that does not fire; None where all do."""
 
     def parts(self) -> tuple[Part, ...]:
         """An inertia on which outer torques act."""
@@ -163,10 +168,12 @@ class Rotor(Element):
     @property
     def loaded_by_speed(self) -> bool:
         """Whether its load depends on the speed."""
-        from trunnion.laws.torque_curve import PowerCurve
+        return self.tangent or self.loaded_by_square or bool(getattr(self.load, "viscous", 0.0))
 
-        load = self.load
-        return not isinstance(load, PowerCurve) or bool(load.viscous or load.quadratic)
+    @property
+    def loaded_by_square(self) -> bool:
+        """Whether a part of its load goes with the square of the speed, as equations of motion have it."""
+        return not self.tangent and bool(getattr(self.load, "quadratic", 0.0))
 
     @property
     def moment_of_inertia(self) -> float:

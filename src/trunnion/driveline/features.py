@@ -14,14 +14,15 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import ConstantSpeed, Element, Rotor
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
-from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
+from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 
@@ -58,7 +59,7 @@ def _where(kind: type[Element], key: str, test: Callable[[Any], object]) -> Find
 
 
 def _excited(test: Callable[[Excitation], object]) -> Finder:
-    return _where(Disk, "excitation", lambda disk: any(map(test, disk.excitation)))
+    return _where(Rotor, "excitation", lambda rotor: any(map(test, rotor.excitation)))
 
 
 def _dry_friction(at_one_motion: bool) -> Finder:
@@ -69,6 +70,15 @@ def _dry_friction(at_one_motion: bool) -> Finder:
 
 def _kind(kind: type[Element]) -> Finder:
     return lambda line: [name for name, element in line.parts if isinstance(element, kind)]
+
+
+def _curves(line: Driveline) -> list[str]:
+    return [f"torque of {name}" for name, element in line.parts if isinstance(element, Rotor) and element.tangent]
+
+
+def _lags(line: Driveline) -> list[str]:
+    electric = ((name, one) for name, one in line.parts if isinstance(one, ElectricMachine))
+    return [f"lag of {name}" for name, one in electric if one.lag_frequency is not None]
 
 
 def _dragged(line: Driveline) -> list[str]:
@@ -103,6 +113,8 @@ UNEVEN = (
 """Features of joints that do not pass rotation unchanged."""
 
 
+MACHINES = ("Motor", "Generator", "Fan", "Pump", "Propeller")
+ELECTRIC, CONSUMERS = MACHINES[:2], MACHINES[2:]
 _STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
 _DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
 
@@ -117,12 +129,23 @@ def _of_springs(*keys: str) -> tuple[str, ...]:
     return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
 
 
+def _of_consumers(*keys: str) -> tuple[str, ...]:
+    return tuple(f"{kind}.{key}" for kind in CONSUMERS for key in keys)
+
+
+def _load(key: str) -> tuple[str, ...]:
+    """A load of disks and of machines that a line drives."""
+    return f"Disk.{key}", *_of_consumers(key)
+
+
+CURVE = "torque curve"
 FEATURES = (
     Feature(
         "inertia",
         (
             "Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density",
-            "Disk.material", "Disk.mass", "Disk.radius",
+            "Disk.material", "Disk.mass", "Disk.radius", "Propeller.entrained_inertia",
+            *(f"{kind}.inertia" for kind in MACHINES),
         ),
     ),
     Feature(
@@ -230,20 +253,30 @@ FEATURES = (
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
     ),
-    Feature("load torque", ("Disk.load_torque",)),
-    Feature("drive share", ("Disk.drive_share",)),
-    Feature("viscous load", ("Disk.viscous_load",)),
-    Feature("quadratic load", ("Disk.quadratic_load",)),
+    Feature("load torque", _load("load_torque")),
+    Feature("drive share", ("Disk.drive_share", "Motor.drive_share")),
+    Feature("viscous load", _load("viscous_load")),
+    Feature("quadratic load", (*_load("quadratic_load"), *_of_consumers("rated_power", "rated_speed"))),
+    Feature(
+        CURVE,
+        (
+            *(f"{kind}.curve" for kind in MACHINES), "CurvePoint.speed", "CurvePoint.torque",
+            *(f"{kind}.{key}" for kind in ELECTRIC for key in (*KLOSS, "gain", "set_speed", "torque_limit")),
+            "Generator.power", "Propeller.damping_factor",
+        ),
+        _curves,
+    ),
+    Feature(LAG, tuple(f"{kind}.{key}" for kind in ELECTRIC for key in ("corner_frequency", "pole_pairs")), _lags),
     Feature(
         "excitation by order",
-        ("Disk.excitation", "Excitation.order", "Excitation.amplitude"),
+        ("Disk.excitation", "Excitation.order", "Excitation.amplitude", *(f"{kind}.excitation" for kind in MACHINES)),
         _excited(lambda one: not one.frequency),
     ),
     Feature(
         "excitation that varies with speed or load",
         (
-            "Excitation.quadratic_amplitude", "Excitation.speeds", "Excitation.torques", "Excitation.amplitudes",
-            "Excitation.phases",
+            "Excitation.quadratic_amplitude", "Excitation.share", "Excitation.speeds",
+            "Excitation.torques", "Excitation.amplitudes", "Excitation.phases",
         ),
         _excited(lambda one: one.varies),
     ),

@@ -29,9 +29,9 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
+from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
-from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
@@ -288,8 +288,9 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
-            if place_of is not None and isinstance(named := data.get("excitation"), str):
-                data["excitation"] = _table_of(named, place_of)
+            for key, read in TABLES.items():
+                if place_of is not None and isinstance(named := data.get(key), str):
+                    data[key] = _table_of(named, key, read, place_of)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
@@ -299,14 +300,18 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
     return element
 
 
-def _table_of(named: str, place_of: Place) -> tuple[Excitation, ...]:
+TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {"excitation": read_excitation, "curve": read_curve}
+"""Keys that may name a table beside the file, and what reads it."""
+
+
+def _table_of(named: str, key: str, read: Callable[[Path], tuple[Record, ...]], place_of: Place) -> tuple[Record, ...]:
     """What the table holds that an element names; complaints say the place in the table, about that element."""
     try:
-        return read_excitation(place_of(named))
+        return read(place_of(named))
     except InputError as error:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"
-        raise error.but(element="", key="excitation", value=None, problem=problem) from None
+        raise error.but(element="", key=key, value=None, problem=problem) from None
 
 
 def _limit_elsewhere(error: InputError, name: str | None) -> InputError:

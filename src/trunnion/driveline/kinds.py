@@ -11,6 +11,7 @@ from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
@@ -25,6 +26,11 @@ KINDS: dict[str, type[Element]] = {
         Clutch,
         DualMassFlywheel,
         Disk,
+        Motor,
+        Generator,
+        Fan,
+        Pump,
+        Propeller,
         ViscousDamper,
         TunedDamper,
         HookeJoint,

@@ -23,7 +23,7 @@ from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.quantities import (
     RATIO,
@@ -61,8 +61,8 @@ _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "transient_vibratory_torque": (*_SPRING, GearPair),
     "max_stress": (Shaft,),
     "max_twist": _SPRING,
-    "max_speed_fluctuation": (Disk,),
-    "max_acceleration": (Disk,),
+    "max_speed_fluctuation": (Rotor,),
+    "max_acceleration": (Rotor,),
     "temperature_factor": (Coupling,),
     "starting_factor": (Coupling,),
     "ship_shaft": (Shaft,),

@@ -298,6 +298,6 @@ def operation(contents: Contents, unit: str) -> Table:
         first, last = (np.rad2deg(a) for a in seen.angle_range)
         rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
     for name, element in zip(seen.line.names, seen.line.elements, strict=True):
-        if isinstance(element, Disk) and element.load_torque:
-            rows.append((f"load torque on {name}", f"{four(element.load_torque)} N·m"))
+        if torque := getattr(element, "load_torque", 0.0):
+            rows.append((f"load torque on {name}", f"{four(torque)} N·m"))
     return Table(("", ""), tuple(rows))

@@ -121,11 +121,13 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDistur
     others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
     faster = np.concatenate([np.zeros(n), turn, others])
     column = line.assembly.packed.column
-    loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    columns = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    loads = [place for place in columns if place >= 0]
+    curved = any(rotor.loaded_by_speed and not isinstance(rotor, Disk) for _, rotor in topo.rotors)
     unsteady = [one.columns[0] for one in line.torques]
 
     def at(system: System, x: Array) -> NeutralDisturbances:
-        by_speed = _any(line, system, loads)
+        by_speed = curved or _any(line, system, loads)
         steady = not (by_speed or _nonuniform(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
         moved = np.concatenate([turn * speed, np.zeros(n), others])
@@ -150,8 +152,7 @@ def _nonuniform(line: LineSystem, system: System) -> bool:
 
 def loaded_by_speed(assembly: Assembly) -> bool:
     """Whether any load of the line depends on the speed."""
-    disks = [element for element in assembly.line.elements if isinstance(element, Disk)]
-    return any(disk.viscous_load or disk.quadratic_load for disk in disks)
+    return any(rotor.loaded_by_speed for _, rotor in assembly.topology.rotors)
 
 
 def torque_scale(line: LineSystem) -> float:

@@ -1,0 +1,95 @@
+"""A torque over speed by its points: listed, or from a spreadsheet beside the description.
+
+::
+
+    speed [rpm],torque [N*m]
+    0,410
+    900,395
+    1380,520
+    1500,0
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, ClassVar
+
+from pydantic import BeforeValidator, Field
+
+from trunnion.driveline.csv_table import Columns, read_table
+from trunnion.driveline.quantities import SPEED, TORQUE, Speed, TableList, Torque, shown
+from trunnion.driveline.record import Record, listed
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.laws.torque_curve import TableCurve
+
+COLUMNS = Columns(
+    "the table of torque over speed",
+    {"speed": SPEED, "torque": TORQUE},
+    ("speed", "torque"),
+    "speed [rpm],torque [N*m]",
+)
+POINTS = 'curve = [{ speed = "0 rpm", torque = "90 N*m" }, { speed = "1500 rpm", torque = "0 N*m" }]'
+
+
+class CurvePoint(Record):
+    """A point of a torque over speed.
+
+    Parameters
+    ----------
+    speed : of the shaft that it acts on [rad/s].
+    torque : there [N m].
+    """
+
+    what: ClassVar[str] = "curve"
+    example: ClassVar[str] = 'speed = "1500 rpm" and torque = "90 N*m"'
+
+    speed: Speed = Field(description="of its shaft")
+    torque: Torque = Field(description="at that speed")
+
+
+_READ = listed(CurvePoint, "point", f"write {POINTS}, or the name of a CSV file")
+
+
+def _points(value: object) -> tuple[CurvePoint, ...]:
+    if isinstance(value, str) and value.lower().endswith(".csv"):
+        remedy = "use tn.load for a file beside the description, or curve=tn.read_curve(path)"
+        raise InputError("names a file that is not known here", value=value, remedy=remedy)
+    made = _READ(value)
+    if len(made) < 2:
+        raise InputError("must have two points at least", value=len(made), remedy=f"write {POINTS}")
+    for before, after in zip(made, made[1:], strict=False):
+        if not after.speed > before.speed:
+            speeds = " after ".join(shown(one.speed, SPEED, "rpm") for one in (after, before))
+            raise InputError(f"does not rise in speed: {speeds}", remedy="sort the points by speed; each speed once")
+    if made[0].speed < 0:
+        remedy = "begin at 0 or above; speeds count in the sense that the shaft turns"
+        raise InputError("must not be negative", value=made[0].speed, remedy=remedy)
+    return made
+
+
+Curve = Annotated[TableList[CurvePoint], BeforeValidator(_points)]
+
+
+def read_curve(path: str | os.PathLike[str]) -> tuple[CurvePoint, ...]:
+    """Points of a CSV file with the columns speed and torque, each with its unit.
+
+    Raises
+    ------
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none;
+        speeds that do not rise.
+    """
+    source, rows = Path(path).name, read_table(path, COLUMNS)
+    try:
+        return _points([CurvePoint(**row) for row in rows])
+    except InputError as error:
+        raise error.each(lambda one: one.but(element=source, key="speed", value=None)) from None
+
+
+def table_curve(points: tuple[CurvePoint, ...]) -> TableCurve:
+    """The curve through the points, see ``trunnion.laws.torque_curve``."""
+    from trunnion.laws.torque_curve import TableCurve
+
+    return TableCurve(tuple(one.speed for one in points), tuple(one.torque for one in points))
