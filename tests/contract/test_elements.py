@@ -18,13 +18,18 @@ from trunnion.driveline import (
     Disk,
     Driveline,
     DualMassFlywheel,
+    Fan,
     GearPair,
+    Generator,
     HookeJoint,
     IdealJoint,
     LoadCase,
+    Motor,
     Operation,
     PiecewiseShaft,
     Planetary,
+    Propeller,
+    Pump,
     Ratio,
     RzeppaJoint,
     Shaft,
@@ -73,6 +78,15 @@ COMPONENTS = [
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
 ]
+MACHINES = [
+    Motor(inertia=0.4, breakdown_torque=500, breakdown_slip=0.2, synchronous_speed="1500 rpm", pole_pairs=2),
+    Motor(inertia=0.4, gain=40, torque_limit="300 N*m", corner_frequency="80 Hz", drive_share=1),
+    Generator(inertia=0.6, curve=[{"speed": "0 rpm", "torque": 0}, {"speed": "1500 rpm", "torque": "90 N*m"}]),
+    Generator(inertia=0.6, power="30 kW", excitation=[{"order": 6, "share": 0.02}]),
+    Fan(inertia=3, rated_power="30 kW", rated_speed="1480 rpm", load_torque=2),
+    Pump(inertia=0.3, load_torque="120 N*m", viscous_load=0.2),
+    Propeller(inertia=60, entrained_inertia=15, quadratic_load=20, damping_factor=2.9),
+]
 WITH_STAGES = [
     RzeppaJoint(
         angle="8 deg",
@@ -109,7 +123,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + WITH_STAGES, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + MACHINES + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element

@@ -6,7 +6,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
-from trunnion.driveline.curve_points import CurvePoint
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
@@ -32,7 +32,6 @@ from trunnion.driveline.tolerances import Tolerance
 __all__ = [
     "STARTERS",
     "ConstantSpeed",
-    "CurvePoint",
     "Differential",
     "Disk",
     "DoubleCardanJoint",
@@ -60,6 +59,7 @@ __all__ = [
     "StiffnessVariation",
     "SwitchedOff",
     "Tolerance",
+    "TorquePoint",
     "TransmissionError",
     "Belt",
     "Clutch",

@@ -1,6 +1,6 @@
 """Tables from a spreadsheet, beside a description: quantities in columns that its first line names, each with its unit.
 
-Columns stand apart by commas, semicolons or tabs; a line that starts with # is a remark. What a message says of a table
+TableColumns stand apart by commas, semicolons or tabs; a line that starts with # is a remark. What a message says of a table
 is its place, never its content: a description may name a file that is none.
 """
 
@@ -24,7 +24,7 @@ _HEAD = re.compile(r"([A-Za-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
 
 
 @dataclass(frozen=True)
-class Columns:
+class TableColumns:
     """What a table may hold: ``what`` it is called, the kinds of its columns, those ``needed``, and a first line."""
 
     what: str
@@ -33,7 +33,7 @@ class Columns:
     head: str
 
 
-def read_table(path: str | os.PathLike[str], table: Columns) -> list[dict[str, float]]:
+def read_table(path: str | os.PathLike[str], table: TableColumns) -> list[dict[str, float]]:
     """Every row of a CSV file by the names of its columns, in SI units.
 
     Raises
@@ -50,7 +50,7 @@ def read_table(path: str | os.PathLike[str], table: Columns) -> list[dict[str, f
     return found
 
 
-def _rows(path: Path, table: Columns) -> list[list[str]]:
+def _rows(path: Path, table: TableColumns) -> list[list[str]]:
     try:
         text = regular_bytes(path, LARGEST_TABLE, what=table.what).decode("utf-8-sig")
     except InputError:
@@ -76,7 +76,7 @@ def _rows(path: Path, table: Columns) -> list[list[str]]:
     return rows
 
 
-def _columns(source: str, head: Sequence[str], table: Columns) -> dict[str, tuple[int, str]]:
+def _columns(source: str, head: Sequence[str], table: TableColumns) -> dict[str, tuple[int, str]]:
     """Place and unit of every column."""
     found: dict[str, tuple[int, str]] = {}
     for i, cell in enumerate(head):
@@ -113,7 +113,9 @@ def _usual(kind: QuantityKind) -> str:
     return {SPEED: "rpm", ANGLE: "deg"}.get(kind, kind.unit)
 
 
-def _values(where: str, row: Sequence[str], columns: dict[str, tuple[int, str]], table: Columns) -> dict[str, float]:
+def _values(
+    where: str, row: Sequence[str], columns: dict[str, tuple[int, str]], table: TableColumns
+) -> dict[str, float]:
     values: dict[str, float] = {}
     for name, (i, unit) in columns.items():
         cell = row[i] if i < len(row) else ""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
-from trunnion.driveline.csv_table import Columns, read_table
+from trunnion.driveline.csv_table import TableColumns, read_table
 from trunnion.driveline.quantities import SPEED, TORQUE, Speed, TableList, Torque, shown
 from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
@@ -25,7 +25,7 @@ from trunnion.errors import InputError
 if TYPE_CHECKING:
     from trunnion.laws.torque_curve import TableCurve
 
-COLUMNS = Columns(
+COLUMNS = TableColumns(
     "the table of torque over speed",
     {"speed": SPEED, "torque": TORQUE},
     ("speed", "torque"),
@@ -34,7 +34,7 @@ COLUMNS = Columns(
 POINTS = 'curve = [{ speed = "0 rpm", torque = "90 N*m" }, { speed = "1500 rpm", torque = "0 N*m" }]'
 
 
-class CurvePoint(Record):
+class TorquePoint(Record):
     """A point of a torque over speed.
 
     Parameters
@@ -50,10 +50,10 @@ class CurvePoint(Record):
     torque: Torque = Field(description="at that speed")
 
 
-_READ = listed(CurvePoint, "point", f"write {POINTS}, or the name of a CSV file")
+_READ = listed(TorquePoint, "point", f"write {POINTS}, or the name of a CSV file")
 
 
-def _points(value: object) -> tuple[CurvePoint, ...]:
+def _points(value: object) -> tuple[TorquePoint, ...]:
     if isinstance(value, str) and value.lower().endswith(".csv"):
         remedy = "use tn.load for a file beside the description, or curve=tn.read_curve(path)"
         raise InputError("names a file that is not known here", value=value, remedy=remedy)
@@ -70,10 +70,10 @@ def _points(value: object) -> tuple[CurvePoint, ...]:
     return made
 
 
-Curve = Annotated[TableList[CurvePoint], BeforeValidator(_points)]
+Curve = Annotated[TableList[TorquePoint], BeforeValidator(_points)]
 
 
-def read_curve(path: str | os.PathLike[str]) -> tuple[CurvePoint, ...]:
+def read_curve(path: str | os.PathLike[str]) -> tuple[TorquePoint, ...]:
     """Points of a CSV file with the columns speed and torque, each with its unit.
 
     Raises
@@ -83,12 +83,12 @@ def read_curve(path: str | os.PathLike[str]) -> tuple[CurvePoint, ...]:
     """
     source, rows = Path(path).name, read_table(path, COLUMNS)
     try:
-        return _points([CurvePoint(**row) for row in rows])
+        return _points([TorquePoint(**row) for row in rows])
     except InputError as error:
         raise error.each(lambda one: one.but(element=source, key="speed", value=None)) from None
 
 
-def table_curve(points: tuple[CurvePoint, ...]) -> TableCurve:
+def table_curve(points: tuple[TorquePoint, ...]) -> TableCurve:
     """The curve through the points, see ``trunnion.laws.torque_curve``."""
     from trunnion.laws.torque_curve import TableCurve
 

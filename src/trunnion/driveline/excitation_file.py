@@ -8,7 +8,7 @@
     4,600,35,10
 
 The first line names the columns, each with its unit: order, amplitude, and where there are any phase, and speed (of
-the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs. What a
+the disk) or torque (the mean one that it drives with). TableColumns stand apart by commas, semicolons or tabs. What a
 message says of a table is its place, never its content: a description may name a file that is none.
 """
 
@@ -19,12 +19,12 @@ from pathlib import Path
 from typing import Any
 
 from trunnion.driveline.csv_table import LARGEST_TABLE as LARGEST_TABLE
-from trunnion.driveline.csv_table import Columns, read_table
+from trunnion.driveline.csv_table import TableColumns, read_table
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
 from trunnion.errors import InputError
 
-COLUMNS = Columns(
+COLUMNS = TableColumns(
     "the table of orders",
     {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE},
     ("order", "amplitude"),

@@ -260,7 +260,7 @@ FEATURES = (
     Feature(
         CURVE,
         (
-            *(f"{kind}.curve" for kind in MACHINES), "CurvePoint.speed", "CurvePoint.torque",
+            *(f"{kind}.curve" for kind in MACHINES), "TorquePoint.speed", "TorquePoint.torque",
             *(f"{kind}.{key}" for kind in ELECTRIC for key in (*KLOSS, "gain", "set_speed", "torque_limit")),
             "Generator.power", "Propeller.damping_factor",
         ),

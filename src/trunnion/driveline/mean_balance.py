@@ -14,7 +14,7 @@ from trunnion.driveline.elements import ConstantSpeed, Rotor
 from trunnion.driveline.parts import Dragged, Geared, Jointed, Loose, Part, Prescribed, Sprung, Tied
 from trunnion.driveline.quantities import DAMPING, SPEED, shown
 from trunnion.errors import InputError
-from trunnion.laws.balance import Balance, balances
+from trunnion.laws.balance import TorqueBalance, balances
 from trunnion.laws.torque_curve import TorqueCurve
 
 LOWEST, HIGHEST = 0.01, 1e5
@@ -62,7 +62,7 @@ def geared_curves(line: ElementChain) -> list[tuple[float, TorqueCurve]]:
     return [(abs(float(ratio)), one.load) for ratio, one in ratios if ratio and isinstance(one, Rotor)]
 
 
-def mean_speeds(line: ElementChain) -> tuple[Balance, ...]:
+def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:
     """All input speeds [rad/s] at which the torques of a line that is left free balance, rising."""
     return balances(geared_curves(line), LOWEST, HIGHEST)
 

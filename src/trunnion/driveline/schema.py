@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
-from trunnion.driveline.curve_points import CurvePoint
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -27,6 +27,7 @@ _ROLLING = ["mass", "radius"]
 _TOOTHED = ["teeth_in", "teeth_out", "module"]
 _BASE = ["base_radius_in", "base_radius_out"]
 _RATED = ["rated_power", "rated_speed"]
+_POWERS = ["load_torque", "viscous_load", "quadratic_load"]
 
 
 def _geometry(sizes: list[str], property_: str) -> dict[str, Any]:
@@ -62,9 +63,7 @@ _RULES: dict[str, dict[str, Any]] = {
     },
     **{
         kind: {
-            "anyOf": [
-                {"required": [key]} for key in (*_RATED[:1], "load_torque", "viscous_load", "quadratic_load", "curve")
-            ],
+            "anyOf": [{"required": [key]} for key in (_RATED[0], *_POWERS, "curve")],
             "dependentRequired": {_RATED[0]: [_RATED[1]], _RATED[1]: [_RATED[0]]},
         }
         for kind in ("Fan", "Pump", "Propeller")
@@ -154,7 +153,7 @@ def json_schema() -> dict[str, Any]:
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),
             "Slider": _model(Slider),
-            "CurvePoint": _model(CurvePoint),
+            "TorquePoint": _model(TorquePoint),
         },
     }
 

@@ -48,6 +48,9 @@ def _numbers(element: Element) -> list[str]:
             what = "slider" if key == "friction" else "harmonic"
             parts.append(f"{key.replace('_', ' ')} of {len(value)} {what}{'s' if len(value) > 1 else ''}")
             continue
+        if key == "curve":
+            parts.append(f"curve of {len(value)} points")
+            continue
         if isinstance(value, tuple):
             parts.append(f"{key} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
             continue

@@ -30,7 +30,7 @@ STEPS = 8
 
 
 @dataclass(frozen=True)
-class Balance:
+class TorqueBalance:
     """A speed [rad/s] of the input where torques balance, and the slope [N m s/rad] of f there."""
 
     speed: float
@@ -52,7 +52,7 @@ def slope_left(curves: Geared, speed: float) -> float:
     return float(sum(ratio**2 * curve.slope(ratio * speed) for ratio, curve in curves))
 
 
-def balances(curves: Geared, low: float, high: float) -> tuple[Balance, ...]:
+def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ...]:
     """All balances between two input speeds [rad/s] that lie within all curves, rising.
 
     Speeds over a stretch of which the torques balance everywhere are none: nothing there tells one from the other.
@@ -68,7 +68,7 @@ def balances(curves: Geared, low: float, high: float) -> tuple[Balance, ...]:
         for root in _roots(curves, first, last):
             if not found or root - found[-1] > ALIKE * high:
                 found.append(root)
-    return tuple(Balance(speed, slope_left(curves, speed)) for speed in found)
+    return tuple(TorqueBalance(speed, slope_left(curves, speed)) for speed in found)
 
 
 def _roots(curves: Geared, low: float, high: float) -> Iterator[float]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
@@ -95,6 +96,8 @@ def _numbers(element: Element) -> list[str]:
 
 def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
     """Quantities one after the other, or how many harmonics there are."""
+    if isinstance(values[0], TorquePoint):
+        return f"of {len(values)} points"
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
     return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))
