@@ -36,9 +36,13 @@ from trunnion.driveline import (
     Ratio,
     Schedule,
     Shaft,
+    SlipClutch,
     SwitchedOff,
+    TitleBlock,
     Tolerance,
     TunedDamper,
+    Tyre,
+    Vehicle,
     ViscousDamper,
     dump,
     load,
@@ -641,6 +645,49 @@ PYTHON = [
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: SlipClutch(), "SlipClutch.torque: is missing", 'torque = "1200 N*m"'),
+    (lambda: SlipClutch(torque=0), "SlipClutch.torque = 0: must be positive", '"250 N*m"'),
+    (lambda: SlipClutch(torque=9, sliding_torque=-1, stribeck_speed=1), "SlipClutch.sliding_torque = -1: must", "250"),
+    (lambda: SlipClutch(torque=9, sliding_torque=5), "SlipClutch.stribeck_speed: is missing beside", '"30 rpm"'),
+    (lambda: SlipClutch(torque=9, stribeck_speed=5), "SlipClutch.sliding_torque: is missing beside", '"900 N*m"'),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[0, 1], clamping_shares=[1]),
+        "SlipClutch.clamping_shares = [1]: are 1 for 2 clamping_times",
+        'clamping_times = ["0 s", "0.3 s"]',
+    ),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[1, 1], clamping_shares=[0, 1]),
+        "SlipClutch.clamping_times = [1, 1]: must rise",
+        "write times from the start on, each later than the one before",
+    ),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[0], clamping_shares=[-0.1]),
+        "SlipClutch.clamping_shares = [-0.1]: must not be negative",
+        "write 0 for an open clutch",
+    ),
+    (lambda: Vehicle(mass=900), "Vehicle.wheel_radius: is missing", ""),
+    (lambda: Vehicle(mass=900, wheel_radius=0), "Vehicle.wheel_radius = 0: must be positive", '"76 mm"'),
+    (
+        lambda: Vehicle(mass=900, wheel_radius=1, grade=-0.1),
+        "Vehicle.grade = -0.1: must not be negative",
+        "load_torque",
+    ),
+    (lambda: Vehicle(mass=900, wheel_radius=1, drag_area="2 m"), "Vehicle.drag_area = '2 m'", "m^2"),
+    (lambda: Tyre(stiffness=0), "Tyre.stiffness = 0: must be positive", "write for example"),
+    (lambda: Tyre(stiffness=1, radius=0.3), "Tyre.slip_stiffness: is missing beside radius", "needs slip_stiffness"),
+    (lambda: line(Vehicle(mass=9, wheel_radius=1, name="car")), "car: has no wheels", "behind a Tyre"),
+    (
+        lambda: line(Disk(inertia=1), Tyre(stiffness=1, name="tyre"), Disk(inertia=1)),
+        "tyre: carries no vehicle",
+        "put a Vehicle behind it",
+    ),
+    (
+        lambda: line(
+            Disk(inertia=1, name="hub"), Shaft(stiffness=1), Disk(inertia=1), Tyre(stiffness=1, name="tyre", to="hub")
+        ),
+        "tyre.to = 'hub': is no Vehicle",
+        "name a Vehicle",
+    ),
     (lambda: belt(radius_in=0), "Belt.radius_in = 0: must be positive", '"76 mm"'),
     (lambda: belt(radius_out=-0.1), "Belt.radius_out = -0.1: must be positive", '"76 mm"'),
     (lambda: belt(span_stiffness=0), "Belt.span_stiffness = 0: must be positive", "write for example"),
@@ -720,7 +767,7 @@ PYTHON = [
     (
         lambda: order_response(driving(motor(**KLOSS), fan(quadratic_load=0.01)), [120.0]),
         "driveline.load_torque: is free–free and its torques do not balance",
-        "leave the speed out, so that it runs where they do, at 1433.",
+        "leave the speed out, so that it runs where they do, at 1428.405 rpm (stable)",
     ),
     (
         lambda: stability(driving(motor(curve=CURVE), fan(load_torque=150.0))),
@@ -898,6 +945,9 @@ PYTHON = [
     ),
     # operation
     (lambda: Operation(speed=0), "operation.speed = 0: must be positive", "at rest"),
+    (lambda: line(document="TV-1"), "driveline.document = 'TV-1': is not a TitleBlock", "tn.TitleBlock("),
+    (lambda: TitleBlock(numbr="TV-1"), "document.numbr = 'TV-1': unknown key", 'did you mean "number"?'),
+    (lambda: TitleBlock(revision=2), "document.revision = 2: is not a name", "one line of text"),
     (lambda: Operation(sped=1), "operation.sped = 1: unknown key", 'did you mean "speed"?'),
     (lambda: Operation(speed_unit="RPM"), "operation.speed_unit = 'RPM': is not a speed unit", '"rpm"'),
     (

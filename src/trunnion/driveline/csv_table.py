@@ -1,6 +1,6 @@
 """Tables from a spreadsheet, beside a description: quantities in columns that its first line names, each with its unit.
 
-TableColumns stand apart by commas, semicolons or tabs; a line that starts with # is a remark. What a message says of a table
+Columns stand apart by commas, semicolons or tabs; a line that starts with # is a remark. What a message says of a table
 is its place, never its content: a description may name a file that is none.
 """
 

@@ -24,7 +24,10 @@ from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.title_block import TitleBlock
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -82,7 +85,8 @@ def _lags(line: Driveline) -> list[str]:
 
 
 def _dragged(line: Driveline) -> list[str]:
-    return [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
+    rings = [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
+    return rings + [line.spring_name((i,), 1) for i, e in enumerate(line.elements) if isinstance(e, Tyre) and e.slips]
 
 
 def _branches(line: Driveline) -> list[str]:
@@ -129,13 +133,10 @@ def _of_springs(*keys: str) -> tuple[str, ...]:
     return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
 
 
-def _of_consumers(*keys: str) -> tuple[str, ...]:
-    return tuple(f"{kind}.{key}" for kind in CONSUMERS for key in keys)
-
-
-def _load(key: str) -> tuple[str, ...]:
-    """A load of disks and of machines that a line drives."""
-    return f"Disk.{key}", *_of_consumers(key)
+def _of_loaded(key: str) -> tuple[str, ...]:
+    """A field of every kind of element that carries outer torques, and of machines that have it."""
+    kinds = KINDS.items()
+    return tuple(f"{name}.{key}" for name, kind in kinds if issubclass(kind, Rotor) and key in kind.model_fields)
 
 
 CURVE = "torque curve"
@@ -195,6 +196,17 @@ FEATURES = (
         _of("Belt", "radius_in", "radius_out", "span_stiffness", "damping", "inertia_in", "inertia_out"),
         _kind(Belt),
     ),
+    Feature("tyre", _of("Tyre", "stiffness", "damping"), _kind(Tyre)),
+    Feature(
+        "slip of a tyre",
+        _of("Tyre", "slip_stiffness", "radius", "travel_speed", "inertia"),
+        _where(Tyre, "slip_stiffness", lambda tyre: tyre.slips),
+    ),
+    Feature("vehicle", _of("Vehicle", "mass", "wheel_radius", "wheel_inertia"), _kind(Vehicle)),
+    Feature("rolling resistance", _of("Vehicle", "rolling_resistance", "grade")),
+    Feature(
+        "air drag", _of("Vehicle", "drag_area", "air_density"), _where(Vehicle, "drag_area", lambda one: one.drag_area)
+    ),
     Feature(
         "planetary set",
         (
@@ -203,7 +215,7 @@ FEATURES = (
             "Planetary.teeth_planet",
         ),
     ),
-    Feature("closed loop", _of_springs("to")),
+    Feature("closed loop", (*_of_springs("to"), "Tyre.to")),
     Feature(
         "shafts tied to two others",
         (
@@ -249,27 +261,35 @@ FEATURES = (
         _dry_friction(False),
     ),
     Feature(
+        "slip clutch",
+        _of("SlipClutch", "torque", "sliding_torque", "stribeck_speed", "clamping_times", "clamping_shares"),
+        _kind(SlipClutch),
+    ),
+    Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
     ),
-    Feature("load torque", _load("load_torque")),
-    Feature("drive share", ("Disk.drive_share", "Motor.drive_share")),
-    Feature("viscous load", _load("viscous_load")),
-    Feature("quadratic load", (*_load("quadratic_load"), *_of_consumers("rated_power", "rated_speed"))),
+    Feature("load torque", _of_loaded("load_torque")),
+    Feature("drive share", _of_loaded("drive_share")),
+    Feature("viscous load", _of_loaded("viscous_load")),
+    Feature(
+        "quadratic load",
+        (*_of_loaded("quadratic_load"), *_of_loaded("rated_power"), *_of_loaded("rated_speed")),
+    ),
     Feature(
         CURVE,
         (
-            *(f"{kind}.curve" for kind in MACHINES), "TorquePoint.speed", "TorquePoint.torque",
-            *(f"{kind}.{key}" for kind in ELECTRIC for key in (*KLOSS, "gain", "set_speed", "torque_limit")),
-            "Generator.power", "Propeller.damping_factor",
+            *_of_loaded("curve"), "TorquePoint.speed", "TorquePoint.torque", "Generator.power",
+            *(one for key in (*KLOSS, "gain", "set_speed", "torque_limit") for one in _of_loaded(key)),
+            "Propeller.damping_factor",
         ),
         _curves,
     ),
-    Feature(LAG, tuple(f"{kind}.{key}" for kind in ELECTRIC for key in ("corner_frequency", "pole_pairs")), _lags),
+    Feature(LAG, (*_of_loaded("corner_frequency"), *_of_loaded("pole_pairs")), _lags),
     Feature(
         "excitation by order",
-        ("Disk.excitation", "Excitation.order", "Excitation.amplitude", *(f"{kind}.excitation" for kind in MACHINES)),
+        (*_of_loaded("excitation"), "Excitation.order", "Excitation.amplitude"),
         _excited(lambda one: not one.frequency),
     ),
     Feature(
@@ -306,8 +326,10 @@ NOT_FEATURES = {
     "Driveline.name": "a label",
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",

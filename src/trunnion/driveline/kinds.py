@@ -14,7 +14,9 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 KINDS: dict[str, type[Element]] = {
     kind.__name__: kind
@@ -24,6 +26,7 @@ KINDS: dict[str, type[Element]] = {
         Coupling,
         PiecewiseShaft,
         Clutch,
+        SlipClutch,
         DualMassFlywheel,
         Disk,
         Motor,
@@ -43,5 +46,7 @@ KINDS: dict[str, type[Element]] = {
         GearPair,
         Planetary,
         Differential,
+        Tyre,
+        Vehicle,
     )
 }

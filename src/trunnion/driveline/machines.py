@@ -58,15 +58,6 @@ class Machine(Rotor):
     curve: Curve = optional(default=(), description="points of its torque over its speed")
     excitation: Excitations = optional(default=(), description="harmonic torques, in time or in its rotation")
 
-    @property
-    def firing_angles(self) -> tuple[float, ...]:
-        """None: machines have no cylinders."""
-        return ()
-
-    @property
-    def misfiring(self) -> None:
-        """None: machines have no cylinders."""
-
     def inertias(self, number: Numbers) -> tuple[Any, ...]:
         """As stated."""
         return (number("inertia"),)

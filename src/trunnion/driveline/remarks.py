@@ -15,6 +15,7 @@ from trunnion.driveline.machines import ElectricMachine
 from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.quantities import FREQUENCY, shown
 from trunnion.driveline.shafts import Shaft, SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 
 HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
 DRAGGED, LAG = "damper without a spring", "lag of a motor"
@@ -67,9 +68,11 @@ def unlike_in_series(line: ElementChain) -> tuple[tuple[tuple[str, ...], float],
 def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
     """The feature (see ``trunnion.driveline.features``) and one sentence with its remedy."""
     for name in prescribed_excitations(line):
+        clutch = _slip_clutch_before(line, name)
+        does = f"does nothing while {clutch} sticks" if clutch else "does nothing"
         yield (
             HELD,
-            f"{name}.excitation: does nothing, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
+            f"{name}.excitation: {does}, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
             f"give {name} drive_share = 1, or put a Shaft between",
         )
     for names, limit in unlike_in_series(line):
@@ -87,6 +90,16 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
                 f"{name}: its torque lags above {corner}; its slope is taken as quasi-static, which holds well below "
                 "that; leave pole_pairs and corner_frequency out where it does not matter",
             )
+
+
+def _slip_clutch_before(line: ElementChain, name: str) -> str:
+    """The last slip clutch on the way to the element of that name; "" for none."""
+    place: int | None = line.names.index(name)
+    while place is not None:
+        if isinstance(line.elements[place], SlipClutch):
+            return line.names[place]
+        place = line.parents[place]
+    return ""
 
 
 def _groups(line: ElementChain) -> list[int]:

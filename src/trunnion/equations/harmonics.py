@@ -21,7 +21,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Rotor
+from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.amplitudes import Running, amplitude, where
@@ -217,7 +217,7 @@ def mesh_errors(assembly: Assembly, mesh: Mesh, row: Array) -> tuple[MeshError, 
 
 def cylinders(disk: Rotor, law: Excitation) -> complex:
     """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 1 where it has none."""
-    if not disk.firing_angles or law.order is None:
+    if not isinstance(disk, Disk) or not disk.firing_angles or law.order is None:
         return 1.0
     turned = np.exp(-1j * law.order * np.array(disk.firing_angles))
     if disk.misfiring is not None and law.quadratic_amplitude is None:

@@ -31,6 +31,7 @@ from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, li
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
+from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -319,6 +320,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
     nonuniform = {line.names[topo.stations[j].element] for j, law in laws if law.nonuniform}
     refuse_dragged(assembly)
+    refuse_slip_clutches(line)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in nonuniform:
@@ -332,7 +334,10 @@ def _refuse_inexact(assembly: Assembly) -> None:
         elif isinstance(element, Rotor) and element.tangent:
             found = "curve", "goes with the speed, so that no stage is linear with constant coefficients"
         elif isinstance(element, Rotor) and element.loaded_by_square:
-            found = "quadratic_load", "is not linear in the speed, so that no motion is exact"
+            found = (
+                "drag_area" if getattr(element, "drag_area", 0.0) else "quadratic_load",
+                "is not linear in the speed, so that no motion is exact",
+            )
         if found:
             key, problem = found
             value = getattr(element, key)
@@ -401,7 +406,7 @@ class _Builder:
                 remedy="give speed=tn.rpm(1500), say",
             )  # fmt: skip
         parts = self._parts()
-        springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
+        springs = tuple(line.spring_name(c.shafts, c.number) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
             assembly=self.assembly, springs=springs, sliders=names, source=self.source, turns=self.turns, speed=speed,

@@ -12,7 +12,7 @@ from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.reporting.contents import Contents
@@ -45,7 +45,8 @@ class Table:
     @property
     def numeric(self) -> tuple[bool, ...]:
         """Whether a column holds numbers alone."""
-        return tuple(all(_is_number(row[i]) for row in self.rows) for i in range(len(self.heads)))
+        columns = [[row[i] for row in self.rows] for i in range(len(self.heads))]
+        return tuple(any(column) and all(map(_is_number, column)) for column in columns)
 
 
 def _is_number(text: str) -> bool:
@@ -89,7 +90,7 @@ def _numbers(element: Element) -> list[str]:
         parts.append("hence " + ", ".join(_signs(t) for t in tube))
     if isinstance(element, Shaft) and element.loss_factor_frequency is not None:
         parts.append("hence " + _signs(shown(element.damping_coefficient, DAMPING, digits=4)))
-    if isinstance(element, Disk) and element.inertia is None:
+    if isinstance(element, Loaded) and getattr(element, "inertia", None) is None:
         parts.append("hence " + _signs(shown(element.moment_of_inertia, INERTIA, digits=4)))
     return parts
 

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Loaded
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, joint_laws
@@ -121,9 +121,9 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDistur
     others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
     faster = np.concatenate([np.zeros(n), turn, others])
     column = line.assembly.packed.column
-    columns = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    columns = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load", "drag_area")]
     loads = [place for place in columns if place >= 0]
-    curved = any(rotor.loaded_by_speed and not isinstance(rotor, Disk) for _, rotor in topo.rotors)
+    curved = any(rotor.loaded_by_speed and not isinstance(rotor, Loaded) for _, rotor in topo.rotors)
     unsteady = [one.columns[0] for one in line.torques]
 
     def at(system: System, x: Array) -> NeutralDisturbances:
