@@ -41,6 +41,9 @@ class TorquePoint(Record):
     ----------
     speed : of the shaft that it acts on [rad/s].
     torque : there [N m].
+
+    >>> TorquePoint(speed="0 rpm", torque="0.4 kN*m").torque
+    400.0
     """
 
     what: ClassVar[str] = "curve"
@@ -76,10 +79,24 @@ Curve = Annotated[TableList[TorquePoint], BeforeValidator(_points)]
 def read_curve(path: str | os.PathLike[str]) -> tuple[TorquePoint, ...]:
     """Points of a CSV file with the columns speed and torque, each with its unit.
 
+    Parameters
+    ----------
+    path : of the file.
+
     Raises
     ------
     InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none;
         speeds that do not rise.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     table = Path(folder, "motor.csv")
+    ...     _ = table.write_text("speed [rad/s],torque [kN*m]\\n0,0.4\\n157,0")
+    ...     print([(one.speed, one.torque) for one in tn.read_curve(table)])
+    [(0.0, 400.0), (157.0, 0.0)]
     """
     source, rows = Path(path).name, read_table(path, COLUMNS)
     try:

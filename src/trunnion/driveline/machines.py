@@ -341,7 +341,7 @@ class Fan(Consumer):
 
     >>> fan = Fan(inertia=3.0, rated_power="30 kW", rated_speed="1480 rpm")
     >>> round(float(fan.load.value(fan.rated_speed)), 4)
-    193.5684
+    193.5668
     """
 
 
@@ -354,6 +354,10 @@ class Pump(Consumer):
     inertia, curve, excitation : as of a ``Machine``; torques of the curve are positive and resist.
     rated_power, rated_speed, load_torque, viscous_load, quadratic_load : as of a ``Consumer``; load_torque is pressure
         times displacement per radian.
+
+    >>> pump = Pump(inertia=0.3, load_torque="120 N*m", viscous_load=0.2)
+    >>> print(float(pump.load.value(50.0)))
+    130.0
     """
 
 
