@@ -73,18 +73,18 @@ def matrix_patches(
 def _grid(sample: Sample, box: Box, tolerance: float, most_nodes: float) -> tuple[Grid | None, float, bool]:
     """The grid that a line of nodes along either direction asks for, None where its degrees are too high; the nodes
     spent, infinitely many where the grid would take more than ``most_nodes``; whether to halve u for lower degrees."""
-    up = _Line(sample, box, False, SHARPER * tolerance, HIGHEST_DEGREE)
+    up = _NodeLine(sample, box, False, SHARPER * tolerance, HIGHEST_DEGREE)
     if up.degree is None:
         return None, up.nodes, False
     affordable = (most_nodes - up.nodes) / (up.degree + 1)
-    across = _Line(sample, box, True, SHARPER * tolerance, min(HIGHEST_DEGREE, affordable))
+    across = _NodeLine(sample, box, True, SHARPER * tolerance, min(HIGHEST_DEGREE, affordable))
     spent = up.nodes + across.nodes
     if across.degree is None:
         return None, spent if affordable >= HIGHEST_DEGREE else np.inf, True
     return Grid(box, across.degree, up.degree), spent, True
 
 
-class _Line:
+class _NodeLine:
     """Nodes along one direction of a box, where the other is largest: the slowest, the steepest; ``degree``: what that
     direction needs, None where more than ``highest``."""
 
