@@ -90,7 +90,7 @@ def kinetostatics(
     refuse_pendulums(
         line, "swings with the orders of the rotation, and a turn is quasi-static", "leave it out of the turn"
     )
-    train = chain(line, _lengths(line, lengths), branch)
+    train = chain(line, _lengths(line, lengths), branch, drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
