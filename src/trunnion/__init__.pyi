@@ -8,16 +8,19 @@ from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
 from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
+from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
+from trunnion.driveline import Crossing as Crossing
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
 from trunnion.driveline import Excitation as Excitation
+from trunnion.driveline import FrictionTorque as FrictionTorque
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint
 from trunnion.driveline import IdealJoint as IdealJoint
@@ -29,6 +32,7 @@ from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint
+from trunnion.driveline import Scenario as Scenario
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
@@ -45,6 +49,7 @@ from trunnion.driveline import dumps as dumps
 from trunnion.driveline import hz as hz
 from trunnion.driveline import load as load
 from trunnion.driveline import loads as loads
+from trunnion.driveline import read_torque as read_torque
 from trunnion.driveline import rpm as rpm
 from trunnion.driveline.cardan_angles import cardan_line as cardan_line
 from trunnion.driveline.cylinders import reciprocating_mass as reciprocating_mass
@@ -97,6 +102,7 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales as mult
 from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
+from trunnion.motion.transients.transient import transient as transient
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram

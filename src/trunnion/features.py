@@ -303,6 +303,14 @@ ROWS: dict[str, Row] = {
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
     "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
+    "transients": _row(
+        refused={
+            **_ONE_DRIVE,
+            "excitation that varies with speed or load": "its amplitude would change on the way",
+        },
+        said=_BY_PLACE,
+        inert=_PASSIVE,
+    ),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
     "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),

@@ -20,15 +20,21 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.torque_file import read_torque
 
 __all__ = [
     "STARTERS",
+    "AppliedTorque",
+    "Crossing",
+    "FrictionTorque",
+    "Scenario",
     "ConstantSpeed",
     "Differential",
     "Disk",
@@ -68,6 +74,7 @@ __all__ = [
     "json_schema",
     "load",
     "loads",
+    "read_torque",
     "rpm",
     "starter",
 ]

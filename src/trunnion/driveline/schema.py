@@ -16,6 +16,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
@@ -109,6 +110,11 @@ def json_schema() -> dict[str, Any]:
                 "items": {"$ref": "#/$defs/Tolerance"},
                 "description": "how far numbers scatter, for tolerance_study",
             },
+            "scenario": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/Scenario"},
+                "description": "what happens to the line when, for transient",
+            },
             "element": {
                 "type": "array",
                 "minItems": 1,
@@ -130,6 +136,10 @@ def json_schema() -> dict[str, Any]:
             "SwitchedOff": _model(SwitchedOff),
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
+            "Scenario": _model(Scenario),
+            "AppliedTorque": _applied_torque(),
+            "FrictionTorque": _model(FrictionTorque),
+            "Crossing": _model(Crossing),
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
@@ -137,6 +147,12 @@ def json_schema() -> dict[str, Any]:
             "Slider": _model(Slider),
         },
     }
+
+
+def _applied_torque() -> dict[str, Any]:
+    schema = _model(AppliedTorque)
+    schema["properties"]["file"] = {"type": "string", "description": "CSV table beside the file, instead of its points"}
+    return schema
 
 
 def _tolerance() -> dict[str, Any]:

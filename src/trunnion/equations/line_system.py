@@ -124,7 +124,7 @@ class LineSystem(Portable):
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
             start=np.zeros(2 * n + len(friction_sliders)),
-            scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
+            scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * (self.speed or 1.0)], n), reach]),
             numbers_of=self._numbers,
             regimes=line_regimes(self.assembly),
             speed_unit=speed_unit(self.assembly.line),
@@ -132,7 +132,7 @@ class LineSystem(Portable):
 
     def _period(self, values: Mapping[str, float]) -> float | None:
         """The period of everything [s]; None where the excitations have none of usable length in common."""
-        if self.period_turns is None:
+        if self.period_turns is None or not values[SPEED]:
             return None
         speed, labels, topo = values[SPEED], self.assembly.packed.labels, self.assembly.topology
         turn = 2 * np.pi / speed
@@ -169,12 +169,13 @@ class LineSystem(Portable):
         drive: float = 0.0,
         known: LineCoefficients | None = None,
         case: int = 0,
+        applied: Array | None = None,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
-        number ``case``, where they are at hand.
+        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -211,8 +212,11 @@ class LineSystem(Portable):
             added[s] += joint.turned
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
+        if applied is not None:
+            behind.append(applied.ravel())
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
+        head += [0, 0] if applied is None else [len(applied), begin]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
@@ -290,12 +294,16 @@ class LineSystem(Portable):
 
     def observed(self, t: Array, x: Array, numbers: Array) -> LineMotion:
         """The same of states x (time, state) at times t (time,), under ``numbers`` as of ``numbers``."""
+        return self.moving(t, x, numbers)[0]
+
+    def moving(self, t: Array, x: Array, numbers: Array) -> tuple[LineMotion, Array]:
+        """The same, and the speed [rad/s] of every station (time, station)."""
         topo = self.assembly.topology
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
         rotation, speed = np.empty((2, len(t), len(topo.stations)))
         stages = np.zeros(twist.shape, dtype=np.int64)
         kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, speed, stages)
-        return LineMotion(twist, torque, rotation)
+        return LineMotion(twist, torque, rotation), speed
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
         """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the

@@ -1,0 +1,69 @@
+"""Torques over time, speed or angle from a spreadsheet: one row a point, two columns, each with its unit.
+
+::
+
+    time [s],torque [N*m]
+    0,0
+    0.5,120
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from trunnion.driveline.csv_columns import read_columns, read_rows, read_values
+from trunnion.driveline.quantities import ANGLE, SPEED, TIME, TORQUE
+from trunnion.errors import InputError
+
+COLUMNS = {"time": TIME, "speed": SPEED, "angle": ANGLE, "torque": TORQUE}
+_FIRST_LINE = "time [s],torque [N*m]"
+
+
+def read_torque(path: str | os.PathLike[str]) -> dict[str, tuple[float, ...]]:
+    """Points and torques [SI] of a CSV file, as ``AppliedTorque`` takes them: ``AppliedTorque(on="motor", **found)``.
+
+    Raises
+    ------
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none.
+    """
+    place = Path(path)
+    rows = read_rows(place, "the table of torques", _FIRST_LINE)
+    columns = read_columns(place.name, rows[0], COLUMNS)
+    over = [key for key in columns if key != "torque"]
+    if "torque" not in columns or len(over) != 1:
+        problem = "goes over one of time, speed and angle, and has torques beside it"
+        raise InputError(problem, key=place.name, remedy=f"write {_FIRST_LINE} in its first line")
+    if len(rows) < 2:
+        raise InputError("has no rows below its first line", key=place.name, remedy="write one row a point")
+    points = [
+        read_values(f"{place.name}: row {number}", row, columns, COLUMNS)
+        for number, row in enumerate(rows[1:], start=2)
+    ]
+    return {key: tuple(point[key] for point in points) for key in (over[0], "torque")}
+
+
+def with_torque_files(scenario: dict[str, Any], place_of: Callable[[str], Path]) -> dict[str, Any]:
+    """A scenario's table with the points of every torque that names a ``file`` put in its place.
+
+    Raises
+    ------
+    InputError : the file cannot be read, or its points stand beside it.
+    """
+    torques = scenario.get("torque")
+    if not isinstance(torques, list):
+        return scenario
+    return {**scenario, "torque": [_with_points(one, place_of) if isinstance(one, dict) else one for one in torques]}
+
+
+def _with_points(torque: dict[str, Any], place_of: Callable[[str], Path]) -> dict[str, Any]:
+    named = torque.get("file")
+    if not isinstance(named, str):
+        return torque
+    found = read_torque(place_of(named))
+    beside = [key for key in COLUMNS if key in torque]
+    if beside:
+        raise InputError("stands beside file", element="torque", key=beside[0], remedy="leave one of the two out")
+    return {**{key: value for key, value in torque.items() if key != "file"}, **found}
