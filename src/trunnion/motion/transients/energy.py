@@ -102,7 +102,7 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
     stations = numbers[core.HEAD : core.HEAD + len(topo.stations) * core.PER_STATION].reshape(-1, core.PER_STATION)
     load = stations[:, core.LOAD] + (stations[:, core.VISCOUS] + stations[:, core.QUADRATIC] * np.abs(speed)) * speed
     own = applied_torques(piece, times, angle, speed)
-    places = [*(one.station for one in piece.torques), *(one.station for one in piece.frictions)]
+    places = [one.station for one in piece.acting]
     power = own * speed[:, places]
     count = len(piece.torques)
     near = [c.near for c in topo.compliances]

@@ -12,14 +12,19 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, against
-from trunnion.equations.line_system import LineSystem
+from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.motion.simulation.input_rotation import InputRotation
+from trunnion.motion.simulation.simulate import positive_time
 from trunnion.motion.transients.energy import EnergyBalance, applied_torques, energy_balance, station_angles
-from trunnion.motion.transients.stepping import Piece, Place
+from trunnion.motion.transients.prepare import Asked, driven_line, follow
+from trunnion.motion.transients.stepping import LOCATED, Found, Piece, Place
 from trunnion.numerics.curves import Extremes, extremes_in
+from trunnion.numerics.integration.integration import MOST_STEPS
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import internal, labelled
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -34,13 +39,15 @@ if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
     from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque
 
+BACKWARDS = 0.02
+"""Share of the largest speed beyond which a line that turns against its sense does more than swing."""
 PER_STEP, FEWEST, MOST = 3, 400, 50_000
 """Samples a step, and of a whole run, at which it is shown."""
 
 
 class Moving(NamedTuple):
     """Of times (m,): twist [rad] and torque [N m] of every spring (m, spring), positive with the twist; angle [rad] and
-    speed [rad/s] of every station (m, station); every torque applied and friction (m, torque) [N m]."""
+    speed [rad/s] of every station (m, station), and what is applied to it by torques and friction [N m]."""
 
     twist: Array
     torque: Array
@@ -68,7 +75,7 @@ class Transient(Result):
     start_time: float = internal("", "s")
     name: str = internal("of the scenario")
     description: Any = internal("of the line as it was given")
-    asked: Any = internal("torques, frictions and crossings")
+    asked: Asked = internal("torques, frictions and crossings")
     unit: str = internal("that speeds are printed in")
 
     @property
@@ -163,11 +170,7 @@ class Transient(Result):
     @property
     def applied(self) -> Array:
         """What torques and friction put on every disk (points, disk) [N m], positive where it drives."""
-        found = np.zeros((len(self.time), len(self.disks)))
-        for k, one in enumerate((*self.asked[0], *self.asked[1])):
-            place = self.disks.index(one.on)
-            found[:, place] += self.moving.applied[:, k] * self._senses[place]
-        return found
+        return self.moving.applied[:, self._stations] * self._senses
 
     @cached_property
     def torque_extremes(self) -> Extremes:
@@ -247,7 +250,7 @@ class Transient(Result):
             return
         if self.starts_free:
             mean = self._mean_deviation(self.time)[1] + self.profile.at(self.time)
-            back = np.flatnonzero(mean < -1e-3 * np.abs(mean).max())
+            back = np.flatnonzero(mean < -BACKWARDS * np.abs(mean).max())
             if len(back) and mean[0] >= -least:
                 words = f"the line turns backwards from t = {self.time[back[0]]:.4g} s on"
                 yield Finding(Gravity.CAUTION, f"{words}: its torques drive it against its sense of rotation")
@@ -333,9 +336,33 @@ class Transient(Result):
         ------
         InputError : a line of other disks or springs; what ``transient`` refuses.
         """
-        from trunnion.motion.transients.transient import gone_on
+        given = (torque, friction, crossing)
+        asked: Any = tuple(old if new is None else tuple(new) for old, new in zip(self.asked, given, strict=True))
+        description = self.description if line is None else line
+        prepared = line_system(driven_line(description, asked), self.line.speed, leaves=True)
+        same = prepared.names == self.line.names and prepared.shafts == self.line.shafts
+        if not same or len(prepared.sliders) != len(self.line.sliders):
+            remedy = "change numbers of the same line alone"
+            raise InputError("has other disks or springs than the run", key="line", remedy=remedy)
+        place = self.place
+        if line is not None:
+            place = replace(place, state=prepared.system.within_limits(place.state), regime=LOCATED)
+        tolerance = self.tolerance if tolerance is None else tolerance
+        length = positive_time(duration, "give seconds")
+        found = follow(prepared, place, length, asked, tolerance, MOST_STEPS)
+        return self.joined(Transient.of(prepared, found, asked, tolerance, place.time, self.name, description))
 
-        return gone_on(self, duration, torque, friction, crossing, line, tolerance)
+    @classmethod
+    def of(
+        cls, line: LineSystem, found: Found, asked: Asked, tolerance: float, since: float, name: str,
+        description: Driveline,
+    ) -> Self:  # fmt: skip
+        """What was found of a line from ``since`` [s] on."""
+        return cls(
+            line=line, pieces=tuple(found.pieces), place=found.place, outcome=found.outcome,
+            crossings=tuple(found.crossed), tolerance=tolerance, start_time=since, name=name, description=description,
+            asked=asked, unit=speed_unit(line.assembly.line),
+        )  # fmt: skip
 
     def joined(self, later: Transient) -> Self:
         """This run and what comes behind it, as one."""
@@ -355,5 +382,6 @@ class Transient(Result):
 def _moving(piece: Piece, times: Array) -> Moving:
     motion, speed = piece.line.moving(times, piece.trajectory.at(times), piece.numbers)
     angle = station_angles(piece, times, motion.rotation)
-    applied = applied_torques(piece, times, angle, speed)
+    applied, places = np.zeros(speed.shape), [one.station for one in piece.acting]
+    np.add.at(applied.T, places, applied_torques(piece, times, angle, speed).T)
     return Moving(motion.twist, motion.torque, angle, speed, applied)

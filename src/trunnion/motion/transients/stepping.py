@@ -70,6 +70,11 @@ class Piece:
     torques: tuple[PlacedTorque, ...]
     frictions: tuple[PlacedFriction, ...]
 
+    @property
+    def acting(self) -> tuple[PlacedTorque | PlacedFriction, ...]:
+        """All that acts, in the order of the numbers."""
+        return (*self.torques, *self.frictions)
+
 
 class Found(NamedTuple):
     """What became of a run."""
