@@ -44,6 +44,11 @@ class Driveline(ElementChain):
     ------
     InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits or tolerances of
         elements that cannot have them.
+
+    >>> import trunnion as tn
+    >>> line = Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness="10 kN*m/rad"), tn.Disk(inertia=0.8)])
+    >>> line.names
+    ('ConstantSpeed 1', 'Shaft 1', 'Disk 1')
     """
 
     what: ClassVar[str] = "driveline"

@@ -117,6 +117,9 @@ class ConstantSpeed(Element):
     """A prescribed rotation: the drive, and at the far end of a line a clamp that turns with it.
 
     The speed itself belongs to the analysis (or to the file's ``[operation]``), not to the driveline.
+
+    >>> ConstantSpeed(name="engine").kind
+    'ConstantSpeed'
     """
 
     def parts(self) -> tuple[Part, ...]:
@@ -146,6 +149,10 @@ class Disk(Element):
         own angle [rad], over 720° for four strokes; order k has the phase −k α_c.
     misfiring : number of one of these cylinders, from 1, that does not fire: it adds only what grows with the square
         of the speed, the inertia torque of its masses.
+
+    >>> disk = Disk(outer_diameter="300 mm", thickness="30 mm", material="steel")
+    >>> round(disk.inertia_values[0], 4)
+    0.1873
     """
 
     example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
@@ -252,6 +259,9 @@ class Ratio(Element):
     ratio : input speed over output speed; negative reverses.
     teeth_in, teeth_out : tooth numbers instead; the ratio is teeth_out/teeth_in, exactly, and both shafts
         count their rotation positive in their own sense of turning.
+
+    >>> Ratio(teeth_in=11, teeth_out=43).speed_ratio
+    3.909090909090909
     """
 
     example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"

@@ -95,6 +95,9 @@ class Limit(Addressed):
     Raises
     ------
     InputError : nothing limited, or a number that is not positive.
+
+    >>> Limit(of="Shaft *", max_torque="2 kN*m", margin="10 %").max_torque
+    2000.0
     """
 
     what: ClassVar[str] = "limit"

@@ -67,6 +67,9 @@ class LoadCase(Named):
     name : what it is called.
     loads : load torque [N m] by the name of the Disk it acts on; positive resists rotation. Disks that are
         not named keep their own.
+
+    >>> LoadCase(name="uphill", loads={"wheel": "400 N*m"}).loads["wheel"]
+    400.0
     """
 
     what: ClassVar[str] = "load case"
@@ -92,6 +95,10 @@ class Operation(Record):
     switched_off : rules that are not to judge this line, each with its reason.
     load_cases : named sets of load torques.
     schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
+
+    >>> running = Operation(speed="1500 rpm", speed_range=("600 rpm", "2400 rpm"), speed_unit="rpm")
+    >>> round(running.speed, 2)
+    157.08
     """
 
     what: ClassVar[str] = "operation"

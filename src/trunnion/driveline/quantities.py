@@ -416,15 +416,48 @@ else:
 
 
 def deg(angle: Number) -> Number:
-    """Degrees to radians; numbers or arrays."""
+    """Degrees to radians; numbers or arrays.
+
+    Parameters
+    ----------
+    angle : [°], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.deg(180.0), 5)
+    3.14159
+    """
     return angle * DEGREE
 
 
 def rpm(speed: Number) -> Number:
-    """Revolutions per minute to rad/s; numbers or arrays."""
+    """Revolutions per minute to rad/s; numbers or arrays.
+
+    Parameters
+    ----------
+    speed : [1/min], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.rpm(1500.0), 3)
+    157.08
+    """
     return speed * RPM
 
 
 def hz(frequency: Number) -> Number:
-    """Revolutions or cycles per second to rad/s; numbers or arrays."""
+    """Revolutions or cycles per second to rad/s; numbers or arrays.
+
+    Parameters
+    ----------
+    frequency : [Hz], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.hz(50.0), 3)
+    314.159
+    """
     return frequency * HERTZ

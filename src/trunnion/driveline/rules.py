@@ -148,6 +148,9 @@ class SwitchedOff(Record):
     ----------
     rule : its name, as "spicer-angles"; limits of the file and stability cannot be switched off.
     reason : one sentence, which every verdict and report prints.
+
+    >>> SwitchedOff(rule="spicer-angles", reason="the frame leaves no other angles").rule
+    'spicer-angles'
     """
 
     what: ClassVar[str] = "switched-off rule"

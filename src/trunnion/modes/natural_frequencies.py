@@ -180,6 +180,19 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     frequencies are those of the damped line, from the complex eigenvalues λ: ω_d = Im λ = √(1 − ζ²)|λ|. Undamped ones,
     with C and H left out, stand beside them; resonance speeds are named after those. Ratios turn at their constant
     speed ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> print(tn.natural_frequencies(line))
+    1 natural frequencies of the aligned line (joint angles zero)
+      mode 1: 111.796 rad/s = 17.793 Hz, damping ratio 0.0112
     """
     assembly = assemble(line)
     topo = assembly.topology

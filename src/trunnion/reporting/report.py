@@ -86,6 +86,13 @@ def report(
     Raises
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
+    >>> tn.report(line, speed=30.0)
+    report on a driveline, 0.1 MB of HTML; .save(path) writes it
     """
     if unit is not None:
         speed_factor(unit)

@@ -1,8 +1,8 @@
 """A branch of periodic motions followed over a parameter by shooting, through folds, stable or not.
 
 The branch is the curve P(x; λ) = x in the space of z = (x, λ), followed by pseudo-arclength
-(``numerics.arclength``) with the exact ∂P/∂x. Lengths are measured in the scale of the states and in the range of
-the parameter. A free–free line keeps its mean speed by its drives, as in ``periodic_response``.
+(``numerics.continuation.arclength``) with the exact ∂P/∂x. Lengths are measured in the scale of the states and in the
+range of the parameter. A free–free line keeps its mean speed by its drives, as in ``periodic_response``.
 
 Exact motions of a piecewise linear oscillator, or of a driveline with stages, are followed over their frequency or
 speed with the exact derivative by that as well: what other methods are measured against.
