@@ -13,7 +13,6 @@ from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
-from trunnion.driveline import Crossing as Crossing
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
@@ -24,6 +23,7 @@ from trunnion.driveline import FrictionTorque as FrictionTorque
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint
 from trunnion.driveline import IdealJoint as IdealJoint
+from trunnion.driveline import LevelCrossing as LevelCrossing
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation

@@ -414,14 +414,14 @@ PYTHON = [
         "friction on pump.static = 1: is less than in motion",
         "2 N*m",
     ),
-    (lambda: tn.Crossing(of="pump"), "crossing of pump.speed: watches nothing", "give one of"),
+    (lambda: tn.LevelCrossing(of="pump"), "crossing of pump.speed: watches nothing", "give one of"),
     (
-        lambda: tn.Crossing(of="pump", speed=1.0, angle=2.0),
+        lambda: tn.LevelCrossing(of="pump", speed=1.0, angle=2.0),
         "crossing of pump.angle = 2: watches speed and angle",
         "give one of",
     ),
     (
-        lambda: tn.Crossing(of="pump", speed=1.0, direction="up"),
+        lambda: tn.LevelCrossing(of="pump", speed=1.0, direction="up"),
         "crossing of pump.direction = 'up': is not a direction",
         "rising",
     ),
@@ -432,12 +432,14 @@ PYTHON = [
         "rename",
     ),
     (
-        lambda: free().but(scenarios=[tn.Scenario(name="a", duration=1.0, crossing=[tn.Crossing(of="pomp", speed=1)])]),
+        lambda: free().but(
+            scenarios=[tn.Scenario(name="a", duration=1.0, crossing=[tn.LevelCrossing(of="pomp", speed=1)])]
+        ),
         "scenario a, crossing.of = 'pomp': is not a Disk",
         "pump",
     ),
     (
-        lambda: tn.transient(free(), 1.0, crossing=[tn.Crossing(of="pump", torque=1)], speed=9.0),
+        lambda: tn.transient(free(), 1.0, crossing=[tn.LevelCrossing(of="pump", torque=1)], speed=9.0),
         "crossing.of = 'pump': is no spring",
         "Shaft",
     ),

@@ -56,7 +56,7 @@ def test_a_motor_by_its_formula_reaches_its_speed_when_that_says() -> None:
         return WHOLE * synchronous / (2 * torque) * ((1 - s**2) / (2 * slip) - slip * np.log(s))
 
     line = pair().replace("shaft", stiffness=1e7, damping=1e3)
-    run = tn.transient(line, 5.0, torque=[motor], speed=0.0, crossing=[tn.Crossing(of="mill", speed=last)])
+    run = tn.transient(line, 5.0, torque=[motor], speed=0.0, crossing=[tn.LevelCrossing(of="mill", speed=last)])
     assert run.outcome.kind == "crossed"
     assert run.end == pytest.approx(until(last), rel=1e-5)
 
@@ -155,7 +155,7 @@ def test_a_drive_with_a_share_is_replaced_by_its_torque() -> None:
 def test_levels_are_judged_and_crossings_kept() -> None:
     limited = tn.Driveline(pair().elements, limits=[tn.Limit(of="shaft", max_torque=50.0, margin=0.1)])
     blow = tn.AppliedTorque(on="mill", time=[0, 0.05, 0.08], torque=[0, -300, 0], between="steps")
-    watched = tn.Crossing(of="shaft", torque=20.0, direction="rising", ends=False)
+    watched = tn.LevelCrossing(of="shaft", torque=20.0, direction="rising", ends=False)
     run = tn.transient(limited, 0.2, torque=[blow], crossing=[watched], speed=50.0)
     assert "which it exceeds by" in str(run)
     assert len(run.crossings) > 3

@@ -20,7 +20,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque, Scenario
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -32,7 +32,7 @@ from trunnion.driveline.torque_file import read_torque
 __all__ = [
     "STARTERS",
     "AppliedTorque",
-    "Crossing",
+    "LevelCrossing",
     "FrictionTorque",
     "Scenario",
     "ConstantSpeed",

@@ -275,6 +275,7 @@ NOT_FEATURES = {
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    "Driveline.scenarios": "what happens to the line when, which transient follows",
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",

@@ -83,6 +83,13 @@ class AppliedTorque(Record):
     Raises
     ------
     InputError : no table or two; points that do not rise; another number of torques than points.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> blow = tn.AppliedTorque(on="mill", time=["0 s", "20 ms", "100 ms"], torque=[0, "-400 N*m", 0], between="steps")
+    >>> blow.time, blow.torque
+    ((0.0, 0.02, 0.1), (0.0, -400.0, 0.0))
     """
 
     what: ClassVar[str] = "torque"
@@ -213,6 +220,12 @@ class FrictionTorque(Record):
     Raises
     ------
     InputError : negative torque; less at rest than in motion.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> tn.FrictionTorque(on="mill", torque="20 N*m", static="30 N*m").at_rest
+    30.0
     """
 
     what: ClassVar[str] = "friction"
@@ -245,7 +258,7 @@ class FrictionTorque(Record):
         return self
 
 
-class Crossing(Record):
+class LevelCrossing(Record):
     """A level that a disk's speed or angle, or a spring's torque, twist or rate of twist, comes to.
 
     Parameters
@@ -259,6 +272,12 @@ class Crossing(Record):
     Raises
     ------
     InputError : no level or several.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> print(tn.LevelCrossing(of="mill", speed=100.0, direction="rising").label)
+    speed of mill rises to 100 rad/s
     """
 
     what: ClassVar[str] = "crossing"
@@ -300,7 +319,7 @@ class Crossing(Record):
         return f"{self.key} of {self.of} {way} {self.level:.6g} {kind.unit}"
 
     @model_validator(mode="after")
-    def _whole(self) -> Crossing:
+    def _whole(self) -> LevelCrossing:
         given = [key for key in _LEVELS if getattr(self, key) is not None]
         if len(given) != 1:
             problem = "watches nothing" if not given else f"watches {' and '.join(given)}"
@@ -311,7 +330,7 @@ class Crossing(Record):
 _READ = {
     "torque": listed(AppliedTorque, "torque", owner="on"),
     "friction": listed(FrictionTorque, "friction torque", owner="on"),
-    "crossing": listed(Crossing, "crossing", owner="of"),
+    "crossing": listed(LevelCrossing, "crossing", owner="of"),
 }
 
 
@@ -329,6 +348,13 @@ class Scenario(Named):
     Raises
     ------
     InputError : no positive duration.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> start = tn.Scenario(name="start", duration="4 s", speed="0 rpm", friction=[{"on": "mill", "torque": "20 N*m"}])
+    >>> start.duration, start.friction[0].torque
+    (4.0, 20.0)
     """
 
     what: ClassVar[str] = "scenario"
@@ -343,7 +369,7 @@ class Scenario(Named):
     friction: Annotated[TableList[FrictionTorque], BeforeValidator(_READ["friction"])] = optional(
         default=(), description="dry friction on disks"
     )
-    crossing: Annotated[TableList[Crossing], BeforeValidator(_READ["crossing"])] = optional(
+    crossing: Annotated[TableList[LevelCrossing], BeforeValidator(_READ["crossing"])] = optional(
         default=(), description="levels that are watched"
     )
 
@@ -371,7 +397,7 @@ def wrong_scenarios(scenarios: Sequence[Scenario], parts: Sequence[tuple[str, El
 def wrong_places_of(
     torque: Sequence[AppliedTorque],
     friction: Sequence[FrictionTorque],
-    crossing: Sequence[Crossing],
+    crossing: Sequence[LevelCrossing],
     parts: Sequence[tuple[str, Element]],
     where: str = "",
 ) -> Iterator[InputError]:

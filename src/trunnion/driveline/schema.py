@@ -16,7 +16,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque, Scenario
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
@@ -139,7 +139,7 @@ def json_schema() -> dict[str, Any]:
             "Scenario": _model(Scenario),
             "AppliedTorque": _applied_torque(),
             "FrictionTorque": _model(FrictionTorque),
-            "Crossing": _model(Crossing),
+            "LevelCrossing": _model(LevelCrossing),
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),

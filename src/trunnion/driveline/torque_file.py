@@ -23,11 +23,24 @@ _FIRST_LINE = "time [s],torque [N*m]"
 
 
 def read_torque(path: str | os.PathLike[str]) -> dict[str, tuple[float, ...]]:
-    """Points and torques [SI] of a CSV file, as ``AppliedTorque`` takes them: ``AppliedTorque(on="motor", **found)``.
+    """Points and torques [SI] of a CSV file, as ``AppliedTorque`` takes them.
+
+    Parameters
+    ----------
+    path : of the file.
 
     Raises
     ------
     InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> import trunnion as tn
+    >>> place = pathlib.Path(tempfile.mkdtemp()) / "start.csv"
+    >>> _ = place.write_text("time [ms],torque [kN*m]\\n0,0\\n500,0.12\\n", encoding="utf-8")
+    >>> tn.AppliedTorque(on="motor", **tn.read_torque(place)).torque
+    (0.0, 120.0)
     """
     place = Path(path)
     rows = read_rows(place, "the table of torques", _FIRST_LINE)

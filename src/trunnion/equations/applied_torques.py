@@ -25,7 +25,7 @@ POWERS = 4
 """Powers of each variable, of which the kernel knows as many."""
 
 
-class Cell(NamedTuple):
+class TorquePiece(NamedTuple):
     """One piece: where its two variables are counted from, the powers u^i v^j above, and those of v below."""
 
     first: float
@@ -35,7 +35,7 @@ class Cell(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Axis:
+class TorqueAxis:
     """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them."""
 
     variable: str
@@ -76,9 +76,9 @@ class PlacedTorque:
     stated: AppliedTorque
     station: int
     sense: float
-    axes: tuple[Axis, ...]
+    axes: tuple[TorqueAxis, ...]
 
-    def cell(self, pieces: Sequence[int]) -> Cell:
+    def cell(self, pieces: Sequence[int]) -> TorquePiece:
         """The polynomials of a piece of every axis."""
         if self.stated.is_motor:
             return self._motor(pieces)
@@ -86,31 +86,31 @@ class PlacedTorque:
             return self._bilinear(pieces)
         return self._curve(pieces[0])
 
-    def _curve(self, piece: int) -> Cell:
+    def _curve(self, piece: int) -> TorquePiece:
         axis, torque, above = self.axes[0], np.array(self.stated.torque), np.zeros((POWERS, POWERS))
         below, knots = _one(), axis.knots
         if self.stated.between == "steps":
             above[0, 0] = torque[piece] if piece >= 0 else 0.0
-            return Cell(0.0, 0.0, above, below)
+            return TorquePiece(0.0, 0.0, above, below)
         if not 0 <= piece < len(knots) - 1:
             above[0, 0] = torque[0 if piece < 0 else -1]
-            return Cell(0.0, 0.0, above, below)
+            return TorquePiece(0.0, 0.0, above, below)
         low, high = knots[piece], knots[piece + 1]
         if self.stated.between == "cubic":
             above[:, 0] = PchipInterpolator(knots, torque).c[::-1, piece]
         else:
             above[:2, 0] = torque[piece], (torque[piece + 1] - torque[piece]) / (high - low)
-        return Cell(float(low), 0.0, above, below)
+        return TorquePiece(float(low), 0.0, above, below)
 
-    def _bilinear(self, pieces: Sequence[int]) -> Cell:
+    def _bilinear(self, pieces: Sequence[int]) -> TorquePiece:
         above, inner = np.zeros((POWERS, POWERS)), [a.inner(piece) for a, piece in zip(self.axes, pieces, strict=True)]
         corners = np.array(self.stated.table)[inner[0] : inner[0] + 2, inner[1] : inner[1] + 2]
         one, other = (axis.powers(piece) for axis, piece in zip(self.axes, pieces, strict=True))
         above[:2, :2] = one @ corners @ other.T
         first, second = (float(axis.knots[place]) for axis, place in zip(self.axes, inner, strict=True))
-        return Cell(first, second, above, _one())
+        return TorquePiece(first, second, above, _one())
 
-    def _motor(self, pieces: Sequence[int]) -> Cell:
+    def _motor(self, pieces: Sequence[int]) -> TorquePiece:
         one = self.stated
         curve = KlossCurve(one.breakdown_torque, one.breakdown_slip, one.synchronous_speed)
         torque, under = (poly.coef for poly in curve.ratio(0.0))
@@ -127,7 +127,16 @@ class PlacedTorque:
             else:
                 share[0] = factor[0 if piece < 0 else -1]
         above[:2, : len(torque)] = np.outer(share, torque)
-        return Cell(since, 0.0, above, below)
+        return TorquePiece(since, 0.0, above, below)
+
+    def value(self, time: float, speed: float, angle: float) -> float:
+        """The torque [N m] at a time, where its disk has this speed and angle, both in its own sense."""
+        given = {"time": time, "speed": speed, "angle": angle, "": 0.0}
+        cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
+        u = given[self.axes[0].variable if self.axes else ""] - cell.first
+        v = given[self.second] - cell.second
+        powers = np.arange(POWERS)
+        return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
 
     @property
     def second(self) -> str:
@@ -200,7 +209,7 @@ def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tupl
 def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
     station = disk_station(assembly, one.on, "torque")
     hold = one.hold or one.between == "steps"
-    axes = tuple(Axis(key, np.array(getattr(one, key), dtype=float), hold) for key in one.variables)
+    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold) for key in one.variables)
     return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
 
 

@@ -319,19 +319,20 @@ class LineSystem(Portable):
 
         return at
 
-    def rest(self) -> Array:
-        """The state without twist: every disk where rigid shafts would hold it at t = 0."""
-        return self._static_state(self.untwisted(self.assembly.table(1, self.speed)))
+    def rest(self, angle: float = 0.0) -> Array:
+        """The state without twist: every disk where rigid shafts would hold it, the input at ``angle`` [rad]."""
+        return self._static_state(self.untwisted(self.assembly.table(1, self.speed)), angle)
 
-    def twisted(self) -> Array:
+    def twisted(self, angle: float = 0.0) -> Array:
         """State of the line with rigid shafts, each twisted by the torque it carries on average; sliders at rest."""
-        return self._static_state(self.assembly.coefficients(self.assembly.table(1, self.speed), free_play=True))
+        table = self.assembly.table(1, self.speed)
+        return self._static_state(self.assembly.coefficients(table, free_play=True), angle)
 
-    def _static_state(self, coefficients: LineCoefficients) -> Array:
-        """State at t = 0 of the line with rigid shafts, twisted as the coefficients say."""
+    def _static_state(self, coefficients: LineCoefficients, angle: float) -> Array:
+        """State of the line with rigid shafts, the input at ``angle``, twisted as the coefficients say."""
         topo = self.assembly.topology
         plain = self.untwisted(self.assembly.table(1, self.speed)).straight
-        loaded, straight = (base_motion(topo, co, np.zeros(1)) for co in (coefficients, plain))
+        loaded, straight = (base_motion(topo, co, np.full(1, angle)) for co in (coefficients, plain))
         d, v = (loaded.angle - straight.angle)[0, 0, topo.firsts], (loaded.speed - straight.speed)[0, 0, topo.firsts]
         return np.concatenate([d, v * self.speed, np.zeros(len(self.sliders))])
 

@@ -22,7 +22,6 @@ from trunnion_kernels.line_kernel import (
     NEAR,
     PER_COMPLIANCE,
     PER_STATION,
-    SHARE,
     SLIDERS,
     STATIONS,
     UNKNOWNS,
@@ -40,9 +39,9 @@ COUNT, RATE, CALLED, NUMBERS = range(4)
 FRONT = 4
 KIND, OF, FACTOR, SINCE, LEVEL = range(5)
 PER_WATCHED = LEVEL + 4
-# Speed and angle of a station; twist, torque and rate of twist of a compliance; the mean deviation of the whole line;
-# the torque on an unknown rotation.
-STATION_SPEED, STATION_ANGLE, TWIST, TORQUE, TWIST_RATE, MEAN_DEVIATION, ON_UNKNOWN = range(7)
+# Speed and angle of a station; twist, torque and rate of twist of a compliance; the speed of the mean rotation of the
+# whole line; the torque on an unknown rotation.
+STATION_SPEED, STATION_ANGLE, TWIST, TORQUE, TWIST_RATE, MEAN_SPEED, ON_UNKNOWN = range(7)
 STEP = 1e-6
 """Of the differences that gradients are taken from; they steer Newton's method and tell a sign, no more."""
 
@@ -80,9 +79,8 @@ def watched_values(t, x, asked, p, regime, out, g):
             value = d[far] - d[near] + error if kind == TWIST else v[far] - v[near] + slope * turning
         elif kind == TORQUE:
             value = p[rest + 7 * n + of]
-        elif kind == MEAN_DEVIATION:
-            for s in range(count):
-                value += p[HEAD + s * PER_STATION + SHARE] * d[s]
+        elif kind == MEAN_SPEED:
+            _, value = mean_rotation(theta, omega, p, count, d, v)
         else:
             value = p[rest + 3 * n + of]
         level = 0.0

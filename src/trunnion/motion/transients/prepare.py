@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque, wrong_places_of
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
 from trunnion.errors import InputError
 from trunnion.motion.transients.stepping import Found, Place, Stepper
@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
     from trunnion.equations.line_system import LineSystem
 
-Asked = tuple[tuple[AppliedTorque, ...], tuple[FrictionTorque, ...], tuple[Crossing, ...]]
+Actions = tuple[tuple[AppliedTorque, ...], tuple[FrictionTorque, ...], tuple[LevelCrossing, ...]]
 """What acts and what is watched."""
 
 
-def asked_of(
-    torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque], crossing: Sequence[Crossing]
-) -> Asked:
+def actions_of(
+    torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque], crossing: Sequence[LevelCrossing]
+) -> Actions:
     """The three of them as they are kept."""
     return tuple(torque), tuple(friction), tuple(crossing)
 
 
-def driven_line(line: Driveline, asked: Asked) -> Driveline:
+def driven_line(line: Driveline, asked: Actions) -> Driveline:
     """The line as its torques drive it: a disk that is given one has no share any more."""
-    kinds = {"torque": AppliedTorque, "friction": FrictionTorque, "crossing": Crossing}
+    kinds = {"torque": AppliedTorque, "friction": FrictionTorque, "crossing": LevelCrossing}
     for (key, kind), several in zip(kinds.items(), asked, strict=True):
         for one in several:
             if not isinstance(one, kind):
@@ -54,7 +54,13 @@ def driven_line(line: Driveline, asked: Asked) -> Driveline:
 
 
 def follow(
-    prepared: LineSystem, place: Place, duration: float, asked: Asked, tolerance: float, most_steps: int
+    prepared: LineSystem,
+    place: Place,
+    duration: float,
+    asked: Actions,
+    tolerance: float,
+    most_steps: int,
+    mean_speed: float | None = None,
 ) -> Found:
     """The motion from ``place`` on for ``duration`` [s].
 
@@ -70,7 +76,7 @@ def follow(
         _require_times(one, place.time, place.time + duration)
     stepper = Stepper(
         prepared, torques, frictions, asked[2], tolerance=tolerance, most_steps=most_steps,
-        unit=speed_unit(prepared.assembly.line),
+        unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
     )  # fmt: skip
     return stepper.run(place, duration)
 

@@ -21,7 +21,7 @@ from trunnion.features import left_out
 from trunnion.motion.simulation.input_rotation import InputRotation
 from trunnion.motion.simulation.simulate import positive_time
 from trunnion.motion.transients.energy import EnergyBalance, applied_torques, energy_balance, station_angles
-from trunnion.motion.transients.prepare import Asked, driven_line, follow
+from trunnion.motion.transients.prepare import Actions, driven_line, follow
 from trunnion.motion.transients.stepping import LOCATED, Found, Piece, Place
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.scenarios import AppliedTorque, Crossing, FrictionTorque
+    from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing
 
 BACKWARDS = 0.02
 """Share of the largest speed beyond which a line that turns against its sense does more than swing."""
@@ -75,7 +75,7 @@ class Transient(Result):
     start_time: float = internal("", "s")
     name: str = internal("of the scenario")
     description: Any = internal("of the line as it was given")
-    asked: Asked = internal("torques, frictions and crossings")
+    asked: Actions = internal("torques, frictions and crossings")
     unit: str = internal("that speeds are printed in")
 
     @property
@@ -137,6 +137,9 @@ class Transient(Result):
         whole = [np.concatenate(columns) for columns in zip(*parts, strict=True)]
         back = np.argsort(order, kind="stable")
         return Moving(*(columns[back] for columns in whole))
+
+    motion_at = at
+    """As ``LineSimulation`` calls it."""
 
     def torque_at(self, time: ArrayLike) -> Array:
         """Torque (m, spring) [N m] at times (m,) of the run."""
@@ -321,7 +324,7 @@ class Transient(Result):
         *,
         torque: Sequence[AppliedTorque] | None = None,
         friction: Sequence[FrictionTorque] | None = None,
-        crossing: Sequence[Crossing] | None = None,
+        crossing: Sequence[LevelCrossing] | None = None,
         line: Driveline | None = None,
         tolerance: float | None = None,
     ) -> Transient:
@@ -354,7 +357,7 @@ class Transient(Result):
 
     @classmethod
     def of(
-        cls, line: LineSystem, found: Found, asked: Asked, tolerance: float, since: float, name: str,
+        cls, line: LineSystem, found: Found, asked: Actions, tolerance: float, since: float, name: str,
         description: Driveline,
     ) -> Self:  # fmt: skip
         """What was found of a line from ``since`` [s] on."""

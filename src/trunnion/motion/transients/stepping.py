@@ -18,9 +18,9 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.quantities import SPEED
-from trunnion.driveline.scenarios import Crossing
+from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.applied_torques import Axis, PlacedFriction, PlacedTorque, disk_station, time_knots
+from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
 from trunnion.equations.line_regimes import line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
@@ -107,12 +107,15 @@ class Stepper:
         line: LineSystem,
         torques: Sequence[PlacedTorque],
         frictions: Sequence[PlacedFriction],
-        crossings: Sequence[Crossing],
+        crossings: Sequence[LevelCrossing],
         *,
         tolerance: float,
         most_steps: int,
         unit: str,
+        mean_speed: float | None = None,
     ) -> None:
+        """``mean_speed`` [rad/s]: the run ends where the whole line has it, Σ Jρφ/Σ Jρ²."""
+        self.mean_speed = mean_speed
         self.line, self.torques, self.frictions = line, tuple(torques), tuple(frictions)
         self.crossings, self.tolerance, self.most_steps, self.unit = tuple(crossings), tolerance, most_steps, unit
         self.core, self.topo = line_kernel(), line.assembly.topology
@@ -201,7 +204,7 @@ class Stepper:
         self._write(place)
         return self.line.system.reading(self.numbers).regime_at(place.time, place.state)
 
-    def _piece(self, axis: Axis, one: PlacedTorque, place: Place) -> int:
+    def _piece(self, axis: TorqueAxis, one: PlacedTorque, place: Place) -> int:
         if axis.variable == "time":
             return axis.piece(place.time)
         self._write_course(place)
@@ -352,6 +355,9 @@ class Stepper:
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
                 found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
+        if self.mean_speed is not None:
+            level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
+            found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
         return found + [self._asked(one) for one in self.crossings]
 
     def _stepped(self, torque: int, axis: int, step: int) -> Callable[[Place], Place]:
@@ -371,7 +377,7 @@ class Stepper:
         """A group that stood sets off."""
         return lambda place: replace(place, senses={**place.senses, first: way})
 
-    def _asked(self, one: Crossing) -> _Watched:
+    def _asked(self, one: LevelCrossing) -> _Watched:
         core, way = watch_kernel(), {"rising": 1, "falling": -1, "either": 2}[one.direction]
         level = (0.0, one.level, 0.0, 0.0, 0.0)
         if one.key in ("speed", "angle"):
@@ -384,9 +390,9 @@ class Stepper:
         kind = {"torque": core.TORQUE, "twist": core.TWIST, "slip": core.TWIST_RATE}[one.key]
         return _Watched(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
 
-    def _said(self, one: Crossing) -> str:
+    def _said(self, one: LevelCrossing) -> str:
         """The label, speeds in the unit of the line."""
-        if Crossing.quantity_of(one.key) is not SPEED:
+        if LevelCrossing.quantity_of(one.key) is not SPEED:
             return one.label
         return one.label.replace(f"{one.level:.6g} rad/s", about_speed(one.level, self.unit))
 
