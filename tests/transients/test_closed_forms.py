@@ -160,3 +160,22 @@ def test_levels_are_judged_and_crossings_kept() -> None:
     assert "which it exceeds by" in str(run)
     assert len(run.crossings) > 3
     np.testing.assert_allclose(run.torque_at([t for t, _ in run.crossings])[:, 0], 20.0, rtol=1e-8)
+
+
+def test_a_clutch_that_lets_go_and_closes_again() -> None:
+    """Beyond its torque each side goes its own way; without drive they come together, and energy is rubbed away."""
+    line = tn.Driveline(
+        [tn.Disk(name="engine", inertia=MOTOR), tn.SlipClutch(name="clutch", torque=100.0),
+         tn.Disk(name="middle", inertia=0.1), tn.Shaft(name="shaft", stiffness=1e7, damping=2e2),
+         tn.Disk(name="mill", inertia=MILL - 0.1)]
+    )  # fmt: skip
+    kick = tn.AppliedTorque(on="engine", time=[0, 0.05, 0.15], torque=[0, 300.0, 0.0], between="steps")
+    watched = tn.LevelCrossing(of="clutch", slip=-10.0, ends=False)
+    run = tn.transient(line, 0.4, torque=[kick], speed=10.0, crossing=[watched])
+    slipping = run.at(0.15)
+    assert run.whole.speed(0.4)[0] == pytest.approx(10 + 30 / WHOLE, rel=1e-9)
+    assert slipping.speed[0, run._stations[0]] == pytest.approx(10 + 200 * 0.1 / MOTOR, rel=1e-3)
+    assert slipping.speed[0, run._stations[2]] == pytest.approx(10 + 100 * 0.1 / MILL, rel=1e-3)
+    assert [round(t, 3) for t, _ in run.crossings] == [0.079, 0.18]
+    np.testing.assert_allclose(run.speed[-1], 10 + 30 / WHOLE, rtol=1e-6)
+    assert run.energy.error < 1e-8 and run.energy.losses > 100

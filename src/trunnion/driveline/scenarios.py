@@ -40,10 +40,11 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.elements import Disk, Element
-from trunnion.driveline.parts import Sprung
+from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Several, Speed, TableList, Time, Torque, optional
 from trunnion.driveline.record import Name, Named, Record, as_tuple, listed, one_of
 from trunnion.driveline.refusals import nearest
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.errors import InputError
 
 Between = Literal["lines", "cubic", "steps"]
@@ -403,7 +404,11 @@ def wrong_places_of(
 ) -> Iterator[InputError]:
     """What acts on no disk, or watches what is not there; ``where`` it stands."""
     disks = [name for name, element in parts if isinstance(element, Disk)]
-    springs = [name for name, element in parts if any(isinstance(part, Sprung) for part in element.parts())]
+    springs = [
+        name
+        for name, element in parts
+        if isinstance(element, SlipClutch) or any(isinstance(part, Sprung | Dragged) for part in element.parts())
+    ]
     for kind, named, known, what in (
         *(("torque on", one.on, disks, "is not a Disk of this driveline") for one in torque),
         *(("friction on", one.on, disks, "is not a Disk of this driveline") for one in friction),

@@ -97,7 +97,7 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
     weights = (half * _WEIGHTS).ravel()
     moves, prescribed = topo.unknown_of >= 0, topo.unknown_of < 0
     states = run.at(times)
-    motion, speed = line.moving(times, states, numbers)
+    motion, speed = line.moving(times, states, numbers, piece.regime_at(times))
     angle = station_angles(piece, times, motion.rotation)
     stations = numbers[core.HEAD : core.HEAD + len(topo.stations) * core.PER_STATION].reshape(-1, core.PER_STATION)
     load = stations[:, core.LOAD] + (stations[:, core.VISCOUS] + stations[:, core.QUADRATIC] * np.abs(speed)) * speed
@@ -118,7 +118,7 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
         "friction": -power[:, count:].sum(axis=1),
     }
     ends = run.time_of_state[[0, -1]]
-    last, moving = line.moving(ends, run.state[[0, -1]], numbers)
+    last, moving = line.moving(ends, run.state[[0, -1]], numbers, run.regime[[0, -1]])
     inertia = np.where(moves, stations[:, core.INERTIA], 0.0)
     kinetic = float(np.diff(np.square(moving) @ inertia / 2)[0])
     elastic, losses = _springs(piece, last.twist, run.state[[0, -1]], given, speed, weights, near, far)
@@ -151,7 +151,7 @@ def _springs(
     first = int(core.places(numbers)[0])
     rows = numbers[first : first + len(topo.compliances) * core.PER_COMPLIANCE].reshape(-1, core.PER_COMPLIANCE)
     elastic, losses = 0.0, 0.0
-    rubbed = {slider.compliance for slider in line.sliders}
+    rubbed = {slider.compliance for slider in line.sliders} | {clutch.compliance for clutch in line.clutches}
     for e, compliance in enumerate(topo.compliances):
         place = compliance.shafts[0]
         if has_stages(assembly.line.elements[place]):

@@ -70,6 +70,11 @@ def follow(
     """
     if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
         raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
+    if asked[1] and prepared.clutches:
+        raise InputError(
+            "is not followed in a line with a slip clutch", element="friction", key="on", value=asked[1][0].on,
+            remedy="describe the brake as a torque over time, or the slip clutch as a Clutch",
+        )  # fmt: skip
     torques = placed_torques(prepared.assembly, asked[0])
     frictions = placed_frictions(prepared.assembly, asked[1])
     for one in torques:

@@ -342,7 +342,7 @@ class Transient(Result):
         given = (torque, friction, crossing)
         asked: Any = tuple(old if new is None else tuple(new) for old, new in zip(self.asked, given, strict=True))
         description = self.description if line is None else line
-        prepared = line_system(driven_line(description, asked), self.line.speed, leaves=True)
+        prepared = line_system(driven_line(description, asked), self.line.speed, leaves=True, slips=True)
         same = prepared.names == self.line.names and prepared.shafts == self.line.shafts
         if not same or len(prepared.sliders) != len(self.line.sliders):
             remedy = "change numbers of the same line alone"
@@ -383,7 +383,7 @@ class Transient(Result):
 
 
 def _moving(piece: Piece, times: Array) -> Moving:
-    motion, speed = piece.line.moving(times, piece.trajectory.at(times), piece.numbers)
+    motion, speed = piece.line.moving(times, piece.trajectory.at(times), piece.numbers, piece.regime_at(times))
     angle = station_angles(piece, times, motion.rotation)
     applied, places = np.zeros(speed.shape), [one.station for one in piece.acting]
     np.add.at(applied.T, places, applied_torques(piece, times, angle, speed).T)

@@ -16,9 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.quantities import SPEED
 from trunnion.driveline.scenarios import LevelCrossing
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
 from trunnion.equations.line_regimes import line_kernel, watch_kernel
@@ -69,6 +70,11 @@ class Piece:
     numbers: Array
     torques: tuple[PlacedTorque, ...]
     frictions: tuple[PlacedFriction, ...]
+
+    def regime_at(self, times: Array) -> Integers:
+        """In which the line was at times (m,)."""
+        run = self.trajectory
+        return run.regime[np.minimum(np.searchsorted(run.start[1:], times, side="right"), len(run.regime) - 1)]
 
     @property
     def acting(self) -> tuple[PlacedTorque | PlacedFriction, ...]:
@@ -142,7 +148,9 @@ class Stepper:
 
     def run(self, place: Place, duration: float) -> Found:
         """From ``place`` on for ``duration`` [s]."""
-        end, knots = place.time + duration, time_knots(self.torques, self.frictions)
+        end = place.time + duration
+        clamping = [t for e in self.line.assembly.line.elements if isinstance(e, SlipClutch) for t in e.clamping_times]
+        knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
         place = replace(place, regime=self._regime(place))
         place = replace(place, senses=self._settled(place))

@@ -94,7 +94,7 @@ def transient(
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
-    prepared = line_system(changed, abs(begin), leaves=True)
+    prepared = line_system(changed, abs(begin), leaves=True, slips=True)
     if not prepared.assembly.topology.free and not begin > 0:
         raise InputError(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
