@@ -176,6 +176,6 @@ def test_a_clutch_that_lets_go_and_closes_again() -> None:
     assert run.whole.speed(0.4)[0] == pytest.approx(10 + 30 / WHOLE, rel=1e-9)
     assert slipping.speed[0, run._stations[0]] == pytest.approx(10 + 200 * 0.1 / MOTOR, rel=1e-3)
     assert slipping.speed[0, run._stations[2]] == pytest.approx(10 + 100 * 0.1 / MILL, rel=1e-3)
-    assert [round(t, 3) for t, _ in run.crossings] == [0.079, 0.18]
+    assert [round(t, 3) for t, _ in run.crossings] == [0.079, 0.25]
     np.testing.assert_allclose(run.speed[-1], 10 + 30 / WHOLE, rtol=1e-6)
     assert run.energy.error < 1e-8 and run.energy.losses > 100
