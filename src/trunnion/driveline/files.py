@@ -41,6 +41,7 @@ from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.reading import below
@@ -72,6 +73,7 @@ TOP_KEYS = (
     "description",
     "damping_ratio",
     "damping_ratio_frequency",
+    "document",
     "operation",
     "limit",
     "tolerance",
@@ -161,6 +163,8 @@ def dumps(line: Driveline) -> str:
         if (value := getattr(line, key)) is not None:
             top[key] = _written(value, line.quantity_of(key))
     blocks = [_block("", top)]
+    if line.document is not None:
+        blocks.append(_block("[document]", _table(line.document)))
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
     blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
@@ -291,6 +295,8 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
 
     if "element" in table or not wrong:
         read("elements", table.get("element"), lambda value: _elements(value, source, place_of))
+    if "document" in table:
+        read("document", table["document"], _document)
     if "operation" in table:
         read("operation", table["operation"], _operation)
     if "limit" in table:
@@ -374,6 +380,12 @@ def _limit_elsewhere(error: InputError, name: str | None) -> InputError:
         return error
     of = f'of = "{name}" and ' if name else "of and "
     return error.but(remedy=f"limits stand in tables of their own: write [[limit]] with {of}{error.key}")
+
+
+def _document(table: Any) -> TitleBlock:
+    if not isinstance(table, dict):
+        raise InputError("is not a table", key="document", value=table, remedy="write [document] on its own line")
+    return TitleBlock(**table)
 
 
 def _operation(table: Any) -> Operation:

@@ -40,6 +40,7 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.record import listed, one_of
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError
 
 SHIP_SHAFTS = {
@@ -54,15 +55,15 @@ SHIP_SHAFTS = {
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
-_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt)
+_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt, Tyre)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),
     "vibratory_torque": (*_SPRING, GearPair),
     "transient_vibratory_torque": (*_SPRING, GearPair),
     "max_stress": (Shaft,),
     "max_twist": _SPRING,
-    "max_speed_fluctuation": (Disk,),
-    "max_acceleration": (Disk,),
+    "max_speed_fluctuation": (Disk, Vehicle),
+    "max_acceleration": (Disk, Vehicle),
     "temperature_factor": (Coupling,),
     "starting_factor": (Coupling,),
     "ship_shaft": (Shaft,),

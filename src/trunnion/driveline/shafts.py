@@ -47,6 +47,10 @@ class Elastic(Element):
         """Damping [N m s/rad], likewise."""
         return number("damping")
 
+    def links(self, number: Numbers) -> tuple[tuple[Any, Any], ...]:
+        """Stiffness and damping of every spring and damper among its parts, in order."""
+        return ((self.stiffness_of(number), self.damping_of(number)),)
+
     @property
     def torsional_stiffness(self) -> float:
         """k [N m/rad], as stated or as it follows."""

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import UnitMasses, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import left_out
@@ -45,7 +46,7 @@ class NaturalFrequencies(Result):
 
     @property
     def still(self) -> int:
-        """How many modes no spring resists: those of rigid motions, and rings that oil alone drags along."""
+        """How many modes no spring resists: those of rigid motions, and of what a damper alone drags along."""
         return self.assembly.topology.still
 
     @property
@@ -159,13 +160,20 @@ class NaturalFrequencies(Result):
             return f"0, rigid body ({how})"
         if mode < self.still:
             ring, slip = self._moves_most(mode), self.words.number(self.decay_rate[mode][1])
-            return f"0, {ring} (oil alone drags it along; slip decays at {slip} 1/s)"
+            return f"0, {ring} ({self._drag} alone drags it along; slip decays at {slip} 1/s)"
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
             return f"overdamped, {self._decay(mode)}; undamped {undamped}"
         ratio, frequency = self.damping_ratio[mode], self.frequency[mode]
         apart = abs(frequency - self.undamped_frequency[mode]) > ALIKE * frequency
         return f"{self._shown(frequency)}, damping ratio {ratio:.3g}{f'; undamped {undamped}' if apart else ''}"
+
+    @property
+    def _drag(self) -> str:
+        """What joins it to the line."""
+        topo, elements = self.assembly.topology, self.assembly.line.elements
+        tyres = {isinstance(elements[topo.compliances[e].shafts[0]], Tyre) for e in topo.dragged}
+        return "oil" if tyres == {False} else "slip" if tyres == {True} else "damping"
 
     def _shown(self, frequency: float) -> str:
         words = self.words
