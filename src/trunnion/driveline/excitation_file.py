@@ -8,18 +8,16 @@
     4,600,35,10
 
 The first line names the columns, each with its unit: order, amplitude, and where there are any phase, and speed (of
-the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs. What a
-message says of a table is its place, never its content: a description may name a file that is none.
+the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from trunnion.driveline.csv_columns import read_columns, read_rows, read_values
+from trunnion.driveline.csv_table import TableKind, read_numbers
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, QuantityKind
 from trunnion.errors import InputError
@@ -31,6 +29,7 @@ COLUMNS: dict[str, QuantityKind] = {
     "amplitude": TORQUE,
     "phase": ANGLE,
 }
+ORDERS = TableKind("the table of orders", COLUMNS, ("order", "amplitude"), "order,amplitude [N*m]")
 
 
 def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
@@ -56,30 +55,18 @@ def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
     ...     print([(one.order, one.amplitude) for one in tn.read_excitation(table)])
     [(2.0, 60.0), (4.0, 25.0)]
     """
-    place = Path(path)
-    rows = read_rows(place, "the table of orders", "order,amplitude [N*m]")
-    columns = _columns(place.name, rows[0])
+    source, rows = Path(path).name, read_numbers(path, ORDERS)
     by_order: dict[float, list[dict[str, float]]] = {}
-    for number, row in enumerate(rows[1:], start=2):
-        values = read_values(f"{place.name}: row {number}", row, columns, COLUMNS)
+    for _, values in rows:
         by_order.setdefault(values["order"], []).append(values)
-    over = next((key for key in ("speed", "torque") if key in columns), None)
-    if not by_order:
-        raise InputError("has no rows below its first line", key=place.name, remedy="write one row an order")
-    return tuple(_harmonic(place.name, order, found, over) for order, found in sorted(by_order.items()))
-
-
-def _columns(source: str, head: Sequence[str]) -> dict[str, tuple[int, str]]:
-    """Place and unit of every column."""
-    found = read_columns(source, head, COLUMNS)
-    for name in ("order", "amplitude"):
-        if name not in found:
-            remedy = "write order,amplitude [N*m] in the first line"
-            raise InputError("is missing among the columns", element=source, key=name, remedy=remedy)
-    if "speed" in found and "torque" in found:
+    columns = rows[0][1] if rows else {}
+    if "speed" in columns and "torque" in columns:
         remedy = "a table goes over one of the two; leave the other out"
         raise InputError("stands beside speed", element=source, key="torque", remedy=remedy)
-    return found
+    over = next((key for key in ("speed", "torque") if key in columns), None)
+    if not by_order:
+        raise InputError("has no rows below its first line", key=source, remedy="write one row an order")
+    return tuple(_harmonic(source, order, found, over) for order, found in sorted(by_order.items()))
 
 
 def _harmonic(source: str, order: float, rows: list[dict[str, float]], over: str | None) -> Excitation:

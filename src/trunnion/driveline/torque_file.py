@@ -14,12 +14,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from trunnion.driveline.csv_columns import read_columns, read_rows, read_values
+from trunnion.driveline.csv_table import TableKind, read_numbers
 from trunnion.driveline.quantities import ANGLE, SPEED, TIME, TORQUE
 from trunnion.errors import InputError
 
-COLUMNS = {"time": TIME, "speed": SPEED, "angle": ANGLE, "torque": TORQUE}
-_FIRST_LINE = "time [s],torque [N*m]"
+COLUMNS = TableKind(
+    "the table of torques",
+    {"time": TIME, "speed": SPEED, "angle": ANGLE, "torque": TORQUE},
+    (),
+    "time [s],torque [N*m]",
+)
 
 
 def read_torque(path: str | os.PathLike[str]) -> dict[str, tuple[float, ...]]:
@@ -42,19 +46,14 @@ def read_torque(path: str | os.PathLike[str]) -> dict[str, tuple[float, ...]]:
     >>> tn.AppliedTorque(on="motor", **tn.read_torque(place)).torque
     (0.0, 120.0)
     """
-    place = Path(path)
-    rows = read_rows(place, "the table of torques", _FIRST_LINE)
-    columns = read_columns(place.name, rows[0], COLUMNS)
-    over = [key for key in columns if key != "torque"]
-    if "torque" not in columns or len(over) != 1:
+    source, rows = Path(path).name, read_numbers(path, COLUMNS)
+    if not rows:
+        raise InputError("has no rows below its first line", key=source, remedy="write one row a point")
+    points = [values for _, values in rows]
+    over = [key for key in points[0] if key != "torque"]
+    if "torque" not in points[0] or len(over) != 1:
         problem = "goes over one of time, speed and angle, and has torques beside it"
-        raise InputError(problem, key=place.name, remedy=f"write {_FIRST_LINE} in its first line")
-    if len(rows) < 2:
-        raise InputError("has no rows below its first line", key=place.name, remedy="write one row a point")
-    points = [
-        read_values(f"{place.name}: row {number}", row, columns, COLUMNS)
-        for number, row in enumerate(rows[1:], start=2)
-    ]
+        raise InputError(problem, key=source, remedy=f"write {COLUMNS.first_line} in its first line")
     return {key: tuple(point[key] for point in points) for key in (over[0], "torque")}
 
 
@@ -76,7 +75,7 @@ def _with_points(torque: dict[str, Any], place_of: Callable[[str], Path]) -> dic
     if not isinstance(named, str):
         return torque
     found = read_torque(place_of(named))
-    beside = [key for key in COLUMNS if key in torque]
+    beside = [key for key in COLUMNS.columns if key in torque]
     if beside:
         raise InputError("stands beside file", element="torque", key=beside[0], remedy="leave one of the two out")
     return {**{key: value for key, value in torque.items() if key != "file"}, **found}

@@ -135,6 +135,17 @@ class KlossCurve:
         steepest = 2 * self.breakdown_torque * b / self.synchronous_speed
         return np.asarray(-steepest * (b**2 - s**2) / (s**2 + b**2) ** 2)
 
+    def slope_at_torque(self, torque: Any) -> Array:
+        """Slope [N m s/rad] where a converter moves the curve along the speed, unchanged, so that it gives ``torque``
+        on its falling branch; NaN beyond the breakdown torque.
+
+        At the slip s = s_b T/(T_b + √(T_b² − T²)).
+        """
+        with np.errstate(invalid="ignore"):
+            root = np.sqrt(self.breakdown_torque**2 - np.square(torque))
+        slip = self.breakdown_slip * torque / (self.breakdown_torque + root)
+        return self.slope(self.synchronous_speed * (1 - slip))
+
     def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
         """By the slip, a polynomial of ω itself."""
         slip, b = Polynomial([1.0, -1.0 / float(self.synchronous_speed)]), float(self.breakdown_slip)
@@ -226,3 +237,108 @@ class ClippedLine:
         if float(self.slope(speed)):
             return Polynomial([float(self.gain * self.set_speed), -float(self.gain)]), ONE
         return Polynomial([float(self.value(speed))]), ONE
+
+
+@dataclass(frozen=True)
+class PowerLimit:
+    """Constant power: T = P/ω at positive speeds, NaN at others; its slope −P/ω² falls. ``power`` [W]: one or many.
+
+    >>> print(float(PowerLimit(3000.0).value(150.0)))
+    20.0
+    """
+
+    power: Any
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """From standstill on."""
+        return 0.0, np.inf
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """One formula."""
+        return (0.0,)
+
+    def value(self, speed: Any) -> Array:
+        """Torque [N m]."""
+        return np.asarray(self.power / np.where(np.asarray(speed) > 0, speed, np.nan))
+
+    def slope(self, speed: Any) -> Array:
+        """−P/ω² [N m s/rad]."""
+        return np.asarray(-self.power / np.where(np.asarray(speed) > 0, speed, np.nan) ** 2)
+
+    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
+        """P over ω."""
+        return Polynomial([float(self.power)]), Polynomial([0.0, 1.0])
+
+
+@dataclass(frozen=True)
+class Opposite:
+    """Minus a curve: what drives by it resists by this.
+
+    >>> print(float(Opposite(PowerCurve(quadratic=0.02)).value(100.0)))
+    -200.0
+    """
+
+    curve: TorqueCurve
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """As of the curve."""
+        return self.curve.range
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """As of the curve."""
+        return self.curve.knots
+
+    def value(self, speed: Any) -> Array:
+        """Torque [N m]."""
+        return np.asarray(-self.curve.value(speed))
+
+    def slope(self, speed: Any) -> Array:
+        """Its derivative [N m s/rad]."""
+        return np.asarray(-self.curve.slope(speed))
+
+    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
+        """Numerator and denominator of the piece."""
+        over, under = self.curve.ratio(speed)
+        return -over, under
+
+
+@dataclass(frozen=True)
+class FlowCurve:
+    """A torque T by the square of the speed whose slope is ``factor`` T/ω and not 2 T/ω: the flow does not follow.
+
+    ``quadratic`` c₂ [N m s²/rad²] gives the mean torque c₂ω|ω|; the slope is that of speeds which swing about a mean
+    speed of the flow, so it is no derivative of ``value``.
+
+    >>> wheel = FlowCurve(0.02, factor=2.8)
+    >>> print(float(wheel.value(100.0)), round(float(wheel.slope(100.0)), 9))
+    200.0 5.6
+    """
+
+    quadratic: Any
+    factor: Any
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Everywhere."""
+        return -np.inf, np.inf
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """The torque turns its sign with the speed."""
+        return (0.0,)
+
+    def value(self, speed: Any) -> Array:
+        """Torque [N m]."""
+        return np.asarray(self.quadratic * speed * np.abs(speed))
+
+    def slope(self, speed: Any) -> Array:
+        """factor T/ω [N m s/rad]."""
+        return np.asarray(self.factor * self.quadratic * np.abs(speed))
+
+    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
+        """The mean torque, a parabola on either side of standstill."""
+        return PowerCurve(quadratic=self.quadratic).ratio(speed)
