@@ -136,6 +136,9 @@ def free(**engine):
 OF_A_MOTOR = {"breakdown_torque": 9.0, "breakdown_slip": 0.2, "synchronous_speed": 100.0}
 
 
+PUMP = Disk(inertia=1, name="pump")
+
+
 def torque(**given):
     return tn.AppliedTorque(on="pump", **given)
 
@@ -610,7 +613,11 @@ PYTHON = [
         "pump.drive_share: shares the drive with engine",
         "give pump a torque too",
     ),
-    (lambda: tn.passing(free(), (9.0, 5.0), torque=[torque(**KLOSS)]), "speeds = [9.0, 5.0]: must be two rising speeds", "0 rpm"),
+    (
+        lambda: tn.passing(free(), (9.0, 5.0), torque=[torque(**KLOSS)]),
+        "speeds = [9.0, 5.0]: must be two rising speeds",
+        "0 rpm",
+    ),
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
     (
         lambda: tn.passing(
@@ -623,18 +630,12 @@ PYTHON = [
     ),
     (
         lambda: tn.transient(
-            line(
-                Disk(inertia=1),
-                tn.SlipClutch(torque=9.0),
-                Disk(inertia=1),
-                Shaft(stiffness=1e4),
-                Disk(inertia=1, name="d"),
-            ),
+            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
             1.0,
-            friction=[tn.FrictionTorque(on="d", torque=1.0)],
+            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
             speed=9.0,
         ),
-        "friction.on = 'd': is not followed in a line with a slip clutch",
+        "friction.on = 'pump': is not followed in a line with a slip clutch",
         "describe the brake as a torque over time",
     ),
     (
