@@ -109,6 +109,7 @@ from trunnion.motion.orbits.periodic_branch import piecewise_branch as piecewise
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
 from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
+from trunnion.motion.passing.passing import passing as passing
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
 from trunnion.motion.perturbation.averaging import averaging as averaging

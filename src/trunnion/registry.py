@@ -252,6 +252,12 @@ ANALYSES = (
         view="motion",
     ),
     Analysis(
+        "passing",
+        "Whether the line comes from one speed to another under its motor's torque, or is captured by a resonance.",
+        pictures={"Passing.plot": "trunnion.pictures.transients:passing"},
+        command="trunnion.cli.transients:passing",
+    ),
+    Analysis(
         "safe_accelerations",
         "The slowest and the fastest acceleration whose passage keeps a limit of torque.",
         features="passage",

@@ -142,6 +142,9 @@ def free(**engine):
 OF_A_MOTOR = {"breakdown_torque": 9.0, "breakdown_slip": 0.2, "synchronous_speed": 100.0}
 
 
+PUMP = Disk(inertia=1, name="pump")
+
+
 def torque(**given):
     return tn.AppliedTorque(on="pump", **given)
 
@@ -615,6 +618,31 @@ PYTHON = [
         ),
         "pump.drive_share: shares the drive with engine",
         "give pump a torque too",
+    ),
+    (
+        lambda: tn.passing(free(), (9.0, 5.0), torque=[torque(**KLOSS)]),
+        "speeds = [9.0, 5.0]: must be two rising speeds",
+        "0 rpm",
+    ),
+    (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
+    (
+        lambda: tn.passing(
+            line(ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1, name="pump")),
+            (5.0, 9.0),
+            torque=[torque(**KLOSS)],
+        ),
+        "driveline.ConstantSpeed: prescribes the speed, so that nothing can capture",
+        "leave it out",
+    ),
+    (
+        lambda: tn.transient(
+            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
+            1.0,
+            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
+            speed=9.0,
+        ),
+        "friction.on = 'pump': is not followed in a line with a slip clutch",
+        "describe the brake as a torque over time",
     ),
     (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),

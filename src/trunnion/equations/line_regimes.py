@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from math import prod
 from pathlib import Path
 from types import ModuleType
@@ -33,6 +34,7 @@ from trunnion.systems.user_functions import from_kernel
 MOST_REGIMES = 400
 
 
+@cache
 def line_kernel() -> ModuleType:
     """The compiled right-hand side of lines and what observes their motion."""
     return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
@@ -44,6 +46,7 @@ def guards_kernel() -> ModuleType:
     return kernel_file(str(here.with_name("line_guards_kernel.py")), str(here.with_name("line_kernel.py")))
 
 
+@cache
 def watch_kernel() -> ModuleType:
     """The compiled function of what can be watched along a motion."""
     here = Path(__file__)
