@@ -370,9 +370,12 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
 
 
-def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False, slips: bool = False) -> LineSystem:
+def line_system(
+    line: Driveline | Assembly, speed: float, *, leaves: bool = False, slips: bool = False, linearised: bool = False
+) -> LineSystem:
     """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
-    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``.
+    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``. Unless it is only to be
+    ``linearised`` about its motion, torques that act by their tangents are said.
 
     Raises
     ------
@@ -384,7 +387,7 @@ def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = Fals
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     for name, rotor in assembly.topology.rotors:
-        if rotor.tangent:
+        if rotor.tangent and not linearised:
             at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
             remark = f"{name}: equations of motion have its torque over speed by the tangent at {at} of the input"
             warnings.warn(InputRemark(remark), stacklevel=2)
