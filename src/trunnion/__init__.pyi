@@ -17,6 +17,7 @@ from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
+from trunnion.driveline import Engine as Engine
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import Fan as Fan
 from trunnion.driveline import GearPair as GearPair
@@ -29,6 +30,7 @@ from trunnion.driveline import Motor as Motor
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
+from trunnion.driveline import PressureCurve as PressureCurve
 from trunnion.driveline import Propeller as Propeller
 from trunnion.driveline import Pump as Pump
 from trunnion.driveline import Ratio as Ratio
@@ -66,6 +68,7 @@ from trunnion.driveline.mean_balance import mean_speeds as mean_speeds
 from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack
+from trunnion.driveline.pressure import read_pressure as read_pressure
 from trunnion.equations.exact_oscillator import exact_oscillator as exact_oscillator
 from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError

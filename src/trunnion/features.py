@@ -239,7 +239,7 @@ _RIGID = dict.fromkeys(
         "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", CURVE, LAG, "excitation by order",
-        "excitation that varies with speed or load", "cylinders", "excitation in time",
+        "excitation that varies with speed or load", "cylinders", "engine", "excitation in time",
         "excitation by order and frequency", "excitation of a prescribed disk",
         "unlike damping in series", "free start", "drive share",
     ),

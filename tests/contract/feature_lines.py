@@ -314,6 +314,17 @@ CHANGES: dict[str, tuple[Change, Change]] = {
         put("load", excitation=[{"order": 2, "amplitude": 5.0}]),
         put("load", excitation=[{"order": 2, "amplitude": 5.0}], firing_angles=[0.0, 0.3]),
     ),
+    "engine": (
+        same,
+        behind(
+            "load",
+            tn.Shaft(stiffness=3e4, damping=5, name="coupling"),
+            tn.Engine(
+                firing_order="1-2", throw_inertia=[0.05, 0.06], throw_stiffness=2e4, damping=3, name="engine",
+                gas_torque=[{"order": 1, "amplitude": 4.0}],
+            ),
+        ),
+    ),
     "branch": (same, branched),
     "free start": (same, free),
     "drive share": (free, lambda line: free(line).replace("hub", drive_share=0.5)),

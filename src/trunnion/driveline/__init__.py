@@ -11,6 +11,7 @@ from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.flywheels import DualMassFlywheel
@@ -20,6 +21,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -41,6 +43,7 @@ __all__ = [
     "Driveline",
     "DualMassFlywheel",
     "Element",
+    "Engine",
     "Excitation",
     "Fan",
     "GearPair",
@@ -54,6 +57,7 @@ __all__ = [
     "Coupling",
     "PiecewiseShaft",
     "Planetary",
+    "PressureCurve",
     "Propeller",
     "Pump",
     "Ratio",

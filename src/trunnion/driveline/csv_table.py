@@ -1,7 +1,7 @@
-"""Tables from a spreadsheet, beside a description: quantities in columns that its first line names, each with its unit.
+"""Numbers of a spreadsheet: a first line that names columns, each with its unit, and rows of plain numbers below it.
 
-Columns stand apart by commas, semicolons or tabs; a line that starts with # is a remark. What a message says of a table
-is its place, never its content: a description may name a file that is none.
+Columns stand apart by commas, semicolons or tabs. What a message says of a table is its place, never its content: a
+description may name a file that is none.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from __future__ import annotations
 import csv
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, QuantityKind, parse
+from trunnion.driveline.quantities import ANGLE, PRESSURE, RATIO, SPEED, QuantityKind, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.reading import regular_bytes
@@ -24,35 +24,44 @@ _HEAD = re.compile(r"([A-Za-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
 
 
 @dataclass(frozen=True)
-class TableColumns:
-    """What a table may hold: ``what`` it is called, the kinds of its columns, those ``needed``, and a first line."""
+class TableKind:
+    """What a kind of table has.
+
+    Attributes
+    ----------
+    what : it is, in messages: "the table of orders".
+    columns : every column it may have and what it holds.
+    needed : those that it must have.
+    first_line : an example of how it begins.
+    """
 
     what: str
-    kinds: dict[str, QuantityKind]
+    columns: Mapping[str, QuantityKind]
     needed: tuple[str, ...]
-    head: str
+    first_line: str
 
 
-def read_table(path: str | os.PathLike[str], table: TableColumns) -> list[dict[str, float]]:
-    """Every row of a CSV file by the names of its columns, in SI units.
+def read_numbers(path: str | os.PathLike[str], kind: TableKind) -> list[tuple[str, dict[str, float]]]:
+    """The numbers of every row in SI units by column, each with its place for messages.
 
     Raises
     ------
-    InputError : the file cannot be read or has no rows; a column that is unknown, missing or without unit; a number
-        that is none.
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; no
+        rows.
     """
     place = Path(path)
-    rows = _rows(place, table)
-    columns = _columns(place.name, rows[0], table)
-    found = [_values(f"{place.name}: row {i}", row, columns, table) for i, row in enumerate(rows[1:], start=2)]
-    if not found:
-        raise InputError("has no rows below its first line", key=place.name, remedy=f"write rows below {table.head}")
+    rows = _rows(place, kind)
+    columns = _columns(place.name, rows[0], kind)
+    found = []
+    for number, row in enumerate(rows[1:], start=2):
+        where = f"{place.name}: row {number}"
+        found.append((where, _values(where, row, columns, kind)))
     return found
 
 
-def _rows(path: Path, table: TableColumns) -> list[list[str]]:
+def _rows(path: Path, kind: TableKind) -> list[list[str]]:
     try:
-        text = regular_bytes(path, LARGEST_TABLE, what=table.what).decode("utf-8-sig")
+        text = regular_bytes(path, LARGEST_TABLE, what=kind.what).decode("utf-8-sig")
     except InputError:
         raise
     except FileNotFoundError:
@@ -72,31 +81,31 @@ def _rows(path: Path, table: TableColumns) -> list[list[str]]:
         raise InputError(problem, element=where, remedy="write numbers, and close what is quoted") from None
     rows = [row for row in rows if any(row) and not row[0].startswith("#")]
     if not rows:
-        raise InputError("is empty", key=path.name, remedy=f"write {table.head} in its first line")
+        raise InputError("is empty", key=path.name, remedy=f"write {kind.first_line} in its first line")
     return rows
 
 
-def _columns(source: str, head: Sequence[str], table: TableColumns) -> dict[str, tuple[int, str]]:
+def _columns(source: str, head: Sequence[str], kind: TableKind) -> dict[str, tuple[int, str]]:
     """Place and unit of every column."""
     found: dict[str, tuple[int, str]] = {}
     for i, cell in enumerate(head):
         match = _HEAD.fullmatch(cell.strip())
         name = match.group(1).lower() if match else ""
-        if name not in table.kinds:
-            remedy = f"write one of {', '.join(table.kinds)}, and its unit"
+        if name not in kind.columns:
+            remedy = f"write one of {', '.join(kind.columns)}, and its unit"
             raise InputError("is not a column of such a table", element=source, key=f"column {i + 1}", remedy=remedy)
         unit = (match.group(2) if match else None) or ""
-        remedy = f'write "{name} [{_usual(table.kinds[name])}]" in the first line'
-        if not unit and table.kinds[name] is not RATIO:
+        remedy = f'write "{name} [{_usual(kind.columns[name])}]" in the first line'
+        if not unit and kind.columns[name] is not RATIO:
             raise InputError("has no unit", element=source, key=name, remedy=remedy)
-        if unit and not _is_unit(unit, table.kinds[name]):
-            raise InputError(f"has no unit of a {table.kinds[name].name}", element=source, key=name, remedy=remedy)
+        if unit and not _is_unit(unit, kind.columns[name]):
+            raise InputError(f"has no unit of a {kind.columns[name].name}", element=source, key=name, remedy=remedy)
         if name in found:
             raise InputError("stands twice", element=source, key=name, remedy="leave one of the columns out")
         found[name] = i, unit
-    for name in table.needed:
+    for name in kind.needed:
         if name not in found:
-            remedy = f"write {table.head} in the first line"
+            remedy = f"write {kind.first_line} in the first line"
             raise InputError("is missing among the columns", element=source, key=name, remedy=remedy)
     return found
 
@@ -110,12 +119,10 @@ def _is_unit(unit: str, kind: QuantityKind) -> bool:
 
 
 def _usual(kind: QuantityKind) -> str:
-    return {SPEED: "rpm", ANGLE: "deg"}.get(kind, kind.unit)
+    return {SPEED: "rpm", ANGLE: "deg", PRESSURE: "bar"}.get(kind, kind.unit)
 
 
-def _values(
-    where: str, row: Sequence[str], columns: dict[str, tuple[int, str]], table: TableColumns
-) -> dict[str, float]:
+def _values(where: str, row: Sequence[str], columns: dict[str, tuple[int, str]], kind: TableKind) -> dict[str, float]:
     values: dict[str, float] = {}
     for name, (i, unit) in columns.items():
         cell = row[i] if i < len(row) else ""
@@ -123,7 +130,7 @@ def _values(
             raise InputError("is missing", element=where, key=name, remedy="write a number in every column")
         try:
             number = float(cell)
-            values[name] = parse(f"{number!r} {unit}" if unit else number, table.kinds[name])
+            values[name] = parse(f"{number!r} {unit}" if unit else number, kind.columns[name])
         except ValueError:  # an InputError among them, which would quote it
             raise InputError("is not a number", element=where, key=name, remedy="write 2 or 2.5, say") from None
     return values

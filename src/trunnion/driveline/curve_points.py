@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
-from trunnion.driveline.csv_table import TableColumns, read_table
+from trunnion.driveline.csv_table import TableKind, read_numbers
 from trunnion.driveline.quantities import SPEED, TORQUE, Speed, TableList, Torque, shown
 from trunnion.driveline.record import Record, listed
 from trunnion.errors import InputError
@@ -25,7 +25,7 @@ from trunnion.errors import InputError
 if TYPE_CHECKING:
     from trunnion.laws.torque_curve import TableCurve
 
-COLUMNS = TableColumns(
+COLUMNS = TableKind(
     "the table of torque over speed",
     {"speed": SPEED, "torque": TORQUE},
     ("speed", "torque"),
@@ -98,9 +98,12 @@ def read_curve(path: str | os.PathLike[str]) -> tuple[TorquePoint, ...]:
     ...     print([(one.speed, one.torque) for one in tn.read_curve(table)])
     [(0.0, 400.0), (157.0, 0.0)]
     """
-    source, rows = Path(path).name, read_table(path, COLUMNS)
+    source, rows = Path(path).name, read_numbers(path, COLUMNS)
+    if not rows:
+        remedy = f"write rows below {COLUMNS.first_line}"
+        raise InputError("has no rows below its first line", key=source, remedy=remedy)
     try:
-        return _points([TorquePoint(**row) for row in rows])
+        return _points([TorquePoint(**row) for _, row in rows])
     except InputError as error:
         raise error.each(lambda one: one.but(element=source, key="speed", value=None)) from None
 

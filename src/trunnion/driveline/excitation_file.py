@@ -8,8 +8,7 @@
     4,600,35,10
 
 The first line names the columns, each with its unit: order, amplitude, and where there are any phase, and speed (of
-the disk) or torque (the mean one that it drives with). TableColumns stand apart by commas, semicolons or tabs. What a
-message says of a table is its place, never its content: a description may name a file that is none.
+the disk) or torque (the mean one that it drives with). Columns stand apart by commas, semicolons or tabs.
 """
 
 from __future__ import annotations
@@ -18,18 +17,19 @@ import os
 from pathlib import Path
 from typing import Any
 
-from trunnion.driveline.csv_table import LARGEST_TABLE as LARGEST_TABLE
-from trunnion.driveline.csv_table import TableColumns, read_table
+from trunnion.driveline.csv_table import TableKind, read_numbers
 from trunnion.driveline.excitation import Excitation
-from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
+from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE, QuantityKind
 from trunnion.errors import InputError
 
-COLUMNS = TableColumns(
-    "the table of orders",
-    {"order": RATIO, "speed": SPEED, "torque": TORQUE, "amplitude": TORQUE, "phase": ANGLE},
-    ("order", "amplitude"),
-    "order,amplitude [N*m]",
-)
+COLUMNS: dict[str, QuantityKind] = {
+    "order": RATIO,
+    "speed": SPEED,
+    "torque": TORQUE,
+    "amplitude": TORQUE,
+    "phase": ANGLE,
+}
+ORDERS = TableKind("the table of orders", COLUMNS, ("order", "amplitude"), "order,amplitude [N*m]")
 
 
 def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
@@ -55,17 +55,18 @@ def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
     ...     print([(one.order, one.amplitude) for one in tn.read_excitation(table)])
     [(2.0, 60.0), (4.0, 25.0)]
     """
-    source, rows = Path(path).name, read_table(path, COLUMNS)
-    over = [key for key in ("speed", "torque") if key in rows[0]]
-    if len(over) > 1:
+    source, rows = Path(path).name, read_numbers(path, ORDERS)
+    by_order: dict[float, list[dict[str, float]]] = {}
+    for _, values in rows:
+        by_order.setdefault(values["order"], []).append(values)
+    columns = rows[0][1] if rows else {}
+    if "speed" in columns and "torque" in columns:
         remedy = "a table goes over one of the two; leave the other out"
         raise InputError("stands beside speed", element=source, key="torque", remedy=remedy)
-    by_order: dict[float, list[dict[str, float]]] = {}
-    for row in rows:
-        by_order.setdefault(row["order"], []).append(row)
-    return tuple(
-        _harmonic(source, order, found, over[0] if over else None) for order, found in sorted(by_order.items())
-    )
+    over = next((key for key in ("speed", "torque") if key in columns), None)
+    if not by_order:
+        raise InputError("has no rows below its first line", key=source, remedy="write one row an order")
+    return tuple(_harmonic(source, order, found, over) for order, found in sorted(by_order.items()))
 
 
 def _harmonic(source: str, order: float, rows: list[dict[str, float]], over: str | None) -> Excitation:

@@ -36,6 +36,7 @@ from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pressure import read_pressure
 from trunnion.driveline.quantities import SPEED, QuantityKind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
@@ -170,7 +171,7 @@ def dumps(line: Driveline) -> str:
     blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
     for tolerance in line.tolerances:
         blocks += _tolerance_blocks(tolerance)
-    for element in line.elements:
+    for element in line.as_stated.elements:
         blocks += _element_blocks(element)
     return "\n".join(blocks)
 
@@ -353,9 +354,9 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
-            for key, read in TABLES.items():
+            for key in _TABLES:
                 if place_of is not None and isinstance(named := data.get(key), str):
-                    data[key] = _table_of(named, key, read, place_of)
+                    data[key] = _table_of(key, named, place_of)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
@@ -365,14 +366,20 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
     return element
 
 
-TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {"excitation": read_excitation, "curve": read_curve}
-"""Keys that may name a table beside the file, and what reads it."""
+_TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
+    "excitation": read_excitation,
+    "gas_torque": read_excitation,
+    "pressure": read_pressure,
+    "compression": read_pressure,
+    "curve": read_curve,
+}
+"""What reads the table that a key of an element may name."""
 
 
-def _table_of(named: str, key: str, read: Callable[[Path], tuple[Record, ...]], place_of: Place) -> tuple[Record, ...]:
+def _table_of(key: str, named: str, place_of: Place) -> tuple[Record, ...]:
     """What the table holds that an element names; complaints say the place in the table, about that element."""
     try:
-        return read(place_of(named))
+        return _TABLES[key](place_of(named))
     except InputError as error:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"

@@ -8,6 +8,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
@@ -29,6 +30,7 @@ KINDS: dict[str, type[Element]] = {
         SlipClutch,
         DualMassFlywheel,
         Disk,
+        Engine,
         Motor,
         Generator,
         Fan,

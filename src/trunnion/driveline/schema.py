@@ -16,6 +16,7 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import KLOSS
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -162,6 +163,7 @@ def json_schema() -> dict[str, Any]:
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),
+            "PressureCurve": _model(PressureCurve),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),
