@@ -108,7 +108,7 @@ def _require_equal_legs(assembly: Assembly, table: Array) -> None:
         raise InputError(
             "drives legs whose loads differ, so that they turn faster and faster against each other",
             element=assembly.line.names[topo.knot], key="load_torque",
-            remedy="give both legs the same load behind their own ratios",
+            remedy="give both legs the same load behind their own ratios, or one more shaft that drives a drive_share",
         )  # fmt: skip
 
 
