@@ -65,7 +65,12 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
-_LIKE = {"rolling resistance": "load torque", "air drag": "quadratic load", "slip of a tyre": DRAGGED}
+_LIKE = {
+    "rolling resistance": "load torque",
+    "air drag": "quadratic load",
+    "slip of a tyre": DRAGGED,
+    "elastic teeth of planets": "closed loop",
+}
 """Features that every analysis treats as another, whose equations they share."""
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"

@@ -21,6 +21,7 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
@@ -198,6 +199,11 @@ FEATURES = (
             *(f"Planetary.{key}" for key in ("planets", "planet_inertia", "planet_mass", "centre_distance")),
             "Planetary.teeth_planet",
         ),
+    ),
+    Feature(
+        "elastic teeth of planets",
+        _of("Planetary", "sun_mesh_stiffness", "ring_mesh_stiffness", "mesh_damping", "module", "pressure_angle"),
+        _where(Planetary, "sun_mesh_stiffness", lambda one: one.elastic),
     ),
     Feature("closed loop", (*_of_springs("to"), "Tyre.to")),
     Feature(

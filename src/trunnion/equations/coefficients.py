@@ -111,6 +111,14 @@ class Assembly:
         """Torque [N m] that every compliance carries under the mean loads (case, compliance)."""
         return _static_torque(self, table, mean_loads(self.topology, self.packed.column, table))
 
+    def wind_up(self, table: Array) -> Array:
+        """Torque [N m] of every compliance (case, compliance) that ratios of a loop which do not come out force on it
+        whatever the loads, as something slips; zeros of all other lines."""
+        topo = self.topology
+        if not (topo.graph and topo.apart.any()):
+            return np.zeros((len(table), len(topo.compliances)))
+        return static_torque(topo, np.zeros((len(table), len(topo.stations))), *_sharing(self, table), table[:, 0])
+
     def common_damping(self, table: Array, stiffness: Array) -> Array:
         """Damping (case,) of a spring under the line's one damping ratio: 2ζk/ω."""
         column = self.packed.column

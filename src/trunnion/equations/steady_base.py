@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.graph_matrices import require_fixed_speeds
 from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
 from trunnion.errors import InputError
 
@@ -29,6 +30,8 @@ def require_steady_base(assembly: Assembly, table: Array) -> None:
             element=f"ConstantSpeed behind {element}",
             remedy="end the line with a Disk; natural frequencies are available as it is",
         )
+    if topo.graph and has_joint_angles(assembly, table):
+        require_fixed_speeds(topo, joint_laws(assembly, table), assembly.line.names)
     require_balance(assembly, table)
 
 
@@ -122,9 +125,12 @@ def require_tree(assembly: Assembly, what: str) -> None:
     topo = assembly.topology
     if topo.graph:
         problem, both = ("ties one shaft to two others", "legs") if topo.sums else ("closes a loop", "ways round")
+        own = has_periodic_base(assembly)
+        driven = "put a ConstantSpeed in front, take the joints straight, or " if own else ""
+        why = ", as a free–free line with joint angles needs them" if own else ""
         raise InputError(
-            f"{problem}, which {what} not follow", element=assembly.line.names[topo.knot],
-            remedy=f"take both {both} as one shaft; natural frequencies and order response are available",
+            f"{problem}, which {what} not follow{why}", element=assembly.line.names[topo.knot],
+            remedy=f"{driven}take both {both} as one shaft; natural frequencies and order response are available",
         )  # fmt: skip
 
 

@@ -286,13 +286,14 @@ class Topology:
 
     @cached_property
     def ratio_values(self) -> Array:
-        """Input speed over output speed at each station that hangs on a Ratio (station,); 1 elsewhere."""
-        return _fixed(
-            [
-                float(self.speed_ratio[station.before] / self.speed_ratio[s]) if station.link is LinkKind.RATIO else 1.0
-                for s, station in enumerate(self.stations)
-            ]
-        )
+        """Input speed over output speed, on average, at each station that hangs on a Ratio or turns by itself
+        (station,), infinite where it stands still; 1 elsewhere."""
+        of = [s for s, station in enumerate(self.stations) if station.link in (LinkKind.RATIO, LinkKind.LOOSE)]
+        found = np.ones(len(self.stations))
+        for s in of:
+            own, before = self.speed_ratio[s], self.speed_ratio[self.stations[s].before]
+            found[s] = float(before / own) if own else np.inf
+        return _fixed(found)
 
     @cached_property
     def unknown_of(self) -> Places:
