@@ -17,6 +17,7 @@ from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
+from trunnion.driveline import Engine as Engine
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint
@@ -26,12 +27,14 @@ from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
+from trunnion.driveline import PressureCurve as PressureCurve
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
+from trunnion.driveline import SlipClutch as SlipClutch
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
@@ -57,6 +60,7 @@ from trunnion.driveline.layout import layout as layout
 from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack
+from trunnion.driveline.pressure import read_pressure as read_pressure
 from trunnion.equations.exact_oscillator import exact_oscillator as exact_oscillator
 from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError

@@ -106,6 +106,8 @@ _EVEN = {
     "angle of an ideal joint": f"at any angle it passes rotation unchanged; {_PLANE}",
     "double Cardan joint": f"centred, it passes rotation unchanged; {_PLANE}",
 }
+_STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
+_NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -161,7 +163,7 @@ _UNPROVABLE = {
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", SERIES,
+            "quadratic load", SERIES, "slip clutch",
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -180,6 +182,7 @@ _MODES_SAID: dict[str, Words] = {
 _MODES_INERT = {
     **_TORSION,
     **_EVEN,
+    **_STICKS,
     **_FORCING,
     "fork offset": _ALIGNED,
     "joint plane": _ALIGNED,
@@ -198,6 +201,7 @@ _ONE_DRIVE = {
 _ANYWHERE = {DRAGGED: "what it drags may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NOT_SLIPPED,
     **_NOT_FOLLOWED,
     **_ANYWHERE,
     "free start": "the speed follows from the torques",
@@ -209,6 +213,7 @@ _PASSING = {
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
@@ -222,9 +227,9 @@ _RIGID = dict.fromkeys(
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
         "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "tyre", "vehicle", "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
-        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
+        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
-        "excitation that varies with speed or load", "cylinders", "excitation in time",
+        "excitation that varies with speed or load", "cylinders", "engine", "excitation in time",
         "excitation by order and frequency", "excitation of a prescribed disk",
         "unlike damping in series", "free start", "drive share",
     ),
@@ -253,8 +258,10 @@ ROWS: dict[str, Row] = {
             **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
     ),
-    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE, set_aside=(DRAGGED,)),
-    "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}, set_aside=(DRAGGED,)),
+    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
+    "multipliers": _row(
+        refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING}, set_aside=(DRAGGED,)
+    ),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
         refused=_DRY_FRICTION,
@@ -262,6 +269,7 @@ ROWS: dict[str, Row] = {
         inert={
             **_TORSION,
             **_EVEN,
+            **_STICKS,
             **{key: _MODES_INERT[key] for key in ("fork offset", "joint plane", "drive share", "backlash")},
             "load torque": _MODES_INERT["load torque"],
         },
@@ -275,7 +283,7 @@ ROWS: dict[str, Row] = {
         },
         inert=_EVEN,
     ),
-    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert=_PASSIVE),
+    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
     "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
@@ -305,14 +313,16 @@ ROWS: dict[str, Row] = {
                 "a turn has the springs of a clutch alone; its sliders hold it within a band of twist",
             ),
         },
-        inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
+        inert={**_TORSION, **_STICKS, "free start": "the first element is driven at the speed asked for"},
     ),
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
-    "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
+    "branch": _row(
+        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
+    ),
     "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
 }

@@ -184,6 +184,11 @@ def clutch(rubs: bool = False, **more: float) -> Change:
     return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}], **more))
 
 
+def clutched(**more: float) -> Change:
+    """A slip clutch behind the hub."""
+    return behind("hub", tn.SlipClutch(name="slips", **more), tn.Disk(inertia=0.05, name="plate"))
+
+
 def rippled() -> Change:
     ripple = [{"order": 1, "amplitude": 0.01}, {"order": 6, "amplitude": 2e-3, "phase": 0.3}]
     return jointed(tn.RzeppaJoint(angle=0.3, ripple=ripple, name="extra"))
@@ -290,6 +295,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "damping in contact only": (staged(), staged(damping_law="in contact")),
     "dry friction": (clutch(), clutch(True)),
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
+    "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),
@@ -306,6 +312,17 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "cylinders": (
         put("load", excitation=[{"order": 2, "amplitude": 5.0}]),
         put("load", excitation=[{"order": 2, "amplitude": 5.0}], firing_angles=[0.0, 0.3]),
+    ),
+    "engine": (
+        same,
+        behind(
+            "load",
+            tn.Shaft(stiffness=3e4, damping=5, name="coupling"),
+            tn.Engine(
+                firing_order="1-2", throw_inertia=[0.05, 0.06], throw_stiffness=2e4, damping=3, name="engine",
+                gas_torque=[{"order": 1, "amplitude": 4.0}],
+            ),
+        ),
     ),
     "branch": (same, branched),
     "free start": (same, free),

@@ -15,6 +15,7 @@ from trunnion.driveline import (
     Disk,
     Driveline,
     DualMassFlywheel,
+    Engine,
     HookeJoint,
     IdealJoint,
     Limit,
@@ -24,6 +25,7 @@ from trunnion.driveline import (
     Ratio,
     Schedule,
     Shaft,
+    SlipClutch,
     SwitchedOff,
     TitleBlock,
     Tolerance,
@@ -55,6 +57,18 @@ def on_a_bare_shaft():
 
 
 RUBS = {"torque": 1, "stiffness": 1}
+
+
+def engine(**changes):
+    """Of four cylinders; its pressure, where it has one, is 2 bar but for what is changed."""
+    curve = {key: changes.pop(key) for key in ("angles", "pressures") if key in changes}
+    stated = {"firing_order": "1-3-4-2", "throw_inertia": 0.02, "throw_stiffness": 6e5, **changes}
+    if curve:
+        sizes = {"bore": 0.08, "stroke": 0.09, "rod_length": 0.15}
+        angles = curve.setdefault("angles", [f"{i} deg" for i in range(720)])
+        curve.setdefault("pressures", [2e5] * len(angles))
+        stated = {**sizes, "pressure": [curve], **stated}
+    return Engine(**stated)
 
 
 def dual_mass(**changes):
@@ -152,6 +166,86 @@ PYTHON = [
     (
         lambda: Disk(inertia=1, excitation="engine.csv"),
         "Disk.excitation = 'engine.csv': names a file that is not known here",
+        "tn.load",
+    ),
+    (lambda: engine(firing_order="1-3-4-5"), "Engine.firing_order = '1-3-4-5': must have every cylinder", "no 2"),
+    (lambda: engine(firing_order="1-3-3-2"), "Engine.firing_order = '1-3-3-2': must have every cylinder", "no 4"),
+    (lambda: engine(firing_order="A-B"), "Engine.firing_order = 'A-B': is no order of cylinders", "1-5-3-6-2-4"),
+    (lambda: engine(firing_order=[]), "Engine.firing_order = []: must have 1 to 48 cylinders", ""),
+    (lambda: engine(firing_order="1-3-2", bank_angle=1), "Engine.bank_angle = 1: has two cylinders on every", "3"),
+    (
+        lambda: engine(firing_intervals=["90 deg"] * 4),
+        "Engine.firing_intervals = ['90 deg', '90 deg', '90 deg', '90 deg']: make 360 deg together",
+        "and a cycle has 720; check them, and strokes",
+    ),
+    (lambda: engine(firing_intervals=[1, 2]), "Engine.firing_intervals = [1, 2]: must be 4 angles", "leave them out"),
+    (lambda: engine(strokes=3), "Engine.strokes = 3: is neither 2 nor 4", "strokes = 4"),
+    (lambda: engine(throw_inertia=[]), "Engine.throw_inertia = []: is missing", "0.02 kg*m^2"),
+    (lambda: engine(throw_inertia=[1, 2]), "Engine.throw_inertia = [1, 2]: must be one for all or 4", "each throw"),
+    (lambda: engine(throw_inertia=[-1]), "Engine.throw_inertia = [-1]: must be positive", "kg*m^2"),
+    (lambda: engine(throw_stiffness=[]), "Engine.throw_stiffness = []: is missing", "rigid = true"),
+    (lambda: engine(throw_stiffness=[1] * 4), "Engine.throw_stiffness = [1, 1, 1, 1]: must be one for all", "shaft"),
+    (lambda: engine(damping=1, loss_factor=0.1), "Engine.damping = 1: stands beside loss_factor", "leave one"),
+    (lambda: engine(loss_factor_frequency=9), "Engine.loss_factor: is missing beside loss_factor_frequency", "0.02"),
+    (lambda: engine(stroke=0.4, rod_length=0.2), "Engine.rod_length = 0.2: is no longer than the crank", "200 mm"),
+    (lambda: engine(reciprocating_mass=1), "Engine.stroke: is missing beside reciprocating_mass", "rod_length"),
+    (lambda: engine(orders=99), "Engine.orders = 99: must be from 1 to 24", "12"),
+    (
+        lambda: engine(pressures=[2e5] * 720, gas_torque=[{"order": 2, "amplitude": 1}]),
+        "Engine.pressure = [{",
+        "stands beside gas_torque",
+    ),
+    (
+        lambda: engine(gas_torque=[{"amplitude": 1, "frequency": 2}]),
+        "Engine.gas_torque = [{'amplitude': 1, 'frequency': 2}]: repeats orders, not a frequency",
+        "write orders",
+    ),
+    (
+        lambda: engine(angles=[f"{i} deg" for i in range(540)]),
+        "Engine.pressure = [{",
+        ": covers 539 deg, and a cycle of 4 strokes has 720 deg; give one whole cycle, or strokes = 2",
+    ),
+    (
+        lambda: engine(angles=[f"{i} deg" for i in range(721)], pressures=[2e5] * 720 + [3e5]),
+        "Engine.pressure = [{",
+        ": does not close: 2 bar at its beginning and 3 bar a cycle later; give one cycle",
+    ),
+    (
+        lambda: engine(pressures=[2e5, 3e5]),
+        "Engine.pressure 1 pressures = [200000.0, 300000.0]: must be 720 quantities",
+        "every angle",
+    ),
+    (lambda: engine(angles=[0, 1]), "Engine.pressure 1 angles = [0, 1]: has 2 points, and a curve 24", "2 deg"),
+    (
+        lambda: engine(angles=["0 deg"] * 720),
+        "Engine.pressure 1 angles = ['0 deg', '0 deg', ",
+        ": must rise; sort them; each once",
+    ),
+    (
+        lambda: engine(pressures=[-1] * 720),
+        "Engine.pressure 1 pressures = [-1, -1, ",
+        ": must be positive; pressures are absolute",
+    ),
+    (
+        lambda: engine(pressure=[{"angles": [0.1 * i for i in range(126)], "pressures": [2e5] * 126}]),
+        "Engine.bore: is missing beside pressure",
+        "stroke",
+    ),
+    (lambda: engine(misfiring=5), "Engine.misfiring = 5: is the number of no cylinder", "1 to 4"),
+    (lambda: engine(misfiring=2, cut_out=2), "Engine.misfiring = 2: is cut out", "leave one"),
+    (
+        lambda: engine(pressures=[2e5] * 720, compression_ratio=0.9, charge_pressure=1e5, polytropic_exponent=1.3),
+        "Engine.compression_ratio = 0.9: leaves no clearance volume",
+        "14",
+    ),
+    (
+        lambda: engine(pressures=[2e5] * 720, compression_ratio=14),
+        "Engine.charge_pressure: is missing beside compression_ratio",
+        "polytropic_exponent",
+    ),
+    (
+        lambda: engine(pressure="pressure.csv"),
+        "Engine.pressure = 'pressure.csv': names a file that is not known here",
         "tn.load",
     ),
     (
@@ -612,6 +706,26 @@ PYTHON = [
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: SlipClutch(), "SlipClutch.torque: is missing", 'torque = "1200 N*m"'),
+    (lambda: SlipClutch(torque=0), "SlipClutch.torque = 0: must be positive", '"250 N*m"'),
+    (lambda: SlipClutch(torque=9, sliding_torque=-1, stribeck_speed=1), "SlipClutch.sliding_torque = -1: must", "250"),
+    (lambda: SlipClutch(torque=9, sliding_torque=5), "SlipClutch.stribeck_speed: is missing beside", '"30 rpm"'),
+    (lambda: SlipClutch(torque=9, stribeck_speed=5), "SlipClutch.sliding_torque: is missing beside", '"900 N*m"'),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[0, 1], clamping_shares=[1]),
+        "SlipClutch.clamping_shares = [1]: are 1 for 2 clamping_times",
+        'clamping_times = ["0 s", "0.3 s"]',
+    ),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[1, 1], clamping_shares=[0, 1]),
+        "SlipClutch.clamping_times = [1, 1]: must rise",
+        "write times from the start on, each later than the one before",
+    ),
+    (
+        lambda: SlipClutch(torque=9, clamping_times=[0], clamping_shares=[-0.1]),
+        "SlipClutch.clamping_shares = [-0.1]: must not be negative",
+        "write 0 for an open clutch",
+    ),
     (lambda: Vehicle(mass=900), "Vehicle.wheel_radius: is missing", ""),
     (lambda: Vehicle(mass=900, wheel_radius=0), "Vehicle.wheel_radius = 0: must be positive", '"76 mm"'),
     (

@@ -18,6 +18,7 @@ from trunnion.driveline import (
     Disk,
     Driveline,
     DualMassFlywheel,
+    Engine,
     GearPair,
     HookeJoint,
     IdealJoint,
@@ -28,6 +29,7 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    SlipClutch,
     TunedDamper,
     Tyre,
     Vehicle,
@@ -74,9 +76,22 @@ COMPONENTS = [
     ),
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
+    Engine(
+        firing_order="1-3-4-2", throw_inertia=[0.02, 0.02, 0.02, 0.03], throw_stiffness="0.6 MN*m/rad",
+        pressure=[{"angles": [0.02 * i for i in range(629)], "pressures": [2e5] * 629}], bore="80 mm", stroke="90 mm",
+        rod_length="150 mm", reciprocating_mass="0.8 kg", strokes=4, misfiring=2, loss_factor=0.02,
+        compression_ratio=12, charge_pressure="1 bar", polytropic_exponent=1.3,
+    ),
+    SlipClutch(
+        torque="1200 N*m",
+        sliding_torque="900 N*m",
+        stribeck_speed="20 rpm",
+        clamping_times=["0 s", "300 ms"],
+        clamping_shares=[0.2, 1],
+    ),
     Tyre(stiffness=15e3, damping=200, slip_stiffness="60 kN", radius=0.3, travel_speed="90 km/h", inertia=0.6),
     Vehicle(mass="1.6 t", wheel_radius=0.31, wheel_inertia=1.8, rolling_resistance="1.2 %", grade=0.05, drag_area=0.65),
-]
+]  # fmt: skip
 WITH_STAGES = [
     RzeppaJoint(
         angle="8 deg",

@@ -10,6 +10,7 @@ from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.flywheels import DualMassFlywheel
@@ -18,11 +19,13 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
@@ -38,6 +41,7 @@ __all__ = [
     "Driveline",
     "DualMassFlywheel",
     "Element",
+    "Engine",
     "Excitation",
     "GearPair",
     "HookeJoint",
@@ -48,6 +52,7 @@ __all__ = [
     "Coupling",
     "PiecewiseShaft",
     "Planetary",
+    "PressureCurve",
     "Ratio",
     "Schedule",
     "Shaft",
@@ -59,6 +64,7 @@ __all__ = [
     "Belt",
     "Clutch",
     "Slider",
+    "SlipClutch",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Any, ClassVar, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from trunnion.driveline.excitation import Excitations
 from trunnion.driveline.geometry import disk_inertia
@@ -51,6 +51,8 @@ class Element(Record):
         element.
     """
 
+    _part_of: tuple[str, Element] | None = PrivateAttr(default=None)
+
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
     after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
 
@@ -60,6 +62,23 @@ class Element(Record):
             label = self.name or self.kind
             remark = InputError(problem, element=label, key=key, value=getattr(self, key), remedy=remedy)
             warnings.warn(InputRemark(str(remark)), stacklevel=2)
+
+    @property
+    def part_of(self) -> Any:
+        """Name and composite that it is part of (``trunnion.driveline.composite``); None of what stands alone."""
+        return self._part_of
+
+    def as_part_of(self, name: str, composite: Element) -> Self:
+        """The same as a part of a composite of that name."""
+        made = type(self)(**self.stated)
+        made._part_of = (name, composite)
+        return made
+
+    def but(self, **changes: Any) -> Self:
+        """The same with fields changed; None takes a field away. It stays part of what it is part of."""
+        made = super().but(**changes)
+        made._part_of = self._part_of
+        return made
 
     @classmethod
     def called(cls, data: dict[str, Any]) -> str:

@@ -15,6 +15,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
@@ -24,6 +25,7 @@ from trunnion.driveline.parts import Tied
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.vehicle import Tyre, Vehicle
@@ -251,6 +253,11 @@ FEATURES = (
         _dry_friction(False),
     ),
     Feature(
+        "slip clutch",
+        _of("SlipClutch", "torque", "sliding_torque", "stribeck_speed", "clamping_times", "clamping_shares"),
+        _kind(SlipClutch),
+    ),
+    Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
@@ -273,6 +280,14 @@ FEATURES = (
         _excited(lambda one: one.varies),
     ),
     Feature("cylinders", ("Disk.firing_angles", "Disk.misfiring")),
+    Feature(
+        "engine",
+        (
+            *(f"Engine.{key}" for key in Engine.model_fields if key not in Element.model_fields),
+            *(f"PressureCurve.{key}" for key in ("angles", "pressures")),
+        ),
+        lambda line: [name for name, one in line.as_stated.parts if isinstance(one, Engine)],
+    ),
     Feature("excitation in time", ("Excitation.frequency", "Excitation.phase"), _excited(lambda one: not one.order)),
     Feature("excitation by order and frequency", (), _excited(lambda one: one.order and one.frequency)),
     Feature(HELD, (), lambda line: [f"{name}.excitation" for name in prescribed_excitations(line)]),
@@ -288,6 +303,7 @@ FEATURES = (
 
 NOT_FEATURES = {
     "Element.name": "a label",
+    "PressureCurve.load": "a label",
     "Shaft.tensile_strength": "a rating, which checks compare with",
     **dict.fromkeys(
         (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
@@ -310,6 +326,10 @@ NOT_FEATURES = {
     "Operation.application": "which guidelines of assess decide",
     "Operation.switched_off": "which rules of assess are not to judge",
     **dict.fromkeys(("SwitchedOff.rule", "SwitchedOff.reason"), "a rule of assess that is not to judge, and why"),
+    **dict.fromkeys(
+        ("Operation.misfiring", "Operation.cut_out"),
+        "line.with_load puts a cylinder out of work; assess judges every one",
+    ),
     "Operation.load_cases": "line.with_load(case) puts a case's torques into the line",
     "Operation.schedules": "line.at_schedule(name, value) puts a point's angles and torques into the line",
     "Schedule.name": "a label",

@@ -8,11 +8,13 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
@@ -24,8 +26,10 @@ KINDS: dict[str, type[Element]] = {
         Coupling,
         PiecewiseShaft,
         Clutch,
+        SlipClutch,
         DualMassFlywheel,
         Disk,
+        Engine,
         ViscousDamper,
         TunedDamper,
         HookeJoint,

@@ -88,6 +88,7 @@ FORCE = QuantityKind("force", "N", "60 kN", (("kN", 1e3, 1e4), ("N", 1.0, 0.0)))
 VELOCITY = QuantityKind("velocity", "m/s", "80 km/h", (("km/h", 1 / 3.6, 0.0),))
 POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
 ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
+TIME = QuantityKind("time", "s", "0.3 s")
 RATIO = QuantityKind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
@@ -110,6 +111,7 @@ KINDS = (
     VELOCITY,
     POWER,
     ACCELERATION,
+    TIME,
     RATIO,
 )
 
@@ -139,6 +141,7 @@ USUAL: dict[str, dict[str, float]] = {
     "N": {"N": 1.0, "kN": 1e3},
     "m/s": {"m/s": 1.0, "km/h": 1000 / 3600},
     "W": {"W": 1.0, "kW": 1e3},
+    "s": {"s": 1.0, "ms": 1e-3},
     "1": {"percent": 0.01},
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
@@ -376,6 +379,7 @@ if TYPE_CHECKING:
     Velocity: TypeAlias = Stated[float, float | str]
     Power: TypeAlias = Stated[float, float | str]
     Acceleration: TypeAlias = Stated[float, float | str]
+    Time: TypeAlias = Stated[float, float | str]
     Dimensionless: TypeAlias = Stated[float, float | str]
 
     Of = TypeVar("Of")
@@ -385,6 +389,9 @@ if TYPE_CHECKING:
 
     class Several(Stated[tuple[float, ...], Iterable[float | str]], Generic[Of]):
         """Quantities in a row."""
+
+    class OneOrSeveral(Stated[tuple[float, ...], float | str | Iterable[float | str]], Generic[Of]):
+        """Quantities in a row, or one for all."""
 
     class MaybeRange(Stated[tuple[float, float] | None, Sequence[float | str] | None], Generic[Of]):
         """The lower and the upper end, or None."""
@@ -413,6 +420,7 @@ else:
     Velocity = Annotated[float, Quantity(VELOCITY)]
     Power = Annotated[float, Quantity(POWER)]
     Acceleration = Annotated[float, Quantity(ACCELERATION)]
+    Time = Annotated[float, Quantity(TIME)]
     Dimensionless = Annotated[float, Quantity(RATIO)]
 
     class _Row:
@@ -422,7 +430,7 @@ else:
             return tuple[member, ...]
 
     Maybe = MaybeRange = Optional
-    Several = TableList = _Row
+    Several = OneOrSeveral = TableList = _Row
 
 
 def deg(angle: Number) -> Number:

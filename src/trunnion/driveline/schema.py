@@ -14,6 +14,7 @@ from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -44,6 +45,14 @@ _RULES: dict[str, dict[str, Any]] = {
     "Coupling": {"required": ["type", "stiffness"]},
     "Clutch": {
         "dependentRequired": {"linear_amplitude": ["linear_frequency"], "linear_frequency": ["linear_amplitude"]}
+    },
+    "SlipClutch": {
+        "dependentRequired": {
+            "sliding_torque": ["stribeck_speed"],
+            "stribeck_speed": ["sliding_torque"],
+            "clamping_times": ["clamping_shares"],
+            "clamping_shares": ["clamping_times"],
+        }
     },
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
@@ -136,6 +145,7 @@ def json_schema() -> dict[str, Any]:
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),
+            "PressureCurve": _model(PressureCurve),
             "TransmissionError": _model(TransmissionError),
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),

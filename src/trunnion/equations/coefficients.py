@@ -27,6 +27,7 @@ from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
+from trunnion.equations.slip_capacity import refuse_slipping
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.equations.topology import Compliance, Mesh, Topology, topology
 from trunnion.errors import InputError
@@ -271,6 +272,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
     mean = mean_load(topo, loads, table[:, 0])
+    refuse_slipping(assembly.packed, topo, table, mean)
     static = _static_torque(assembly, table, mean)
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))

@@ -31,6 +31,7 @@ from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, li
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
+from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -319,6 +320,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
     nonuniform = {line.names[topo.stations[j].element] for j, law in laws if law.nonuniform}
     refuse_dragged(assembly)
+    refuse_slip_clutches(line)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in nonuniform:

@@ -13,7 +13,7 @@ from trunnion.writing import written_whole
 
 
 @dataclass(frozen=True)
-class Page:
+class HtmlPage:
     """A page as text. ``save`` writes it; a notebook shows it."""
 
     html: str

@@ -19,7 +19,7 @@ from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
 from trunnion.reporting.overview import Overview, overview
-from trunnion.reporting.page import Page, environment
+from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
@@ -30,7 +30,7 @@ from trunnion.waiting import to_the_end
 
 
 @dataclass(frozen=True)
-class Report(Page):
+class Report(HtmlPage):
     """A page, and the results it was made from."""
 
     contents: Contents

@@ -22,7 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.modes.mass_elastic import HolzerTable
 from trunnion.reporting import submission_tables as tables
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
-from trunnion.reporting.page import Page, environment
+from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import fingerprint
 from trunnion.reporting.submission_contents import SubmissionContents, gather
@@ -39,7 +39,7 @@ FIRST_FINDINGS = 5
 
 
 @dataclass(frozen=True)
-class Submission(Page):
+class Submission(HtmlPage):
     """The report that is handed in, and the results it was made from."""
 
     contents: SubmissionContents
@@ -78,7 +78,7 @@ def submission(
     >>> disk = tn.Disk(inertia=0.8, excitation=[{"order": 2, "amplitude": 10.0}])
     >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), disk])
     >>> tn.submission(line, speed=30.0)
-    report to hand in on a driveline, 0.1 MB of HTML; .save(path) writes it
+    report to hand in on a driveline, 0... MB of HTML; .save(path) writes it
     """
     seen = line if isinstance(line, OverviewAssessment) else answer(judged(asked(line, speed=speed, unit=unit)))
     contents = gather(seen, progress)

@@ -12,7 +12,7 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.modes.mass_elastic import HolzerTable, masses, springs
-from trunnion.reporting.submission_contents import Largest, SubmissionContents
+from trunnion.reporting.submission_contents import LargestTorque, SubmissionContents
 from trunnion.reporting.tables import Table, four
 from trunnion.results.speeds import order_name
 from trunnion.results.units import signs
@@ -214,7 +214,7 @@ def powers(contents: SubmissionContents) -> Table:
 
 
 def shafts(contents: SubmissionContents) -> Table:
-    """Largest torques of every spring beside the limits stated for it."""
+    """LargestTorque torques of every spring beside the limits stated for it."""
     words, several = Words(contents.seen.unit), len(contents.cases) > 1
     limits = _limits(contents)
     return Table.of(
@@ -248,7 +248,7 @@ def misfires(contents: SubmissionContents) -> Table:
     """Every spring with all cylinders firing and with the worst of them out of work."""
     words, limits = Words(contents.seen.unit), _limits(contents)
 
-    def worst(spring: int) -> tuple[str, Largest]:
+    def worst(spring: int) -> tuple[str, LargestTorque]:
         found = max(contents.misfiring, key=lambda one: one.vibratory[spring].value)
         return found.cylinder, found.vibratory[spring]
 

@@ -12,8 +12,11 @@ from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element, Loaded
+from trunnion.driveline.engine import Engine
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
 from trunnion.results.units import figures, signs
@@ -64,7 +67,7 @@ def four(value: float) -> str:
 def elements(line: Driveline) -> Table:
     """Every element with what it is and its numbers."""
     rows = []
-    for i, (name, element) in enumerate(zip(line.names, line.elements, strict=True), start=1):
+    for i, (name, element) in enumerate(line.as_stated.parts, start=1):
         after = f"after {element.after}; " if element.after else ""
         rows.append({"no.": i, "name": name, "element": element.kind, "numbers": after + "; ".join(_numbers(element))})
     return Table.of(rows)
@@ -72,9 +75,9 @@ def elements(line: Driveline) -> Table:
 
 def _numbers(element: Element) -> list[str]:
     """Stated numbers with units, and what follows from a geometry."""
-    parts = []
+    parts = [firing(element)] if isinstance(element, Engine) else []
     for key, value in element.stated.items():
-        if key in ("name", "after"):
+        if key in ("name", "after", "firing_order"):
             continue
         kind = element.quantity_of(key)
         if isinstance(value, tuple):
@@ -95,7 +98,9 @@ def _numbers(element: Element) -> list[str]:
 
 
 def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
-    """Quantities one after the other, or how many harmonics there are."""
+    """Quantities one after the other, or how many harmonics or curves there are."""
+    if isinstance(values[0], PressureCurve):
+        return f"of {len(values)} curve{'s' if len(values) > 1 else ''}"
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
     return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))

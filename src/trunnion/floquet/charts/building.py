@@ -77,7 +77,7 @@ FALLBACKS = (
 
 @dataclass(frozen=True)
 class BuiltChart:
-    """A chart's pixels and what stands behind them: the way that held, its family and tolerance, and its check.
+    """A chart's pixels and what stands behind them: strategy, family, tolerance and check.
 
     ``failed``: what the checks of the ways before found.
     """

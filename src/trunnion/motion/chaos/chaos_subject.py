@@ -58,9 +58,11 @@ def as_system(subject: System | Driveline, speed: float | str | None = None) -> 
         from trunnion.driveline.operating_speed import operating_speed
         from trunnion.equations.line_system import line_system
         from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
+        from trunnion.equations.slip_clutches import refuse_slip_clutches
         from trunnion.equations.steady_base import refuse_dragged
 
         refuse_friction(subject, NOT_FOLLOWED, STAND_IN)
+        refuse_slip_clutches(subject)
         prepared = line_system(subject, operating_speed(subject, speed))
         refuse_dragged(prepared.assembly)
         if prepared.assembly.topology.free:
@@ -275,10 +277,10 @@ def failure(system: System, motion: Motion, length: float, before: str) -> Outco
         system.equations, motion.time, motion.time + length, motion.state, regime=motion.regime,
         tolerance=motion.tolerance, most_steps=motion.most_steps, dense=False,
     )  # fmt: skip
-    told = outcome_of(system, again, motion.tolerance, system.regimes.guards if system.regimes else ())
-    if told.ok:
+    outcome = outcome_of(system, again, motion.tolerance, system.regimes.guards if system.regimes else ())
+    if outcome.ok:
         return Outcome(False, "refused", f"{before}the tangents could not be followed any further")
-    return Outcome(False, told.kind, f"{before}{told.sentence}")
+    return Outcome(False, outcome.kind, f"{before}{outcome.sentence}")
 
 
 def usual_time(system: System, state: Array, tolerance: float, steps: int = 32) -> float:

@@ -24,6 +24,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Elastic
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.equations.topology import LinkKind, Station, stations_of
@@ -225,6 +226,8 @@ class _ChainDraft:
             if element.orders:
                 law = element.law(lambda key: np.asarray(self.packed.values[self.packed.column(i, key)]))
             return self._joint(parent, name, speed, law=law, orders=element.orders, **bend)
+        if isinstance(element, SlipClutch):
+            return parent  # sticks
         if station.link is LinkKind.RATIO:
             axis, ratio = Member(-1, self.members[-1].train + 1, speed), self.steps[parent].speed / speed
             return self._step(LinkKind.RATIO, parent, name, speed, axis, ratio=float(ratio))
