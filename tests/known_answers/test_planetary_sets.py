@@ -128,8 +128,8 @@ def test_planets_behind_a_bent_joint_are_those_of_gears_and_disks() -> None:
 
 @pytest.mark.parametrize(("drives", "driven"), list(permutations(("sun", "carrier", "ring"), 2)))
 def test_elastic_meshes(drives: str, driven: str) -> None:
-    """Modes with the deflection of each mesh along its line of action, base radii m z cos α/2; with very stiff teeth those
-    of rigid ones."""
+    """Modes with the deflection of each mesh along its line of action, base radii m z cos α/2; with very stiff teeth
+    those of rigid ones."""
     gears, module, angle = {"sun": 2e-3, "ring": 0.03, "carrier": 0.01}, 0.003, np.pi / 9
     meshes = {"sun_mesh_stiffness": 1e8, "ring_mesh_stiffness": 1.4e8, "module": module}
 
