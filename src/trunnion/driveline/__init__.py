@@ -6,6 +6,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
@@ -17,11 +18,13 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -30,10 +33,15 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.torque_file import read_torque
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
+    "AppliedTorque",
+    "LevelCrossing",
+    "FrictionTorque",
+    "Scenario",
     "ConstantSpeed",
     "Differential",
     "Disk",
@@ -43,16 +51,21 @@ __all__ = [
     "Element",
     "Engine",
     "Excitation",
+    "Fan",
     "GearPair",
+    "Generator",
     "HookeJoint",
     "IdealJoint",
     "Limit",
     "LoadCase",
+    "Motor",
     "Operation",
     "Coupling",
     "PiecewiseShaft",
     "Planetary",
     "PressureCurve",
+    "Propeller",
+    "Pump",
     "Ratio",
     "Schedule",
     "Shaft",
@@ -60,6 +73,7 @@ __all__ = [
     "SwitchedOff",
     "TitleBlock",
     "Tolerance",
+    "TorquePoint",
     "TransmissionError",
     "Belt",
     "Clutch",
@@ -79,6 +93,7 @@ __all__ = [
     "json_schema",
     "load",
     "loads",
+    "read_torque",
     "rpm",
     "starter",
 ]

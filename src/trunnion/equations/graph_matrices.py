@@ -37,7 +37,7 @@ TOUCHED = 1e-9
 
 
 @dataclass(frozen=True)
-class Turning:
+class GraphKinematics:
     """Rotations of the stations per rotation of the unknowns, R, R′ and R″ by the input angle (case, time, station, n),
     with the base ``motion`` and the slope η_χ of every joint by its station (case, time)."""
 
@@ -60,7 +60,7 @@ def ends_of(topo: Topology) -> tuple[list[int], list[int]]:
     return far, [c.near for c in topo.compliances]
 
 
-def turning_of(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Turning:
+def turning_of(topo: Topology, coefficients: LineCoefficients, tau: Array) -> GraphKinematics:
     """At input angles ``tau`` (time,) [rad]."""
     motion = base_motion(topo, coefficients, tau)
     shape = (*motion.angle.shape, topo.size)
@@ -85,7 +85,7 @@ def turning_of(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Tu
                 part[:, :, s] = part[:, :, b] / topo.ratio_values[s]
         elif place >= 0:
             r[:, :, s, place] = 1.0
-    return Turning(motion, r, r1, r2, bend, eta)
+    return GraphKinematics(motion, r, r1, r2, bend, eta)
 
 
 def require_fixed_speeds(topo: Topology, laws: Iterable[JointLaw], names: tuple[str, ...]) -> None:
@@ -117,7 +117,7 @@ class GraphMatrices:
     damping: Array
     stiffness: Array
     forcing: Array
-    turning: Turning
+    turning: GraphKinematics
     base_twist: Array
 
 
@@ -149,7 +149,7 @@ def _both(left: Array, weight: Array, right: Array) -> Array:
     return np.asarray((left * weight[..., None]).swapaxes(-1, -2) @ right)
 
 
-def _of_bends(topo: Topology, turning: Turning, acting: Array, torque: Array) -> Array:
+def _of_bends(topo: Topology, turning: GraphKinematics, acting: Array, torque: Array) -> Array:
     """Σ_s F_s H_s: torques on all stations are carried back through ties and joints, each of which bends its own."""
     n = topo.size
     found = np.zeros((*acting.shape[:2], n, n))

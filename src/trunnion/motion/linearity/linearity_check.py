@@ -22,7 +22,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Loaded
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
@@ -279,7 +279,8 @@ def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
     for station, place in topo.disks:
         name = line.names[place]
         element = line.elements[place]
-        if not (isinstance(element, Loaded) and element.loads[2]) or name not in linear.inertias:
+        assert isinstance(element, Rotor)
+        if not element.loaded_by_square or name not in linear.inertias:
             continue
         fluctuation = float(linear.speed_fluctuation[0, linear.inertias.index(name)])
         share = fluctuation / (abs(float(topo.speed_ratio[station])) * result.speed)
