@@ -76,7 +76,12 @@ def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
     return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
 
 
-_LIKE = {"rolling resistance": "load torque", "air drag": "quadratic load", "slip of a tyre": DRAGGED}
+_LIKE = {
+    "rolling resistance": "load torque",
+    "air drag": "quadratic load",
+    "slip of a tyre": DRAGGED,
+    "elastic teeth of planets": "closed loop",
+}
 """Features that every analysis treats as another, whose equations they share."""
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"

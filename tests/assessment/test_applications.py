@@ -323,7 +323,13 @@ def test_equal_within_one_degree_up_to_rounding() -> None:
 # ---- What is shipped -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+LONG = ("four-wheel-drive", "passenger-car")
+
+
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in LONG else []) for path in EXAMPLES],
+)
 def test_an_example_has_a_whole_verdict(path: Path) -> None:
     """It states application and limits; nothing that decides is left open, and every margin is more than a hair."""
     line = tn.load(path)

@@ -222,6 +222,15 @@ OWN = {one.key for one in FEATURES}
 CENTRED = jointed(tn.DoubleCardanJoint(angle=0.3, name="extra"))
 
 
+YIELDING = planetary().but(sun_mesh_stiffness=1e7, ring_mesh_stiffness=1e7, module=0.002)
+PINION = tn.Disk(inertia=0.01, name="behind gears")
+
+
+def behind_hub(*elements: object) -> Change:
+    """Behind the hub of a straight line."""
+    return lambda line: behind("hub", *elements)(unbent(line))
+
+
 def looped(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
     """The same with a second shaft beside the rear one, from the hub to the load."""
     line = unbent(line) if straight else line
@@ -241,6 +250,8 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("assembly_sensitivity", "centrifugal pendulum"): (same, damped_by(pendulum())),
     ("optimise", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
     ("optimise", "closed loop"): (excited(unbent), excited(looped)),
+    ("resonance_speeds", "elastic teeth of planets"): (behind("hub", planetary()), behind("hub", YIELDING, PINION)),
+    ("optimise", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
     ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
 }
 """Where an analysis asks about something else than the lines below have."""
@@ -290,6 +301,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "planetary set": (same, behind("hub", planetary())),
     "shafts tied to two others": (unbent, tied),
     "closed loop": (unbent, looped),
+    "elastic teeth of planets": (behind_hub(planetary()), behind_hub(YIELDING, PINION)),
     "gear mesh": (same, meshed()),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
     "impact damping": (

@@ -1179,6 +1179,20 @@ PYTHON = [
     (lambda: Differential(inertia=-1), "Differential.inertia = -1: must be positive", "write for example"),
     (lambda: planetary(teeth_ring=30), "Planetary.teeth_ring = 30: leaves no planets", "more teeth than the sun"),
     (lambda: planetary(planet_mass=1.0), "Planetary.centre_distance: is missing", "or neither"),
+    (lambda: planetary(free_speed=0.5), "Planetary.free_speed = 0.5: stands beside held", "all speeds follow"),
+    (
+        lambda: planetary(sun_mesh_stiffness=1e8),
+        "Planetary.ring_mesh_stiffness: is missing beside sun_mesh_stiffness",
+        "module and planet_inertia",
+    ),
+    (lambda: planetary(module=0.003), "Planetary.module = 0.003: belongs to elastic teeth", "or leave it out"),
+    (
+        lambda: planetary(
+            sun_mesh_stiffness=1e8, ring_mesh_stiffness=1e8, module=0.003, planet_inertia=1e-3, pressure_angle=1.0
+        ),
+        "Planetary.pressure_angle = 1: must lie between 0 and 45 deg",
+        '"20 deg"',
+    ),
     (lambda: planetary(planet_inertia=0.0), "Planetary.planet_inertia = 0: must be positive", "write for example"),
     # the line
     (lambda: Driveline([]), "driveline: has no elements", "tn.Driveline(["),

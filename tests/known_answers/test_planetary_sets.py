@@ -124,3 +124,47 @@ def test_planets_behind_a_bent_joint_are_those_of_gears_and_disks() -> None:
         lambda one: tn.natural_frequencies(one).undamped_frequency,
     ):
         np.testing.assert_allclose(ask(gears), ask(plain), rtol=1e-7, atol=1e-8)
+
+
+@pytest.mark.parametrize(("drives", "driven"), list(permutations(("sun", "carrier", "ring"), 2)))
+def test_elastic_meshes(drives: str, driven: str) -> None:
+    """Modes with the deflection of each mesh along its line of action, base radii m z cos α/2; with very stiff teeth
+    those of rigid ones."""
+    gears, module, angle = {"sun": 2e-3, "ring": 0.03, "carrier": 0.01}, 0.003, np.pi / 9
+    meshes = {"sun_mesh_stiffness": 1e8, "ring_mesh_stiffness": 1.4e8, "module": module}
+
+    def line(**more: float) -> tn.Driveline:
+        return tn.Driveline(
+            [
+                tn.Disk(inertia=0.05, drive_share=1.0), tn.Shaft(stiffness=2e4), tn.Disk(inertia=gears[drives]),
+                heavy(drives, driven).but(**more), tn.Disk(inertia=gears[driven]), tn.Shaft(stiffness=5e4),
+                tn.Disk(inertia=0.4, load_torque=70.0),
+            ]
+        )  # fmt: skip
+
+    place = {name: i for i, name in enumerate(["drive", "sun", "ring", "carrier", "planets", "load"])}
+    carried = gears["carrier"] + COUNT * MASS * DISTANCE**2
+    mass, k = np.diag([0.05, gears["sun"], gears["ring"], carried, COUNT * SPIN, 0.4]), np.zeros((6, 6))
+    half = module * np.cos(angle) / 2
+    rows = [
+        (2e4, {"drive": 1, drives: -1}), (5e4, {driven: 1, "load": -1}),
+        (COUNT * 1e8, {"sun": half * SUN, "planets": half * PLANET, "carrier": -half * (SUN + PLANET)}),
+        (COUNT * 1.4e8, {"ring": half * RING, "planets": -half * PLANET, "carrier": -half * (RING - PLANET)}),
+    ]  # fmt: skip
+    for stiffness, row in rows:
+        q = np.zeros(6)
+        q[[place[name] for name in row]] = list(row.values())
+        k += stiffness * np.outer(q, q)
+    held = next(one for one in gears if one not in (drives, driven))
+    kept = [i for name, i in place.items() if name != held]
+    squares = eigh(k[np.ix_(kept, kept)], mass[np.ix_(kept, kept)], eigvals_only=True)
+    found = tn.natural_frequencies(line(**meshes))
+    np.testing.assert_allclose(found.undamped_frequency[1:], np.sqrt(squares[1:]), rtol=1e-9)
+    rigid = tn.natural_frequencies(line()).undamped_frequency
+    stiff = {"sun_mesh_stiffness": 1e15, "ring_mesh_stiffness": 1e15, "module": module}
+    np.testing.assert_allclose(tn.natural_frequencies(line(**stiff)).undamped_frequency[1:3], rigid[1:], rtol=1e-5)
+    # Both meshes pass the torque on: of the planets, none is left over.
+    response = tn.order_response(line(**meshes), [50.0])
+    torque = dict(zip(response.springs, response.mean_torque[0], strict=True))
+    assert torque["sun mesh of gears"] == pytest.approx(-torque["ring mesh of gears"], rel=1e-9)
+    assert abs(torque["Shaft 1"]) == pytest.approx(70 / abs(STANDARD[drives, driven]), rel=1e-9)

@@ -72,14 +72,6 @@ def test_a_port_that_is_none_is_refused() -> None:
             tn.Driveline(elements)
 
 
-def test_bent_joints_beside_it_are_refused() -> None:
-    line = tn.Driveline([*car().elements[:2], tn.Disk(inertia=0.01), tn.HookeJoint(angle=0.2), *car().elements[2:]])
-    for ask in (lambda one: tn.order_response(one, [60.0]), lambda one: tn.stability(one, 60.0)):
-        with pytest.raises(tn.InputError, match="has angled joints beside a differential or a loop"):
-            ask(line)
-    assert "joint angles zero" in str(tn.natural_frequencies(line))
-
-
 def parallel(ratio: float = 1.0, joint: float = 0.0) -> tn.Driveline:
     """Two shafts side by side between a hub and a load, one behind gears."""
     return tn.Driveline(
@@ -126,17 +118,91 @@ def test_a_loop_shares_torque_by_stiffness() -> None:
     np.testing.assert_allclose(*crossings, rtol=1e-9)
 
 
+def pick_up(front: tuple[int, int], *, rear_slips: bool = True, load: float = 0.0) -> tn.Driveline:
+    """Two axles on one road."""
+    tyre = {"stiffness": 3e4, "damping": 300.0}
+    slip = {"slip_stiffness": SLIP, "radius": RADIUS, "travel_speed": 15.0, "inertia": 1.2}
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=6e4, damping=3.0, name="input"), tn.Disk(inertia=0.03, name="case"),
+            tn.Shaft(stiffness=8e4, damping=2.0, name="rear shaft"), tn.Disk(inertia=0.01),
+            tn.Ratio(teeth_in=10, teeth_out=41), tn.Disk(inertia=2.6),
+            tn.Tyre(name="rear tyres", **tyre, **(slip if rear_slips else {})),
+            tn.Vehicle(mass=2200, wheel_radius=RADIUS, name="pick-up", load_torque=load),
+            tn.Shaft(stiffness=5e4, damping=2.0, after="case", name="front shaft"), tn.Disk(inertia=0.01),
+            tn.Ratio(teeth_in=front[0], teeth_out=front[1]), tn.Disk(inertia=2.6),
+            tn.Tyre(name="front tyres", to="pick-up", **tyre, **slip),
+        ]
+    )  # fmt: skip
+
+
+SLIP, RADIUS = 6e4, 0.35
+
+
+def test_the_wind_up_of_unlike_ratios_by_hand() -> None:
+    """Axles of 10:41 and 9:37 on one road: each tyre slips by its share, T = C_s r (ω r − v)/(ω r), and both pull alike
+    against each other, at any speed. With a tyre in front alone that slips, it takes all."""
+    rear, front = 10 / 41, 9 / 37
+    road = 2 / (1 / rear + 1 / front)  # C_s r (1 − v/ω_r) + C_s r (1 − v/ω_f) = 0
+    pulls = SLIP * RADIUS * (1 - road / rear)
+    for speed in (60.0, 140.0):
+        found = tn.order_response(pick_up((9, 37)), [speed])
+        torque = dict(zip(found.springs, found.mean_torque[0], strict=True))
+        assert torque["rear tyres"] == pytest.approx(-pulls, rel=1e-9)
+        assert torque["slip of front tyres"] == pytest.approx(pulls, rel=1e-9)
+        assert torque["rear shaft"] == pytest.approx(-pulls * rear, rel=1e-9)
+        assert torque["input"] == pytest.approx(pulls * (front - rear), rel=1e-9)
+    assert f"0.27 % apart: its slip winds the line up by {pulls:.4g} N m" in str(found.findings).replace(
+        "0.271", "0.27"
+    )
+    alone = tn.order_response(pick_up((9, 37), rear_slips=False), [60.0])
+    whole = SLIP * RADIUS * (1 - rear / front)
+    assert alone.mean_torque[0, alone.springs.index("slip of front tyres")] == pytest.approx(-whole, rel=1e-9)
+    # A load is shared by both slips beside.
+    loaded = tn.order_response(pick_up((10, 41), load=500.0), [60.0])
+    assert loaded.mean_torque[0, loaded.springs.index("slip of front tyres")] == pytest.approx(-250.0, rel=1e-9)
+    assert not any("winds" in str(one) for one in loaded.findings)
+    stuck = pick_up((9, 37), rear_slips=False)
+    nothing = dict.fromkeys(("slip_stiffness", "radius", "travel_speed", "inertia"))
+    with pytest.raises(
+        tn.InputError, match=r"front tyres\.to = 'pick-up': closes a loop .* give a Tyre its slip_stiffness"
+    ):
+        tn.natural_frequencies(stuck.replace("front tyres", **nothing))
+
+
+def two_motors(second: float) -> tn.Driveline:
+    """Sun and ring driven, the carrier loaded, the ring at half the sun's speed."""
+    return tn.Driveline(
+        [
+            tn.Disk(inertia=0.1, drive_share=1.0), tn.Shaft(stiffness=1e4, damping=1.0, name="of sun"),
+            tn.Disk(inertia=0.01),
+            tn.Planetary(teeth_sun=30, teeth_ring=72, input="sun", output="carrier", free_speed=0.5, name="gears"),
+            tn.Disk(inertia=0.05), tn.Shaft(stiffness=2e4, damping=1.0, name="of carrier"),
+            tn.Disk(inertia=0.4, load_torque=102.0), tn.Disk(inertia=0.02, after="gears.ring"),
+            tn.Shaft(stiffness=3e4, damping=1.0, name="of ring"), tn.Disk(inertia=0.3, drive_share=second),
+        ]
+    )  # fmt: skip
+
+
+def test_a_second_drive() -> None:
+    """Torques of a set go with teeth, 30 : 72 : 102, whatever the shares: each motor gives its own."""
+    for share in (1.0, 0.2):
+        found = tn.order_response(two_motors(share), [60.0])
+        np.testing.assert_allclose(found.mean_torque[0], [-30.0, -102.0, 72.0], rtol=1e-9)
+    assert found.springs == ("of sun", "of carrier", "of ring")
+    with pytest.raises(tn.InputError, match="one more shaft that drives a drive_share"):
+        tn.order_response(two_motors(0.0), [60.0])
+
+
 def test_a_loop_that_does_not_close_is_refused() -> None:
     said = r"^second\.to = 'load': closes a loop whose ratios do not: .* 0\.4 % apart.* 1\.43 deg with every turn"
     with pytest.raises(tn.InputError, match=said):
         tn.natural_frequencies(parallel(ratio=1.004))
     with pytest.raises(tn.InputError, match="second.to = 'laod': is not an earlier element; did you mean .load."):
         parallel().replace("second", to="laod")
-    with pytest.raises(tn.InputError, match="angled joints beside a differential or a loop"):
-        tn.order_response(parallel(joint=0.2), [50.0])
 
 
-@pytest.mark.parametrize("seed", range(200))
+@pytest.mark.parametrize("seed", [*range(20), *(pytest.param(n, marks=pytest.mark.slow) for n in range(20, 200))])
 def test_random_lines(seed: int) -> None:
     rng = np.random.default_rng(seed)
     drawn = Drawn(rng, int(rng.integers(2, 9)), bool(rng.integers(2)))
@@ -151,7 +217,7 @@ def test_random_lines(seed: int) -> None:
     twists = model.twists(drawn.shaken[1], TORQUE, FREQUENCY)
     found = np.abs(response.twist[0]).max(axis=0, initial=0.0)  # none where the drive holds what is shaken
     largest = [found[response.springs.index(name)] for name in drawn.springs]
-    np.testing.assert_allclose(largest, twists, rtol=1e-9, atol=1e-9 * twists.max() + 1e-15)
+    np.testing.assert_allclose(largest, twists, rtol=1e-9, atol=1e-9 * twists.max() + 1e-14)
 
 
 def test_random_lines_hold_loops() -> None:

@@ -16,11 +16,13 @@ FREQUENCY, TORQUE = 90.0, 7.0
 
 @dataclass
 class Model:
-    """Moments of inertia by coordinate, springs (coordinate, coordinate, stiffness, damping), rows of constraints."""
+    """Moments of inertia by coordinate, springs (coordinate, coordinate, stiffness, damping), rows of constraints, and
+    meshes (deflection by coordinate, stiffness, damping)."""
 
     inertia: list[float] = field(default_factory=list)
     springs: list[tuple[int, int, float, float]] = field(default_factory=list)
     ties: list[dict[int, float]] = field(default_factory=list)
+    meshes: list[tuple[dict[int, float], float, float]] = field(default_factory=list)
 
     def shaft(self, inertia: float = 0.0) -> int:
         """A new coordinate."""
@@ -43,6 +45,10 @@ class Model:
         for one, other, k, c in self.springs:
             row = np.zeros(n)
             row[one], row[other] = -1.0, 1.0
+            stiffness, damping = stiffness + k * np.outer(row, row), damping + c * np.outer(row, row)
+        for deflection, k, c in self.meshes:
+            row = np.zeros(n)
+            row[list(deflection)] = list(deflection.values())
             stiffness, damping = stiffness + k * np.outer(row, row), damping + c * np.outer(row, row)
         return np.diag(self.inertia), damping, stiffness
 
@@ -90,7 +96,7 @@ class Drawn:
             self.tips = [("start", start)]
             self._spring(0)
         for number in range(1, parts):
-            kind = rng.choice(["spring", "spring", "ratio", "held", "free", "differential", "loop"])
+            kind = rng.choice(["spring", "spring", "ratio", "held", "free", "elastic", "differential", "loop"])
             getattr(self, f"_{kind}")(number)
         self.shaken = self.tips[-1]
 
@@ -129,7 +135,7 @@ class Drawn:
         self.model.ties.append({near: 1.0, out: -ratio})
         self._disk(f"disk {number}", out, None)
 
-    def _set(self, number: int, held: bool) -> None:
+    def _set(self, number: int, held: bool, elastic: bool = False) -> None:
         after, near = self._tip()
         sun, planet = int(self.rng.integers(18, 40)), int(self.rng.integers(15, 40))
         ring, spin, mass, distance = sun + 2 * planet, self._size(1e-4, 1e-2), self._size(0.1, 2.0), 0.1
@@ -137,10 +143,20 @@ class Drawn:
         place = {drives: near, driven: self.model.shaft(), third: self.model.shaft()}
         planets = self.model.shaft(3 * spin)
         self.model.inertia[place["carrier"]] += 3 * mass * distance**2
-        self.model.ties += [
+        teeth = [
             {place["sun"]: sun, planets: planet, place["carrier"]: -(sun + planet)},
             {place["ring"]: ring, planets: -planet, place["carrier"]: -(ring - planet)},
         ]
+        more: dict[str, float] = {}
+        if elastic:
+            # Deflections along the line of action, by base radii m z cos 20°/2; three planets.
+            half, k, c = 0.002 * np.cos(np.pi / 9) / 2, [self._size(1e6, 1e8) for _ in teeth], self._size(10, 1e3)
+            more = {"sun_mesh_stiffness": k[0], "ring_mesh_stiffness": k[1], "mesh_damping": c, "module": 0.002}
+            self.model.meshes += [
+                ({at: half * z for at, z in row.items()}, 3 * one, 3 * c) for row, one in zip(teeth, k, strict=True)
+            ]
+        else:
+            self.model.ties += teeth
         name = f"set {number}"
         fixed = {"held": third} if held else {"output": driven}
         weight = {"sun": Fraction(sun), "ring": Fraction(ring), "carrier": Fraction(-sun - ring)}
@@ -157,6 +173,7 @@ class Drawn:
                 name=name,
                 after=after,
                 **fixed,
+                **more,
             )  # fmt: skip
         )
         self._disk(f"disk {number}", place[driven], None)
@@ -189,6 +206,9 @@ class Drawn:
 
     def _free(self, number: int) -> None:
         self._set(number, held=False)
+
+    def _elastic(self, number: int) -> None:
+        self._set(number, held=bool(self.rng.integers(2)), elastic=True)
 
     def _differential(self, number: int) -> None:
         after, near = self._tip()

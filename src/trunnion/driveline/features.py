@@ -24,6 +24,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.pendulums import CentrifugalPendulum
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -221,6 +222,11 @@ FEATURES = (
             *(f"Planetary.{key}" for key in ("planets", "planet_inertia", "planet_mass", "centre_distance")),
             "Planetary.teeth_planet",
         ),
+    ),
+    Feature(
+        "elastic teeth of planets",
+        _of("Planetary", "sun_mesh_stiffness", "ring_mesh_stiffness", "mesh_damping", "module", "pressure_angle"),
+        _where(Planetary, "sun_mesh_stiffness", lambda one: one.elastic),
     ),
     Feature("closed loop", (*_of_springs("to"), "Tyre.to")),
     Feature(

@@ -66,6 +66,8 @@ UNITS = {
     "centre_distance": "m",
     "mesh_stiffness": "N/m",
     "mesh_damping": "N*s/m",
+    "sun_mesh_stiffness": "N/m",
+    "ring_mesh_stiffness": "N/m",
     "impact_damping": "N*s/m^2",
     "backlash": "m",
     "angular_backlash": "rad",

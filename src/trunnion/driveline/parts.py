@@ -54,10 +54,11 @@ class Jointed:
 @dataclass(frozen=True)
 class Sprung:
     """A new shaft that the element's spring joins to coordinate ``to``; where it ``closes`` a loop, no new one, but the
-    shaft behind the element of that name."""
+    shaft behind the element of that name, or the element's own coordinate ``at``."""
 
     to: int = 0
     closes: str | None = None
+    at: int | None = None
 
 
 @dataclass(frozen=True)

@@ -4,21 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from math import cos, pi
 from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Element, Teeth, positive
-from trunnion.driveline.parts import Geared, Heavy, Loose, Numbers, Part, Tied
-from trunnion.driveline.quantities import Dimensionless, Inertia, Length, Mass, Maybe, optional
+from trunnion.driveline.elements import Doubt, Teeth, not_negative, positive
+from trunnion.driveline.parts import Geared, Heavy, Loose, Numbers, Part, Sprung, Tied
+from trunnion.driveline.quantities import (
+    Angle,
+    Dimensionless,
+    Inertia,
+    Length,
+    Mass,
+    Maybe,
+    MeshDamping,
+    MeshStiffness,
+    optional,
+)
 from trunnion.driveline.record import one_of
+from trunnion.driveline.shafts import Elastic
 from trunnion.errors import InputError
 
 SHAFTS = ("sun", "carrier", "ring")
+MESHES = ("sun_mesh_stiffness", "ring_mesh_stiffness")
 SHIFTED = 2
 """Teeth by which profile shift may make planets larger or smaller than their room."""
 STILL = 1e-9
 """Share of the input's speed below which an output does not turn."""
+PRESSURE_ANGLE = pi / 9
 WRITE = 'write one of "sun", "carrier", "ring"'
 _Shaft = Literal["sun", "carrier", "ring"]
 
@@ -32,8 +46,8 @@ def _one_shaft(value: object) -> object:
     return one_of(SHAFTS, "is no shaft of a planetary set", WRITE)(value)
 
 
-class Planetary(Element):
-    """A planetary gear set with rigid teeth: any of its three shafts drives, is driven, is held or turns freely.
+class Planetary(Elastic):
+    """A planetary gear set: any of its three shafts drives, is driven, is held or turns freely; teeth rigid or elastic.
 
     z_s ω_s + z_r ω_r = (z_s + z_r) ω_c (Willis), rotations positive in one sense; torques follow without loss. The
     inertias of sun, carrier and ring are Disks on them; planets turn with them.
@@ -50,11 +64,18 @@ class Planetary(Element):
     planet_inertia : of one planet about its own axis [kg m²].
     planet_mass, centre_distance : of one planet [kg], and from its axis to the sun's [m]: both, or none.
     teeth_planet : of a planet; by default as coaxial standard gears have it, (z_r − z_s)/2.
+    sun_mesh_stiffness, ring_mesh_stiffness : of one planet's mesh along the line of action [N/m]: both, or none, where
+        teeth are rigid. Then planet_inertia and module are needed, and an inertia right behind the output.
+    mesh_damping : of one mesh along the line of action [N s/m].
+    module, pressure_angle : of the teeth [m, rad], for the planets' base radius m z_p cos α/2.
+
+    All planets move alike; their modes against each other, √((k_s + k_r) r_b²/J_p), move nothing else.
 
     >>> Planetary(teeth_sun=30, teeth_ring=72, input="sun", held="ring").speed_ratio
     3.4
     """
 
+    springs: ClassVar[tuple[str, ...]] = ("sun mesh of", "ring mesh of")
     example: ClassVar[str] = 'teeth_sun = 30, teeth_ring = 72, input = "sun" and held = "ring"'
 
     teeth_sun: Teeth = Field(description="teeth of the sun")
@@ -76,6 +97,13 @@ class Planetary(Element):
     planet_mass: Maybe[Mass] = optional(default=None, description="of one planet")
     centre_distance: Maybe[Length] = optional(default=None, description="from the axis of a planet to the sun's")
     teeth_planet: Teeth | None = Field(default=None, description="teeth of a planet; by default (ring - sun)/2")
+    sun_mesh_stiffness: Maybe[MeshStiffness] = optional(
+        default=None, description="of one planet and the sun along the line of action; rigid by default"
+    )
+    ring_mesh_stiffness: Maybe[MeshStiffness] = optional(default=None, description="of one planet and the ring")
+    mesh_damping: MeshDamping = optional(default=0.0, description="of one such mesh along the line of action")
+    module: Maybe[Length] = optional(default=None, description="of elastic teeth")
+    pressure_angle: Angle = optional(default=PRESSURE_ANGLE, description="of elastic teeth; 20 deg by default")
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -98,8 +126,32 @@ class Planetary(Element):
         if (self.planet_mass is None) != (self.centre_distance is None):
             missing = "planet_mass" if self.planet_mass is None else "centre_distance"
             raise InputError("is missing", key=missing, remedy="write planet_mass and centre_distance, or neither")
-        positive(self, "planet_inertia", "planet_mass", "centre_distance")
+        if self.held is not None and self.free_speed != 1.0:
+            remedy = "leave it out: all speeds follow from the input's"
+            raise InputError("stands beside held", key="free_speed", value=self.free_speed, remedy=remedy)
+        positive(self, "planet_inertia", "planet_mass", "centre_distance", "module", *MESHES)
+        not_negative(self, "mesh_damping")
+        self._check_meshes()
         return self
+
+    def _check_meshes(self) -> None:
+        """Both meshes and what they need, or neither."""
+        stated = [key for key in MESHES if getattr(self, key) is not None]
+        if not stated:
+            for key in ("module", "mesh_damping"):
+                if getattr(self, key):
+                    remedy = "write sun_mesh_stiffness and ring_mesh_stiffness, or leave it out"
+                    raise InputError("belongs to elastic teeth", key=key, value=getattr(self, key), remedy=remedy)
+            return
+        for key in (*MESHES, "module", "planet_inertia"):
+            if getattr(self, key) is None:
+                remedy = "elastic teeth need sun_mesh_stiffness, ring_mesh_stiffness, module and planet_inertia"
+                raise InputError(f"is missing beside {stated[0]}", key=key, remedy=remedy)
+        if not 0 < self.pressure_angle < pi / 4:
+            remedy = 'write "20 deg", say'
+            raise InputError(
+                "must lie between 0 and 45 deg", key="pressure_angle", value=self.pressure_angle, remedy=remedy
+            )
 
     def doubts(self) -> Iterator[Doubt]:
         if (self.teeth_sun + self.teeth_ring) % self.planets:
@@ -147,8 +199,48 @@ class Planetary(Element):
         """The third shaft, where it is not held."""
         return {} if self.held else {self.third: 1}
 
+    @property
+    def elastic(self) -> bool:
+        """Whether its teeth yield."""
+        return self.sun_mesh_stiffness is not None
+
+    @property
+    def planet_radius(self) -> float:
+        """Base radius of a planet [m], of elastic teeth."""
+        teeth = self.teeth_planet or (self.teeth_ring - self.teeth_sun) / 2
+        return (self.module or 0.0) * teeth * cos(self.pressure_angle) / 2
+
+    def links(self, number: Numbers) -> tuple[tuple[Any, Any], ...]:
+        """Meshes of all planets with the sun and with the ring, at the planets' axes."""
+        if not self.elastic:
+            return ()
+        square = self.planets * self.planet_radius**2
+        return tuple((number(key) * square, number("mesh_damping") * square) for key in MESHES)
+
+    def _yielding(self) -> tuple[Part, ...]:
+        """Shafts that turn by themselves, and planets between where the sun and where the ring would take them."""
+        speeds, found = self.speeds, list[Part]()
+        place: dict[str, int] = {self.input: 0}
+        for name in (*self.ports, self.driven, "planets"):
+            found.append(Loose(0, speeds[name]))
+            place[name] = len(place)
+        teeth = Fraction(self.teeth_planet) if self.teeth_planet else Fraction(self.teeth_ring - self.teeth_sun, 2)
+        for gear, over in (("sun", -self.teeth_sun / teeth), ("ring", self.teeth_ring / teeth)):
+            of = [(place[one], share) for one, share in ((gear, over), ("carrier", 1 - over)) if one in place and share]
+            found.append(Tied(tuple(of)) if len(of) > 1 else Geared(1 / of[0][1], of[0][0]))
+        led = len(place)
+        found += [
+            Sprung(led, at=place["planets"]),
+            Sprung(led + 1, at=place["planets"]),
+            Geared(Fraction(1), place[self.driven]),
+        ]
+        carried = (Heavy(place["carrier"], of="carrier of"),) if self._orbiting else ()
+        return (*found, Heavy(place["planets"], of="planets of"), *carried)
+
     def parts(self) -> tuple[Part, ...]:
         """The third shaft, where it turns; planets, where they are heavy; and the output, tied to both others."""
+        if self.elastic:
+            return self._yielding()
         place = {self.input: 0} | self.ports
         found: list[Part] = [] if self.held else [Loose(0, Fraction(str(self.free_speed)))]
         for name in (*(["planets"] if self.planet_inertia is not None else []), self.driven):

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import groupby
 from operator import itemgetter
 from typing import Any, Literal
@@ -22,6 +22,7 @@ from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.pendulums import CentrifugalPendulum, Swinging
 from trunnion.driveline.shafts import Elastic, SpringElement
+from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
@@ -29,7 +30,7 @@ from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.slip_capacity import refuse_slipping
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
-from trunnion.equations.topology import Mesh, Topology, topology
+from trunnion.equations.topology import Compliance, Mesh, Topology, topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
@@ -111,6 +112,14 @@ class Assembly:
     def static_torque(self, table: Array) -> Array:
         """Torque [N m] that every compliance carries under the mean loads (case, compliance)."""
         return _static_torque(self, table, mean_loads(self.topology, self.packed.column, table))
+
+    def wind_up(self, table: Array) -> Array:
+        """Torque [N m] of every compliance (case, compliance) that ratios of a loop which do not come out force on it
+        whatever the loads, as something slips; zeros of all other lines."""
+        topo = self.topology
+        if not (topo.graph and topo.apart.any()):
+            return np.zeros((len(table), len(topo.compliances)))
+        return static_torque(topo, np.zeros((len(table), len(topo.stations))), *_sharing(self, table), table[:, 0])
 
     def common_damping(self, table: Array, stiffness: Array) -> Array:
         """Damping (case,) of a spring under the line's one damping ratio: 2ζk/ω."""
@@ -361,7 +370,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
 
 def _static_torque(assembly: Assembly, table: Array, mean: Array) -> Array:
     topo = assembly.topology
-    return static_torque(topo, mean, *(_sharing(assembly, table) if topo.graph and mean.any() else ()))
+    if not topo.graph or not (mean.any() or topo.apart.any()):
+        return static_torque(topo, mean)
+    return static_torque(topo, mean, *_sharing(assembly, table), table[:, 0])
 
 
 def _sharing(assembly: Assembly, table: Array) -> tuple[Array, Array]:
@@ -387,7 +398,18 @@ def _sharing(assembly: Assembly, table: Array) -> tuple[Array, Array]:
         )
         if compliance.drags:
             damping[:, e] = _link(assembly, table, compliance.shafts[0], compliance.number)[1]
+            if isinstance(element, Tyre):
+                damping[:, e] *= _travels(assembly, table, compliance)
     return stiffness, damping
+
+
+def _travels(assembly: Assembly, table: Array, compliance: Compliance) -> Array:
+    """The travel speed (case,) at which the slip of a tyre is stated over that of its wheel's mean speed: a steady slip
+    pulls by its share, whatever the speed. 1 without a speed."""
+    number = partial(assembly.packed.column, compliance.shafts[0])
+    turning = np.abs(assembly.topology.mean_speeds[compliance.near] * table[:, 0])
+    stated = table[:, number("travel_speed")] / table[:, number("radius")]
+    return np.where(turning > 0, stated / np.where(turning > 0, turning, 1.0), 1.0)
 
 
 def mesh_harmonics(

@@ -26,6 +26,7 @@ from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.amplitudes import Running, amplitude, where
 from trunnion.equations.coefficients import Assembly, mesh_harmonics
+from trunnion.equations.graph_matrices import turning_of
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.loads import own_load
@@ -41,11 +42,13 @@ class BaseOfExcitation:
     """What harmonics need of the base motion at the input angles asked for.
 
     relative (case, time, station): r from a group's first station; rotation (case, time, station): deviation of the
-    base motion from uniform rotation [rad].
+    base motion from uniform rotation [rad]; turning (case, time, station, n): rotation per rotation of every unknown,
+    of a line that is no tree.
     """
 
     relative: Array
     rotation: Array
+    turning: Array | None = None
 
 
 def base_of_excitation(
@@ -54,7 +57,8 @@ def base_of_excitation(
     """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
     motion = base_motion(topo, coefficients, tau)
     uniform = base_motion(topo, untwisted.straight, tau)
-    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle)
+    turning = turning_of(topo, coefficients, tau).value if topo.graph else None
+    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle, turning)
 
 
 @dataclass(frozen=True)
@@ -126,8 +130,8 @@ class DiskTorque(LineHarmonic):
         s = self.station
         sense = float(np.sign(float(topo.speed_ratio[s])))
         turned = np.exp(1j * self.own_order * sense * base.rotation[..., s])
-        if topo.graph:
-            return np.asarray((sense * size[:, None] * turned)[..., None] * topo.turning[s])
+        if base.turning is not None:
+            return np.asarray((sense * size[:, None] * turned)[..., None] * base.turning[:, :, s])
         g = np.zeros((*turned.shape, topo.size), dtype=complex)
         g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
         return g
@@ -161,8 +165,9 @@ class MeshError(LineHarmonic):
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         e = self.mesh.compliance
         (far, near), station, torque = topo.ends[e], topo.compliances[e].near, spring(e) * size[:, None]
-        if topo.graph:
-            return np.asarray(-torque[..., None] * topo.elongations[e])
+        if base.turning is not None:
+            far_end = topo.reference[topo.compliances[e].far_group]
+            return np.asarray(-torque[..., None] * (base.turning[:, :, far_end] - base.turning[:, :, station]))
         g = np.zeros((*torque.shape, topo.size), dtype=complex)
         if far >= 0:
             g[..., far] -= torque

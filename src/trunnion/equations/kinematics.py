@@ -132,7 +132,7 @@ def base_motion(
                 quantity[..., s] = sum(share * quantity[..., one] for one, share in place.of)
             r[..., s] = 1.0
         elif station.link in (LinkKind.SHAFT, LinkKind.LOOSE):
-            w[..., s], w1[..., s], r[..., s] = w[..., b], w1[..., b], 1.0
+            w[..., s], w1[..., s], r[..., s] = w[..., b] / place.ratio, w1[..., b] / place.ratio, 1.0
         elif station.link is LinkKind.JOINT:
             _, eta, slope, curvature = turning.passed[s]
             rb, rb1, rb2, wb, wb1 = r[..., b], r1[..., b], r2[..., b], w[..., b], w1[..., b]

@@ -28,11 +28,11 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.graph_matrices import graph_matrices
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base
 from trunnion.equations.topology import Topology, require_period
-from trunnion.errors import InputError
 from trunnion.systems.periodic_linear import Matrices, PeriodicLinearSystem
 
 
@@ -41,6 +41,8 @@ class LineMatrices:
     """Matrices in time (not divided by Ω), shapes (case, time, n, n) and (case, time, n).
 
     ``ratio`` (case, time, compliance) is r of each compliance's near end, ``wave`` its stiffness over the mean.
+    Of a line that is no tree and varies: ``elongations`` (case, time, compliance, n), twist of every compliance per
+    rotation of every unknown; ``base_twist`` (case, time, compliance), of those that close loops by the base motion.
     """
 
     mass: Array
@@ -49,6 +51,8 @@ class LineMatrices:
     forcing: Array
     ratio: Array
     wave: Array
+    elongations: Array | None = None
+    base_twist: Array | None = None
 
 
 def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Array:
@@ -62,7 +66,7 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
 def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
     if topo.graph:
-        return _straight_matrices(topo, coefficients, len(tau))
+        return _graph_matrices(topo, coefficients, tau)
     cases, times, n = len(coefficients.speed), len(tau), topo.size
     # Each entry lies in one piece over time, which is how it is filled.
     mass, damping, stiffness = (np.zeros((n, n, cases, times)) for _ in range(3))
@@ -152,28 +156,24 @@ def put_entries(
     return ratio_seen, wave
 
 
-def _straight_matrices(topo: Topology, coefficients: LineCoefficients, times: int) -> LineMatrices:
-    """The same of a straight line whose shafts are tied to several others: M couples what they share.
-
-    Raises
-    ------
-    InputError : angled joints, or meshes whose stiffness varies.
-    """
-    varying = "angled joints" if any(law.nonuniform for law in coefficients.joints) else "meshes of varying stiffness"
-    if varying == "angled joints" or coefficients.waves:
-        raise InputError(
-            f"has {varying} beside a differential or a loop: what they do there is not followed", element="driveline",
-            remedy="take them without, at angle 0, or both legs or ways round as one shaft",
+def _graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
+    """The same of a line whose shafts are tied to several others or close loops: M couples what they share."""
+    cases, times = len(coefficients.speed), len(tau)
+    wave, ratio = stiffness_waves(topo, coefficients, tau), np.ones((cases, times, len(topo.compliances)))
+    if any(law.nonuniform for law in coefficients.joints) or coefficients.waves:
+        found = graph_matrices(topo, coefficients, tau, wave)
+        elongations = found.turning.elongations(topo, found.turning.value)
+        return LineMatrices(
+            found.mass, found.damping, found.stiffness, found.forcing, ratio, wave, elongations, found.base_twist
         )  # fmt: skip
-    found = loaded_matrices(topo, coefficients, coefficients.speed)
-    cases = len(coefficients.speed)
+    same = loaded_matrices(topo, coefficients, coefficients.speed)
 
     def lasting(part: Array) -> Array:
         return np.broadcast_to(part[:, None], (cases, times, *part.shape[1:]))
 
-    still, ratio = np.zeros((cases, topo.size)), np.ones((cases, len(topo.compliances)))
-    matrices = (found.inertia, found.damping, found.stiffness, still, ratio, ratio)
-    return LineMatrices(*(lasting(part) for part in matrices))
+    still = np.zeros((cases, topo.size))
+    mass, damping, stiffness, forcing = map(lasting, (same.inertia, same.damping, same.stiffness, still))
+    return LineMatrices(mass, damping, stiffness, forcing, ratio, wave)
 
 
 def over_mass(matrices: LineMatrices, part: Array) -> Array:

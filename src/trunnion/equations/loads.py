@@ -48,7 +48,9 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
     """
     loads = _described(topo, column, table)
     if topo.free and (share := given_shares(topo, column, table)).any():
-        torque = drive_torques(topo, share, load_at_input(topo, column, table))
+        left = load_at_input(topo, column, table)
+        alone = topo.rigid_count == 1
+        torque = drive_torques(topo, share, left) if alone else _balancing(topo, share, loads, table[:, 0])
         loads = replace(loads, constant=loads.constant + torque)
         _put_slopes(topo, column, table, loads, torque / np.where(share > 0, share, 1.0))
     return loads
@@ -218,6 +220,24 @@ def drive_torques(topo: Topology, share: Array, torque: Array) -> Array:
     return np.asarray(-part * np.asarray(torque)[:, None] / np.abs(topo.mean_speeds))
 
 
+def _balancing(topo: Topology, share: Array, loads: StationLoads, speed: Array) -> Array:
+    """The same where shafts can turn against each other, as those of a planetary set of which none is held: torques of
+    the drives that balance the loads in all rigid motions, their powers as near to the shares as that leaves.
+
+    Σ P²/share is least, which for one rigid motion gives each drive its share.
+    """
+    felt = mean_load(topo, loads, speed)
+    turning, found = np.abs(topo.mean_speeds), np.zeros_like(share)
+    moved = topo.turning @ topo.rigid * np.sign(topo.mean_speeds)[:, None]
+    for case, weight in enumerate(share):
+        drives = np.flatnonzero((weight > 0) & (turning > 0))
+        by_power = moved[drives] / turning[drives, None]
+        root = np.sqrt(weight[drives])
+        power = root * np.linalg.lstsq((by_power * root[:, None]).T, -(felt[case] @ moved), rcond=None)[0]
+        found[case, drives] = power / turning[drives]
+    return found
+
+
 def drive_places(topo: Topology, column: Column, table: Array) -> Array:
     """Shares (case, station) of whatever else a drive must give to keep the speed.
 
@@ -242,19 +262,26 @@ def _drives(rotor: Rotor, number: Numbers) -> Array | float:
     return np.maximum(-number("load_torque"), 0.0) if isinstance(rotor, Loaded) else 0.0
 
 
-def static_torque(topo: Topology, load: Array, stiffness: Array | None = None, damping: Array | None = None) -> Array:
+def static_torque(
+    topo: Topology,
+    load: Array,
+    stiffness: Array | None = None,
+    damping: Array | None = None,
+    speed: Array | None = None,
+) -> Array:
     """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
 
     Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
     shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged). Round loops
-    springs share it by their ``stiffness`` (case, compliance), and what drags by its ``damping``.
+    springs share it by their ``stiffness`` (case, compliance), and what drags by its ``damping``; where their ratios do
+    not come out it slips for ever, by the ``speed`` (case,) of the input.
     """
     torque = np.zeros((len(load), len(topo.compliances)))
-    if not load.any():
+    if not (load.any() or (topo.graph and topo.apart.any())):
         return torque
     if topo.graph:
-        assert stiffness is not None and damping is not None
-        return _shared_torque(topo, load, stiffness, damping)
+        assert stiffness is not None and damping is not None and speed is not None
+        return _shared_torque(topo, load, stiffness, damping, speed)
     for e, behind in enumerate(topo.stations_behind):
         own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
         torque[:, e] = load[:, behind] @ (-np.abs(topo.mean_speeds[behind]) / own)
@@ -266,16 +293,19 @@ def loads_on_unknowns(topo: Topology, load: Array) -> Array:
     return np.asarray((load * np.sign(topo.mean_speeds)) @ topo.turning)
 
 
-def _shared_torque(topo: Topology, load: Array, stiffness: Array, damping: Array) -> Array:
+def _shared_torque(topo: Topology, load: Array, stiffness: Array, damping: Array, speed: Array) -> Array:
     """The same where springs or the legs of a differential share the torque of a shaft: in balance for every unknown,
-    and round every loop by the stiffness of its springs. What drags carries what no spring does, by steady slip."""
+    and round every loop by the stiffness of its springs. What drags carries what no spring does, by steady slip:
+    T = c (Δ + E v) of the mismatch Δ and of speeds v at which no spring twists."""
     felt, found, dragged = loads_on_unknowns(topo, load), np.zeros_like(stiffness), list(topo.dragged)
     slips = topo.elongations[dragged] @ topo.loose
-    for case in np.flatnonzero(load.any(axis=1)):
+    apart = (topo.apart + topo.elongations @ topo.creep)[dragged]
+    for case in np.flatnonzero(load.any(axis=1) | topo.apart.any()):
         if dragged:
-            root = np.sqrt(damping[case, dragged])
-            own = np.linalg.lstsq(slips.T * root, -topo.loose.T @ felt[case], rcond=None)[0]
-            found[case, dragged] = root * own
+            c = damping[case, dragged]
+            forced = c * apart * (speed[case] if np.isfinite(speed[case]) else 0.0)
+            back = -topo.loose.T @ felt[case] - slips.T @ forced
+            found[case, dragged] = forced + np.sqrt(c) * np.linalg.lstsq(slips.T * np.sqrt(c), back, rcond=None)[0]
         root = np.sqrt(stiffness[case])
         left = felt[case] + topo.elongations.T @ found[case]
         found[case] += root * np.linalg.lstsq(topo.elongations.T * root, -left, rcond=None)[0]

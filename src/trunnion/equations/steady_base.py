@@ -9,6 +9,7 @@ from trunnion.driveline.mean_balance import balances_in_words
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.graph_matrices import require_fixed_speeds
 from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
 from trunnion.errors import InputError
 
@@ -31,6 +32,8 @@ def require_steady_base(assembly: Assembly, table: Array) -> None:
             element=f"ConstantSpeed behind {element}",
             remedy="end the line with a Disk; natural frequencies are available as it is",
         )
+    if topo.graph and has_joint_angles(assembly, table):
+        require_fixed_speeds(topo, joint_laws(assembly, table), assembly.line.names)
     require_balance(assembly, table)
 
 
@@ -110,7 +113,7 @@ def _require_equal_legs(assembly: Assembly, table: Array) -> None:
         raise InputError(
             "drives legs whose loads differ, so that they turn faster and faster against each other",
             element=assembly.line.names[topo.knot], key="load_torque",
-            remedy="give both legs the same load behind their own ratios",
+            remedy="give both legs the same load behind their own ratios, or one more shaft that drives a drive_share",
         )  # fmt: skip
 
 
@@ -124,9 +127,12 @@ def require_tree(assembly: Assembly, what: str) -> None:
     topo = assembly.topology
     if topo.graph:
         problem, both = ("ties one shaft to two others", "legs") if topo.sums else ("closes a loop", "ways round")
+        own = has_periodic_base(assembly)
+        driven = "put a ConstantSpeed in front, take the joints straight, or " if own else ""
+        why = ", as a free–free line with joint angles needs them" if own else ""
         raise InputError(
-            f"{problem}, which {what} not follow", element=assembly.line.names[topo.knot],
-            remedy=f"take both {both} as one shaft; natural frequencies and order response are available",
+            f"{problem}, which {what} not follow{why}", element=assembly.line.names[topo.knot],
+            remedy=f"{driven}take both {both} as one shaft; natural frequencies and order response are available",
         )  # fmt: skip
 
 

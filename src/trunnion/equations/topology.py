@@ -222,6 +222,20 @@ class Topology:
         return int(self.rigid.shape[1])
 
     @cached_property
+    def apart(self) -> Array:
+        """By how much the far end of every compliance turns faster than the near one, over the speed of the input
+        (compliance,): 0 but where the ratios of a loop do not come out."""
+        ends = ((c.near if c.far is None else c.far, c.near) for c in self.compliances)
+        return _fixed([float(self.speed_ratio[far] - self.speed_ratio[near]) for far, near in ends])
+
+    @cached_property
+    def creep(self) -> Array:
+        """Mean speeds of the unknowns (n,) beyond those of their ratios, over the speed of the input, with which no
+        spring of a loop winds up: what drags slips."""
+        sprung = np.delete(np.arange(len(self.compliances)), self.dragged)
+        return _fixed(np.linalg.lstsq(self.elongations[sprung], -self.apart[sprung], rcond=None)[0])
+
+    @cached_property
     def in_loops(self) -> Flags:
         """Whether a compliance lies in a loop, so that its torque is not that of its loads alone (compliance,)."""
         own = _null_space(self.elongations.T)
@@ -271,13 +285,14 @@ class Topology:
 
     @cached_property
     def ratio_values(self) -> Array:
-        """Input speed over output speed at each station that hangs on a Ratio (station,); 1 elsewhere."""
-        return _fixed(
-            [
-                float(self.speed_ratio[station.before] / self.speed_ratio[s]) if station.link is LinkKind.RATIO else 1.0
-                for s, station in enumerate(self.stations)
-            ]
-        )
+        """Input speed over output speed, on average, at each station that hangs on a Ratio or turns by itself
+        (station,), infinite where it stands still; 1 elsewhere."""
+        of = [s for s, station in enumerate(self.stations) if station.link in (LinkKind.RATIO, LinkKind.LOOSE)]
+        found = np.ones(len(self.stations))
+        for s in of:
+            own, before = self.speed_ratio[s], self.speed_ratio[self.stations[s].before]
+            found[s] = float(before / own) if own else np.inf
+        return _fixed(found)
 
     @cached_property
     def unknown_of(self) -> Places:
@@ -349,7 +364,9 @@ def topology(line: Driveline) -> Topology:
     InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
         no inertia at all.
     """
-    return _merge_massless(line, stations_of(line))
+    found = _merge_massless(line, stations_of(line))
+    _require_closed(line, found)
+    return found
 
 
 def require_period(line: Driveline, topo: Topology) -> Fraction:
@@ -469,6 +486,12 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     if orders or even:
                         here = found.add(here, LinkKind.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = Plane() if orders else (*plane, (i, 1.0))
+                case Sprung(to, _, at) if at is not None:
+                    here, plane = own[at], turned[at]
+                    found.compliances.append(
+                        Compliance(own[to], found.stations[here].group, (i,), here, number=springs)
+                    )
+                    springs += 1
                 case Sprung(to, closes) | Dragged(to, closes) if closes is not None:
                     end = line.index(closes)
                     here, plane = coordinates[end][line.elements[end].onward]
@@ -479,7 +502,6 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                         )  # fmt: skip
                     drags, group = isinstance(part, Dragged), found.stations[here].group
                     found.compliances.append(Compliance(own[to], group, (i,), here, drags, springs))
-                    _require_closed(line, found, i, own[to], here)
                     springs += 1
                 case Sprung(to) | Dragged(to):
                     here = found.add(own[to], LinkKind.SHAFT, i, found.speed_ratio[own[to]], spring=springs)
@@ -499,17 +521,24 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
     return found
 
 
-def _require_closed(line: Driveline, found: LineStations, element: int, near: int, far: int) -> None:
-    """Refuse a loop round which the ratios do not come out: its springs would wind up with every turn."""
-    apart = found.speed_ratio[far] - found.speed_ratio[near]
-    if apart:
-        turns = [float(found.speed_ratio[s]) for s in (near, far)]
-        raise InputError(
-            f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
-            f"input, {100 * abs(turns[1] / turns[0] - 1):.3g} % apart, and wind it up by "
-            f"{360 * abs(float(apart)):.3g} deg with every turn", element=line.names[element], key="to",
-            value=getattr(line.elements[element], "to", None), remedy="check the ratios on both ways round",
-        )  # fmt: skip
+def _require_closed(line: Driveline, topo: Topology) -> None:
+    """Refuse a loop round which the ratios do not come out where nothing slips: its springs would wind up with every
+    turn."""
+    if not topo.apart.any():
+        return
+    sprung = np.delete(np.arange(len(topo.compliances)), topo.dragged)
+    left = topo.apart[sprung] + topo.elongations[sprung] @ topo.creep
+    if np.abs(left).max(initial=0.0) < RANK * len(left):
+        return
+    compliance = next(one for one, apart in zip(topo.compliances, topo.apart, strict=True) if apart)
+    turns = [float(topo.speed_ratio[s]) for s in (compliance.near, compliance.far or 0)]
+    raise InputError(
+        f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
+        f"input, {100 * abs(turns[1] / turns[0] - 1):.3g} % apart, and wind it up by "
+        f"{360 * abs(turns[1] - turns[0]):.3g} deg with every turn", element=line.names[compliance.shafts[0]], key="to",
+        value=getattr(line.elements[compliance.shafts[0]], "to", None),
+        remedy="check the ratios on both ways round, or give a Tyre its slip_stiffness",
+    )  # fmt: skip
 
 
 def _merge_massless(line: Driveline, draft: LineStations) -> Topology:

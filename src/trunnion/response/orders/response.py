@@ -245,6 +245,7 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
             "about the motion of its rigid shafts, right to first order in what joints and excitations force.",
         )
     yield from _falls_away(assembly, spectrum)
+    yield from _wound_up(assembly, spectrum.speed)
     yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)
     yield from left_out("order_response", assembly.line)
@@ -268,6 +269,22 @@ def _falls_away(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding
             f"({', '.join(dict.fromkeys(names))}). Give the drive a torque that falls more steeply: the gain of a "
             "controller, a smaller slip.",
         )
+
+
+def _wound_up(assembly: Assembly, speed: Array) -> Iterator[Finding]:
+    """What ratios of a loop that do not come out do, where something slips."""
+    torque, topo = assembly.wind_up(assembly.table(len(speed), speed)), assembly.topology
+    if not torque.any():
+        return
+    e = int(np.argmax(np.abs(topo.apart)))
+    near = float(topo.speed_ratio[topo.compliances[e].near])
+    most = np.abs(torque).max(axis=0)
+    yield Finding(
+        Gravity.CAUTION,
+        f"Both ways round to the far end of {assembly.line.names[topo.compliances[e].shafts[0]]} have ratios "
+        f"{100 * abs(topo.apart[e] / near):.3g} % apart: its slip winds the line up by {most.max():.4g} N m, most in "
+        f"{shaft_names(assembly)[int(most.argmax())]}, whatever the load; mean torques count it.",
+    )
 
 
 def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:

@@ -56,7 +56,7 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     """
     places = channels_of(topo)
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
-    at = [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
+    at = _seen_stations(topo)
     if topo.graph:
         seen[..., places.twist], seen[..., places.deviation] = x @ topo.elongations.T, x
         seen[..., places.joint_input.start :] = x @ topo.turning[at].T
@@ -73,6 +73,30 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
     return seen
 
 
+def graph_channels_of_harmonics(
+    topo: Topology, x: Complex, h: Integers, times: int, elongations: Array, turning: Array
+) -> Complex:
+    """The same as ``channels_of_harmonics`` of a line that is no tree: elongations (case, time, compliance, n) and
+    turning (case, time, station, n) of its equations."""
+    places, at = channels_of(topo), _seen_stations(topo)
+    spectrum = np.zeros((len(x), times, topo.size), dtype=complex)
+    middle = int(h[len(h) // 2])
+    spectrum[:, (h - middle) % times] = x
+    grid = np.fft.ifft(spectrum, axis=1)[..., None]
+    rows = np.concatenate([elongations, turning[:, :, at]], axis=2)
+    read = np.fft.fft((rows @ grid)[..., 0], axis=1)[:, (h - middle) % times]
+    seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
+    springs = elongations.shape[2]
+    seen[..., places.twist], seen[..., places.deviation] = read[..., :springs], x
+    seen[..., places.joint_input.start :] = read[..., springs:]
+    return seen
+
+
+def _seen_stations(topo: Topology) -> list[int]:
+    """Stations in front of joints, and those of the points."""
+    return [topo.stations[joint].before for joint in topo.joints] + [station for station, _ in topo.points]
+
+
 def channels_of_harmonics(
     topo: Topology, x: Complex, h: Integers, times: int, ratio: Array, relative: Array
 ) -> Complex:
@@ -81,7 +105,7 @@ def channels_of_harmonics(
     ratio and relative as of ``motion_channels``, at ``times`` samples of the period.
     """
     places, middle = channels_of(topo), int(h[len(h) // 2])
-    at = np.array([topo.stations[joint].before for joint in topo.joints] + [s for s, _ in topo.points], dtype=np.intp)
+    at = np.array(_seen_stations(topo), dtype=np.intp)
     near = [near for _, near in topo.ends]
     seen = np.zeros((*x.shape[:2], places.count), dtype=complex)
     seen[..., places.twist] = _passed(x, h - middle, near, ratio, times)

@@ -92,6 +92,9 @@ class HillBlocks:
             np.fft.fft(part, axis=1) / self.times
             for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
         )
+        self.elongations = (
+            None if matrices.elongations is None else np.fft.fft(matrices.elongations, axis=1) / self.times
+        )
         parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
         self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
 
@@ -128,7 +131,10 @@ class HillBlocks:
     def _rigid_motion_condition(self, h: int) -> Part:
         n, joined = self.topo.size, self.topo.elongations[list(self.topo.dragged)]
         whole = joined.T @ joined
-        if self.topo.free:
+        if self.topo.graph:
+            basis = np.linalg.qr(self.topo.loose)[0]
+            whole = basis @ basis.T
+        elif self.topo.free:
             turn = rigid_rotation(self.topo)
             whole = whole + np.outer(turn, turn) / (turn @ turn)
         weight = np.abs(self.stiffness[:, 0]).max(axis=(1, 2))[:, None, None]
@@ -141,21 +147,30 @@ class HillBlocks:
         def put(far: int, near: int, row: Integers, column: Integers, values: Any) -> None:
             found.append((row * n + far, column * n + near, values))
 
+        def put_all(values: dict[tuple[int, int], Any]) -> None:
+            for (one, other), part in values.items():
+                row, column = np.nonzero(np.abs(part).max(axis=0) > ROUNDING * np.abs(part).max())
+                put(one, other, row, column, part[:, row, column])
+
         for e, (far, near) in enumerate(self.topo.ends):
             if not self.loss[:, e].any():
                 continue
             loss = 1j * self.loss[:, e, None] * sign
+            if self.elongations is not None:
+                twist = self.elongations[:, :, e]
+                twisted = np.flatnonzero(np.abs(twist).max(axis=(0, 1)) > 0)
+                turns = {i: twist[:, place, i] for i in twisted.tolist()}
+                put_all({(i, j): turns[i] @ (loss[:, :, None] * turns[j]) for i in turns for j in turns})
+                continue
             if far >= 0:
                 put(far, far, every, every, loss)
             if near < 0:
                 continue
             ratio = self.ratio[:, place, e]
-            parts = [(near, near, ratio @ (loss[:, :, None] * ratio))]
+            parts = {(near, near): ratio @ (loss[:, :, None] * ratio)}
             if far >= 0:
-                parts += [(far, near, -loss[:, :, None] * ratio), (near, far, -ratio * loss[:, None, :])]
-            for one, other, values in parts:
-                row, column = np.nonzero(np.abs(values).max(axis=0) > ROUNDING * np.abs(values).max())
-                put(one, other, row, column, values[:, row, column])
+                parts |= {(far, near): -loss[:, :, None] * ratio, (near, far): -ratio * loss[:, None, :]}
+            put_all(parts)
         return found
 
 

@@ -35,7 +35,12 @@ from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.tree_blocks import AT_ONCE
 from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
-from trunnion.steady.orders.channels import channels_of, channels_of_harmonics, motion_channels
+from trunnion.steady.orders.channels import (
+    channels_of,
+    channels_of_harmonics,
+    graph_channels_of_harmonics,
+    motion_channels,
+)
 from trunnion.steady.orders.cost_model import places_left, tree_pays
 from trunnion.steady.orders.groups import OWN, CarrierGroup, SideOrders, groups_of, offsets
 from trunnion.steady.orders.hill import HillBlocks, interpolated, interpolation_nodes, weights_at
@@ -52,6 +57,8 @@ if TYPE_CHECKING:
 
 FEWEST, MOST, ROUGH_REACH = 3, 48, 1
 """Harmonics kept on each side of an excitation: as many as the joints' angles ask for, more until ``SMALL_ENOUGH``."""
+FLOOR = 1e-9
+"""Share below which outermost harmonics that do not fall any more are rounding."""
 SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
 MOST_NUMBERS = 300_000
@@ -249,12 +256,18 @@ class _SpectrumProblem:
             return self._about_steady_states(self.own.at(table[:, 0]), table)
         if not self.varies:
             return self._straight(table), np.zeros(len(table))
+        before: tuple[float, float] | None = None
         while True:
             found, last = self._bent(table, self.reach)
             most = MOST if self.fall is None else MOST_DECADES
             if self.rough or self.reach >= most or not np.any(last > SMALL_ENOUGH):
                 return found, last
-            self.reach = min(most, self.reach + self._further(float(np.nanmax(last))))
+            worst = float(np.nanmax(last))
+            if before is not None and self.topo.graph and FLOOR > worst > before[1] / 2:
+                self.reach = before[0]  # rounding beside torques that cancel: more harmonics bring nothing
+                return found, last
+            before = self.reach, worst
+            self.reach = min(most, self.reach + self._further(worst))
 
     def _further(self, last: float) -> float:
         """By how much to raise the reach, where the outermost harmonics have the share ``last``."""
@@ -345,9 +358,17 @@ class _SpectrumProblem:
             right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
             if group.own:
                 right += self._harmonics(out.matrices.forcing, h)
+                if isinstance(out.matrices, LineMatrices) and out.matrices.base_twist is not None:
+                    right -= self._harmonics(_of_loss(out.matrices, out.co.loss), h)
+                    error += self._harmonics(out.matrices.base_twist, h)
             least = np.maximum(least, 1e-6 * np.abs(interpolated(weights, right)).max(axis=(1, 2)))
             x = out.blocks.solve(weights, carrier, h, rim, right)
-            seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
+            if out.base.turning is None:
+                seen = channels_of_harmonics(topo, x, h, out.blocks.times, ratio, relative)
+            else:
+                assert isinstance(out.matrices, LineMatrices) and out.matrices.elongations is not None
+                rows = out.matrices.elongations[alike], out.base.turning[alike]
+                seen = graph_channels_of_harmonics(topo, x, h, out.blocks.times, *rows)
             self._gather(total, group, h, seen, interpolated(weights, error), interpolated(weights, nu), every, wave)
             last = np.maximum(last, np.abs(seen[:, rim, self.places.torque]).max(axis=(1, 2)))
         self._add_base(total, out.base.rotation[alike], out.sides.width)
@@ -467,6 +488,15 @@ class _SpectrumProblem:
         for h in range(1, min(spectrum.shape[1] - 1, highest) + 1):
             if np.any(np.abs(spectrum[:, h]) > least):
                 total.base[h / self.turns, 0.0] = 2 * spectrum[:, h]
+
+
+def _of_loss(matrices: LineMatrices, loss: Array) -> Array:
+    """Torques on the unknowns (case, time, n) of loss factors where the base motion itself twists springs of loops."""
+    assert matrices.base_twist is not None and matrices.elongations is not None
+    times = matrices.base_twist.shape[1]
+    ahead = 1j * np.sign(np.fft.fftfreq(times))[:, None] * np.fft.fft(matrices.base_twist, axis=1)
+    torque = np.fft.ifft(ahead, axis=1).real * loss[:, None]
+    return np.asarray((torque[..., None, :] @ matrices.elongations)[..., 0, :])
 
 
 def _reach(joints: tuple[JointLaw, ...]) -> int:
