@@ -80,6 +80,12 @@ ANALYSES = (
         view="driveline",
     ),
     Analysis(
+        "damper_optimum",
+        "The best damping, and stiffness, of a torsional vibration damper for one mode.",
+        command="trunnion.cli.damper_optimum:damper_optimum",
+        view="driveline",
+    ),
+    Analysis(
         "resonance_speeds",
         "Named parametric resonance speeds in the operating range, and which of them can open.",
         features="resonances",

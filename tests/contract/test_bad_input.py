@@ -17,6 +17,7 @@ from trunnion import (
 )
 from trunnion.driveline import (
     Belt,
+    CentrifugalPendulum,
     ConstantSpeed,
     Coupling,
     Differential,
@@ -105,6 +106,11 @@ def engine(**changes):
 
 def dual_mass(**changes):
     return DualMassFlywheel(**{"primary_inertia": 0.1, "secondary_inertia": 0.05, "stiffnesses": [1e3]} | changes)
+
+
+def pendulum(**changes: object) -> CentrifugalPendulum:
+    stated = {"mass": 1.0, "radius": 0.1, "order": 2.0} | changes
+    return CentrifugalPendulum(**{key: value for key, value in stated.items() if value is not None})
 
 
 def belt(**changes):
@@ -947,6 +953,22 @@ PYTHON = [
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: pendulum(order=None), "CentrifugalPendulum.order: is missing", "order = 2, or length"),
+    (lambda: pendulum(length=0.02), "CentrifugalPendulum.length = 0.02: stands beside order", "leave out either"),
+    (lambda: pendulum(mass=0), "CentrifugalPendulum.mass = 0: must be positive", '"1800 kg"'),
+    (lambda: pendulum(radius=-1), "CentrifugalPendulum.radius = -1: must be positive", '"76 mm"'),
+    (lambda: pendulum(damping=-1), "CentrifugalPendulum.damping = -1: must not be negative", '"3 N*m*s/rad"'),
+    (lambda: pendulum(path="line"), "CentrifugalPendulum.path = 'line': is not a path", 'write "circle"'),
+    (
+        lambda: pendulum(order=None, length=0.2),
+        "CentrifugalPendulum.length = 0.2: is longer than the radius of 0.1 m that it hangs on",
+        "check which is which",
+    ),
+    (
+        lambda: pendulum(largest_travel=1, path="epicycloid"),
+        "CentrifugalPendulum.largest_travel = 1: is more than the 0.02795 m that its path has",
+        "check the unit",
+    ),
     (lambda: SlipClutch(), "SlipClutch.torque: is missing", 'torque = "1200 N*m"'),
     (lambda: SlipClutch(torque=0), "SlipClutch.torque = 0: must be positive", '"250 N*m"'),
     (lambda: SlipClutch(torque=9, sliding_torque=-1, stribeck_speed=1), "SlipClutch.sliding_torque = -1: must", "250"),

@@ -13,6 +13,7 @@ from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCro
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import refuse_curves
+from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.transients.stepping import Found, Place, Stepper
 
@@ -59,8 +60,10 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> LineSystem:
 
     Raises
     ------
-    InputError : what acts where nothing can; a machine with a torque over speed, or an excitation that varies with it.
+    InputError : what acts where nothing can; a pendulum; a machine with a torque over speed; an excitation that varies
+        with it.
     """
+    refuse_pendulums(line)
     prepared = line_system(driven_line(line, asked), abs(speed), leaves=True, slips=True)
     refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
     for one in prepared.torques:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Integers
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import (
     BaseOfExcitation,
@@ -167,7 +168,8 @@ class _SpectrumProblem:
         self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
         self.twisted = statically_twisted
-        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
+        pendulums = any(isinstance(element, CentrifugalPendulum) for element in assembly.line.elements)
+        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:])) and not pendulums
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
