@@ -70,6 +70,7 @@ from trunnion.driveline.cylinders import reciprocating_mass as reciprocating_mas
 from trunnion.driveline.excitation_file import read_excitation as read_excitation
 from trunnion.driveline.layout import combined_angle as combined_angle
 from trunnion.driveline.layout import layout as layout
+from trunnion.driveline.mean_balance import mean_speeds as mean_speeds
 from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack

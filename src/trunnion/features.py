@@ -83,7 +83,8 @@ DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Words] = {
     LAG: (
-        "the torque is taken to follow the speed at once, which holds well below the corner frequency",
+        "forced responses of straight lines have it; elsewhere the torque follows the speed at once, which holds well "
+        "below the corner frequency",
         "quasi-static",
     )
 }

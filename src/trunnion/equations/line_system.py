@@ -393,11 +393,18 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
 
 
 def line_system(
-    line: Driveline | Assembly, speed: float, *, leaves: bool = False, slips: bool = False, swing: bool = False
+    line: Driveline | Assembly,
+    speed: float,
+    *,
+    leaves: bool = False,
+    slips: bool = False,
+    swing: bool = False,
+    linearised: bool = False,
 ) -> LineSystem:
     """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
     leave). Its slip clutches stick, or slip beyond their capacity where ``slips``; its centrifugal pendulums are rings
-    on springs, or swing along their paths where they ``swing``.
+    on springs, or swing along their paths where they ``swing``. Unless it is only to be ``linearised`` about its
+    motion, torques that act by their tangents are said.
 
     Raises
     ------
@@ -409,7 +416,7 @@ def line_system(
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     for name, rotor in assembly.topology.rotors:
-        if rotor.tangent:
+        if rotor.tangent and not linearised:
             at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
             remark = f"{name}: equations of motion have its torque over speed by the tangent at {at} of the input"
             warnings.warn(InputRemark(remark), stacklevel=2)

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import known_speed, speed_unit
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
@@ -74,7 +74,7 @@ def kinetostatics(
     ComputationError : shafts so soft that the twist does not settle.
     """
     if speed is None:
-        speed = (line.operation.speed if line.operation else None) or 1.0
+        speed = known_speed(line) or 1.0
     drive_speed = quantity(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")

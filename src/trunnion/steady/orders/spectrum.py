@@ -274,7 +274,7 @@ class _SpectrumProblem:
                 for group, at in zip(groups, nu, strict=True)
             ]
             right = np.stack([force[:, 0] for force, _ in sources])
-            y = respond(topo, matrices, co.loss, nu, right, linearised=self.linearised)
+            y = respond(topo, matrices, co.loss, nu, right, lags=co.lags, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
                 if topo.free:  # driven away by a constant torque, without bound
