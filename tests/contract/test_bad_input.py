@@ -627,6 +627,15 @@ PYTHON = [
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
     (
         lambda: tn.passing(
+            line(tn.Motor(inertia=0.5, name="motor", **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
+            (5.0, 9.0),
+            torque=[torque(time=[0, 1], torque=[1, 1])],
+        ),
+        "motor.curve: has a torque over speed",
+        "state its inertia as a Disk, and its torque in the scenario",
+    ),
+    (
+        lambda: tn.passing(
             line(ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1, name="pump")),
             (5.0, 9.0),
             torque=[torque(**KLOSS)],

@@ -25,14 +25,14 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.passing.passing_result import Passing, PassingEnd
 from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.strongest_order import strongest_order
-from trunnion.motion.transients.prepare import Actions, actions_of, driven_line, follow
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS
@@ -100,14 +100,12 @@ def passing(
     asked = actions_of([one.but(hold=True) for one in torque], friction, ())
     if not asked[0]:
         raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
-    prepared = line_system(driven_line(description, asked), first, leaves=True, slips=True)
+    prepared = prepared_line(description, asked, first)
     if not prepared.assembly.topology.free:
         raise InputError(
             "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
             remedy="leave it out, and put a Disk of the drive's inertia in its place",
         )  # fmt: skip
-    for one in prepared.torques:
-        one.refuse_change()
     angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, asked, first, last)
     made = _Follower(prepared, asked, first, last, angle, rigid)
     run, kind = made.ending(tolerance)

@@ -11,12 +11,14 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.loads import refuse_curves
+from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.transients.stepping import Found, Place, Stepper
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
-    from trunnion.equations.line_system import LineSystem
 
 Actions = tuple[tuple[AppliedTorque, ...], tuple[FrictionTorque, ...], tuple[LevelCrossing, ...]]
 """What acts and what is watched."""
@@ -51,6 +53,22 @@ def driven_line(line: Driveline, asked: Actions) -> Driveline:
             key="drive_share", remedy=f"give {left[0]} a torque too, or no drive_share",
         )  # fmt: skip
     return line.replace_all({name: {"drive_share": None} for name in replaced})
+
+
+def prepared_line(line: Driveline, asked: Actions, speed: float) -> LineSystem:
+    """The line as its torques drive it, ready to be followed from an input ``speed`` [rad/s] of either sense.
+
+    Raises
+    ------
+    InputError : what acts where nothing can; a pendulum; a machine with a torque over speed; an excitation that varies
+        with it.
+    """
+    refuse_pendulums(line)
+    prepared = line_system(driven_line(line, asked), abs(speed), leaves=True, slips=True)
+    refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
+    for one in prepared.torques:
+        one.refuse_change()
+    return prepared
 
 
 def follow(

@@ -14,14 +14,14 @@ from trunnion.arrays import Array
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, against
-from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.line_system import LineSystem
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.motion.simulation.input_rotation import InputRotation
 from trunnion.motion.simulation.simulate import positive_time
 from trunnion.motion.transients.energy import EnergyBalance, applied_torques, energy_balance, station_angles
-from trunnion.motion.transients.prepare import Actions, driven_line, follow
+from trunnion.motion.transients.prepare import Actions, follow, prepared_line
 from trunnion.motion.transients.stepping import LOCATED, Found, Piece, Place
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS
@@ -343,7 +343,7 @@ class Transient(Result):
         given = (torque, friction, crossing)
         asked: Any = tuple(old if new is None else tuple(new) for old, new in zip(self.asked, given, strict=True))
         description = self.description if line is None else line
-        prepared = line_system(driven_line(description, asked), self.line.speed, leaves=True, slips=True)
+        prepared = prepared_line(description, asked, self.line.speed)
         same = prepared.names == self.line.names and prepared.shafts == self.line.shafts
         if not same or len(prepared.sliders) != len(self.line.sliders):
             remedy = "change numbers of the same line alone"

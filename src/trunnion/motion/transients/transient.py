@@ -13,13 +13,11 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import LineSystem, line_system
-from trunnion.equations.loads import refuse_curves
-from trunnion.equations.released import refuse_pendulums
+from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import actions_of, driven_line, follow
+from trunnion.motion.transients.prepare import actions_of, follow, prepared_line
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -92,20 +90,15 @@ def transient(
         speed = scenario.speed if speed is None else speed
     length = positive_time(duration, "give seconds, or the name of a scenario")
     asked = actions_of(torque, friction, crossing)
-    changed = driven_line(description, asked)
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
-    refuse_pendulums(description)
-    prepared = line_system(changed, abs(begin), leaves=True, slips=True)
-    refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
+    prepared = prepared_line(description, asked, begin)
     if not prepared.assembly.topology.free and not begin > 0:
         raise InputError(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
             remedy="leave out the ConstantSpeed, so that the line starts by its torques",
         )  # fmt: skip
-    for one in prepared.torques:
-        one.refuse_change()
     angle = one_number(phase, "phase", "np.pi / 2, say")
     place = Place(0.0, _start(prepared, start, begin, angle), angle=angle, speed=begin)
     found = follow(prepared, place, length, asked, tolerance, most_steps)
