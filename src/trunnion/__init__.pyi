@@ -3,6 +3,8 @@
 from trunnion.design.assessment.assess import assess as assess
 from trunnion.design.comparison.compare import compare as compare
 from trunnion.design.envelope import envelope as envelope
+from trunnion.design.fatigue.fatigue import fatigue as fatigue
+from trunnion.design.fatigue.load_history import LoadHistory as LoadHistory
 from trunnion.design.limits.stable_limit import stable_limit as stable_limit
 from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
@@ -17,6 +19,7 @@ from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
+from trunnion.driveline import Duty as Duty
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import HookeJoint as HookeJoint
@@ -24,6 +27,7 @@ from trunnion.driveline import IdealJoint as IdealJoint
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation
+from trunnion.driveline import Passage as Passage
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import Ratio as Ratio
@@ -32,6 +36,7 @@ from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
+from trunnion.driveline import SNCurve as SNCurve
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import Tolerance as Tolerance
@@ -91,6 +96,7 @@ from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
+from trunnion.motion.passing.torque_amplification import torque_amplification as torque_amplification
 from trunnion.motion.perturbation.averaging import averaging as averaging
 from trunnion.motion.perturbation.describing_function import DescribingFunction as DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales as multiple_scales

@@ -234,6 +234,16 @@ ANALYSES = (
         view="motion",
     ),
     Analysis(
+        "fatigue",
+        "Cycles, damage and life of every element with an S–N curve, over duty, starts and barred ranges passed.",
+        features="linear motion",
+        pictures={
+            "FatigueLife.plot": "trunnion.pictures.fatigue:fatigue",
+            "FatigueLife.plot_damage": "trunnion.pictures.fatigue:damage",
+        },
+        command="trunnion.cli.fatigue:fatigue",
+    ),
+    Analysis(
         "safe_accelerations",
         "The slowest and the fastest acceleration whose passage keeps a limit of torque.",
         features="passage",

@@ -48,6 +48,16 @@ def limited(line: tn.Driveline) -> tn.Driveline:
     return line.model_copy(update={"limits": limits})
 
 
+def with_duty(line: tn.Driveline) -> tn.Driveline:
+    """With S–N curves, one of which counts means, and a duty."""
+    curves = [
+        tn.SNCurve(of=name, torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
+        for name in ("front", "rear")
+    ]
+    operation = tn.Operation(duty=[tn.Duty(share=1.0, speed=SPEED)])
+    return line.model_copy(update={"sn_curves": tuple(curves), "operation": operation})
+
+
 def scheduled(line: tn.Driveline) -> tn.Driveline:
     """With a schedule of the angle of a joint that all lines have."""
     schedule = tn.Schedule(name="travel", travel=[0.0, 0.1], angles={"joint 2": [0.1, 0.4]})
@@ -72,6 +82,21 @@ def in_rpm(end: bool = False) -> tn.Driveline:
         load_cases=[tn.LoadCase(name="pull", loads={"load": 20.0})],
     )  # fmt: skip
     return tn.Driveline(elements, operation=operation)
+
+
+def in_rpm_for_life() -> tn.Driveline:
+    """With an S–N curve, two speeds and a start."""
+    stated = in_rpm()
+    assert stated.operation is not None
+    operation = stated.operation.model_copy(
+        update={
+            "duty": (tn.Duty(share=0.5, speed="1500 rpm"), tn.Duty(share=0.5, speed="1600 rpm", load_case="pull")),
+            "passages": (tn.Passage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2),),
+            "life": 3.6e7,
+        }
+    )
+    curve = tn.SNCurve(of="tube", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e3)
+    return stated.model_copy(update={"sn_curves": (curve,), "operation": operation})
 
 
 @cache
@@ -213,6 +238,10 @@ QUESTIONS = {
         lambda line: tn.run_up(line, 100, 110, acceleration=200, steady=2),
         lambda: tn.run_up(in_rpm(), LOW, MIDDLE, acceleration=200, steady=0),
         quick=("load torque",),
+    ),
+    "fatigue": Question(
+        lambda line: tn.fatigue(with_duty(line)),
+        lambda: tn.fatigue(in_rpm_for_life()),
     ),
     "safe_accelerations": Question(
         lambda line: tn.safe_accelerations(line, 100, 110, limit=1000.0, accelerations=(100, 200), points=2),

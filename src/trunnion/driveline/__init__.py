@@ -9,6 +9,7 @@ from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.duty import Duty, Passage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
@@ -23,6 +24,7 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.tolerances import Tolerance
@@ -35,6 +37,7 @@ __all__ = [
     "DoubleCardanJoint",
     "Driveline",
     "DualMassFlywheel",
+    "Duty",
     "Element",
     "Excitation",
     "GearPair",
@@ -44,9 +47,11 @@ __all__ = [
     "LoadCase",
     "Operation",
     "Coupling",
+    "Passage",
     "PiecewiseShaft",
     "Planetary",
     "Ratio",
+    "SNCurve",
     "Schedule",
     "Shaft",
     "StiffnessVariation",

@@ -19,6 +19,7 @@ from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.sn_curves import SNCurve, SNCurves, curves_of
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
@@ -36,6 +37,7 @@ class Driveline(ElementChain):
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
+    sn_curves : how many cycles they bear, for ``fatigue`` and ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
 
     Raises
@@ -48,6 +50,7 @@ class Driveline(ElementChain):
 
     operation: Operation | None = None
     limits: Limits = ()
+    sn_curves: SNCurves = ()
     tolerances: Tolerances = ()
 
     def __init__(
@@ -61,6 +64,7 @@ class Driveline(ElementChain):
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
+        sn_curves: Iterable[SNCurve] = (),
     ) -> None:
         data: dict[str, Any] = {
             "elements": checked(elements),
@@ -71,6 +75,7 @@ class Driveline(ElementChain):
             "operation": operation,
             "limits": limits,
             "tolerances": tolerances,
+            "sn_curves": sn_curves,
         }
         super().__init__(**data)
         if self.damping_ratio is not None and self.damping_ratio < 0:
@@ -89,7 +94,7 @@ class Driveline(ElementChain):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
-        wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.tolerances), self.parts)]
+        wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.sn_curves, *self.tolerances), self.parts)]
         if wrong:
             raise InputError.together(wrong)
         return self
@@ -98,6 +103,11 @@ class Driveline(ElementChain):
     def limits_by_element(self) -> tuple[OneLimit, ...]:
         """Every limit that holds; that of a named element overrides its kind's."""
         return limits_of(self.limits, self.parts)
+
+    @cached_property
+    def sn_curves_by_element(self) -> dict[str, SNCurve]:
+        """The S–N curve of every element that has one; that of a named element stands instead of its kind's."""
+        return curves_of(self.sn_curves, self.parts)
 
     @cached_property
     def tolerances_by_path(self) -> dict[str, tuple[object, ...]]:

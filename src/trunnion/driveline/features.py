@@ -14,6 +14,7 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.duty import Duty, Passage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
@@ -23,6 +24,7 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 
 Finder = Callable[[Driveline], list[str]]
@@ -274,8 +276,18 @@ NOT_FEATURES = {
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
     "Driveline.limits": "what elements may bear, which assess compares with",
+    "Driveline.sn_curves": "how many cycles elements bear, which fatigue and assess go by",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
+    **dict.fromkeys((f"SNCurve.{key}" for key in SNCurve.model_fields), "an S–N curve, which fatigue goes by"),
+    **dict.fromkeys(
+        ("Operation.life", "Operation.duty", "Operation.passages"),
+        "what the line does in its life, which fatigue goes by",
+    ),
+    **dict.fromkeys(
+        (f"{kind.__name__}.{key}" for kind in (Duty, Passage) for key in kind.model_fields),
+        "fatigue asks for the motion at that speed or on that passage",
+    ),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",
     "Operation.angle_range": "the default range of charts in reports",

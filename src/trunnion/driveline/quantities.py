@@ -84,6 +84,7 @@ PRESSURE = QuantityKind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa"
 DENSITY = QuantityKind("density", "kg/m^3", "7850 kg/m^3")
 MASS = QuantityKind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
 POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
+TIME = QuantityKind("time", "s", "20000 h", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0)))
 ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
 RATIO = QuantityKind("ratio", "1", "0.02")
 KINDS = (
@@ -104,6 +105,7 @@ KINDS = (
     MASS,
     POWER,
     ACCELERATION,
+    TIME,
     RATIO,
 )
 
@@ -130,6 +132,7 @@ USUAL: dict[str, dict[str, float]] = {
     "kg/m^3": {"kg/m^3": 1.0},
     "kg": {"kg": 1.0, "t": 1e3},
     "W": {"W": 1.0, "kW": 1e3},
+    "s": {"s": 1.0, "min": 60.0, "h": 3600.0},
     "1": {"percent": 0.01},
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
@@ -364,6 +367,7 @@ if TYPE_CHECKING:
     Mass: TypeAlias = Stated[float, float | str]
     Power: TypeAlias = Stated[float, float | str]
     Acceleration: TypeAlias = Stated[float, float | str]
+    Duration: TypeAlias = Stated[float, float | str]
     Dimensionless: TypeAlias = Stated[float, float | str]
 
     Of = TypeVar("Of")
@@ -398,6 +402,7 @@ else:
     Mass = Annotated[float, Quantity(MASS)]
     Power = Annotated[float, Quantity(POWER)]
     Acceleration = Annotated[float, Quantity(ACCELERATION)]
+    Duration = Annotated[float, Quantity(TIME)]
     Dimensionless = Annotated[float, Quantity(RATIO)]
 
     class _Row:

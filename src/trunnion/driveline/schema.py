@@ -8,6 +8,7 @@ from pydantic import BaseModel
 
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
+from trunnion.driveline.duty import Duty, Passage
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -17,6 +18,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
@@ -74,7 +76,7 @@ def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of a driveline file read as TOML; quantities carry "unit", their SI unit."""
     definitions = {name: _element(name) for name in KINDS}
     operation = _model(Operation)
-    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule")):
+    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule"), ("passages", "Passage")):
         stated = operation["properties"].pop(many)
         operation["properties"][many[:-1]] = {
             "type": "array",
@@ -104,6 +106,11 @@ def json_schema() -> dict[str, Any]:
                 "items": {"$ref": "#/$defs/Limit"},
                 "description": "what elements may bear, for assess",
             },
+            "sn_curve": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/SNCurve"},
+                "description": "how many cycles elements bear, for fatigue",
+            },
             "tolerance": {
                 "type": "array",
                 "items": {"$ref": "#/$defs/Tolerance"},
@@ -128,7 +135,10 @@ def json_schema() -> dict[str, Any]:
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),
             "SwitchedOff": _model(SwitchedOff),
+            "Duty": _model(Duty),
+            "Passage": _model(Passage),
             "Limit": _model(Limit),
+            "SNCurve": _model(SNCurve),
             "Tolerance": _tolerance(),
             "Excitation": _model(Excitation),
             "TransmissionError": _model(TransmissionError),
