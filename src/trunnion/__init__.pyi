@@ -27,7 +27,6 @@ from trunnion.driveline import IdealJoint as IdealJoint
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Operation as Operation
-from trunnion.driveline import Passage as Passage
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import Ratio as Ratio
@@ -37,6 +36,7 @@ from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
 from trunnion.driveline import SNCurve as SNCurve
+from trunnion.driveline import SpeedPassage as SpeedPassage
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import Tolerance as Tolerance

@@ -91,7 +91,7 @@ def in_rpm_for_life() -> tn.Driveline:
     operation = stated.operation.model_copy(
         update={
             "duty": (tn.Duty(share=0.5, speed="1500 rpm"), tn.Duty(share=0.5, speed="1600 rpm", load_case="pull")),
-            "passages": (tn.Passage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2),),
+            "passages": (tn.SpeedPassage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2),),
             "life": 3.6e7,
         }
     )

@@ -143,7 +143,7 @@ def test_every_analysis_has_a_row() -> None:
 def test_every_field_belongs_to_a_feature() -> None:
     models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation, tn.Ripple, tn.Slider]
     models += [tn.Driveline, tn.Limit, Operation, LoadCase, tn.Schedule, tn.SwitchedOff]
-    models += [tn.SNCurve, tn.Duty, tn.Passage]
+    models += [tn.SNCurve, tn.Duty, tn.SpeedPassage]
     common = set(Element.model_fields)
     fields = {
         f"{model.__name__}.{key}"

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from typing import Any
 
 import numpy as np
+import pytest
 from oracles.four_point_rainflow import four_point
+from pages import run_page
+from typer.testing import CliRunner
 
 import trunnion as tn
+from trunnion.cli import app
 from trunnion.design.fatigue.cycles import Cycles, rainflow_cycles
 from trunnion.design.fatigue.damage import cycles_to_failure, damage, reversed_amplitude
 from trunnion.design.fatigue.result import FatigueLife
@@ -119,10 +124,10 @@ def test_stress_of_a_tube_is_torque_by_its_section() -> None:
 
 
 def test_a_passage_against_a_fine_grid_and_four_points() -> None:
-    start = tn.Passage(name="start", first=60.0, last=180.0, acceleration=60.0, per_hour=4, load_case="full")
+    start = tn.SpeedPassage(name="start", first=60.0, last=180.0, acceleration=60.0, per_hour=4, load_case="full")
     found = tn.fatigue(line(passages=[start], ultimate_torque=3000.0))
     run = tn.run_up(line().with_load("full"), 60.0, 180.0, acceleration=60.0, steady=0).simulation
-    torque = run.torque_at(np.linspace(0.0, run.end, 400_001))[:, 0]
+    torque = run.torque_at(np.linspace(0.0, run.end, 100_001))[:, 0]
     first = int(np.abs(torque).argmax())
     counts = four_point([*torque[first:].tolist(), *torque[: first + 1].tolist()])
     by_hand = sum(n / (1e6 * (400 * (1 - abs(m) / 3000) / (r / 2)) ** 5) for (r, m), n in counts.items() if r)
@@ -199,3 +204,35 @@ def test_pictures_show_the_cycles_and_the_curve() -> None:
     np.testing.assert_allclose(drawn["S–N curve"][:, 0], 1e6 * (400 / drawn["S–N curve"][:, 1]) ** 5, rtol=1e-9)
     bars = [patch.get_width() for patch in found.plot_damage().patches]
     np.testing.assert_allclose(np.sort(bars), np.sort(100 * found.damage_rate[0] * 3.6e6), rtol=1e-9)
+
+
+@pytest.mark.slow
+def test_the_page_runs_in_order() -> None:
+    text, names = run_page("fatigue")
+    assert "shaft: Miner's sum 0.0534 of 1 after 20000 h, lasts 374000 h, most by 1500 rpm, full load (57.6 %)" in text
+    assert text.splitlines()[2] == "satisfied"
+    assert "5.06 times the nominal -200 N m" in text
+
+
+@pytest.mark.slow
+def test_the_report_has_a_section() -> None:
+    duty = [tn.Duty(share=1.0, speed=110.0)]
+    page = tn.report(line(duty=duty, life="1000 h"), speed=110.0, points=(4, 4)).html
+    assert '<section id="fatigue">' in page and "Means do not count in shaft" in page
+
+
+def test_the_command(tmp_path: Any, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    described = line(duty=[tn.Duty(share=1.0, speed=110.0)], life="1000 h")
+    tn.dump(described, "line.toml")
+    found = CliRunner().invoke(
+        app, ["fatigue", "line.toml", "--life", "500 h", "-o", "life.png", "-o", "life.nc", "--json"]
+    )
+    assert found.exit_code == 0, found.output
+    content = json.loads(found.stdout)
+    np.testing.assert_allclose(content["damage"], tn.fatigue(described).damage / 2, rtol=1e-12)
+    assert content["operating_life"] == 1.8e6 and content["written"] == ["life.png", "life.nc"]
+    text = CliRunner().invoke(app, ["fatigue", "line.toml", "-o", "life.csv"]).stdout
+    assert "Miner's sum" in text and "1050.42 rpm (100 %)" in text
+    refused = CliRunner().invoke(app, ["fatigue", "line.toml", "--life", "0 h"])
+    assert refused.exit_code == 2 and "must be positive" in refused.output

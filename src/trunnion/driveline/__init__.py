@@ -9,7 +9,7 @@ from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.duty import Duty, Passage
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
@@ -47,7 +47,7 @@ __all__ = [
     "LoadCase",
     "Operation",
     "Coupling",
-    "Passage",
+    "SpeedPassage",
     "PiecewiseShaft",
     "Planetary",
     "Ratio",

@@ -69,7 +69,7 @@ class Duty(Record):
         return self
 
 
-class Passage(Named):
+class SpeedPassage(Named):
     """A run from one speed to another that comes again and again: a start, a stop, a barred range that is passed.
 
     Parameters

@@ -14,7 +14,7 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.duty import Duty, Passage
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
@@ -285,7 +285,7 @@ NOT_FEATURES = {
         "what the line does in its life, which fatigue goes by",
     ),
     **dict.fromkeys(
-        (f"{kind.__name__}.{key}" for kind in (Duty, Passage) for key in kind.model_fields),
+        (f"{kind.__name__}.{key}" for kind in (Duty, SpeedPassage) for key in kind.model_fields),
         "fatigue asks for the motion at that speed or on that passage",
     ),
     "Operation.speed": "the default of every speed asked for",

@@ -30,7 +30,7 @@ from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.duty import Duty, Passage
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.excitation_file import read_excitation
@@ -334,7 +334,7 @@ def _operation(table: Any) -> Operation:
         "schedule": (Schedule, "schedules"),
         "switched_off": (SwitchedOff, "switched_off"),
         "duty": (Duty, "duty"),
-        "passage": (Passage, "passages"),
+        "passage": (SpeedPassage, "passages"),
     }
     for key, (kind, many) in kinds.items():
         if many != key and many in data:  # the name in Python; a file repeats [[operation.load_case]]

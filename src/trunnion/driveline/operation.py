@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
-from trunnion.driveline.duty import ROUNDING, Duty, Passage
+from trunnion.driveline.duty import ROUNDING, Duty, SpeedPassage
 from trunnion.driveline.quantities import (
     ANGLE,
     DEGREE,
@@ -127,7 +127,9 @@ class Operation(Record):
     schedules: tuple[Schedule, ...] = optional(default=(), description="angles over travel and torques over speed")
     life: Maybe[Duration] = optional(default=None, description="operating time that the line is to last")
     duty: Duties = optional(default=(), description="shares of the operating time at constant speeds")
-    passages: tuple[Passage, ...] = optional(default=(), description="runs from one speed to another, so many an hour")
+    passages: tuple[SpeedPassage, ...] = optional(
+        default=(), description="runs from one speed to another, so many an hour"
+    )
 
     @field_validator("speed")
     @classmethod
@@ -165,7 +167,9 @@ class Operation(Record):
         whole = sum(one.share for one in self.duty)
         if self.duty and abs(whole - 1) > ROUNDING:
             remedy = "let the shares of all [[operation.duty]] add up to 1, those at rest left out"
-            yield InputError(f"has shares that add up to {whole:.6g}, not to 1", key="duty", remedy=remedy)
+            yield InputError(
+                f"has shares that add up to {whole:.6g}, not to 1", element=self.what, key="duty", remedy=remedy
+            )
         known = [one.name for one in self.load_cases]
         every: list[tuple[str, str | None]] = [(f"duty {i}", one.load_case) for i, one in enumerate(self.duty, start=1)]
         every += [(f"passage {one.name}", one.load_case) for one in self.passages]

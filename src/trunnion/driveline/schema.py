@@ -8,7 +8,7 @@ from pydantic import BaseModel
 
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
-from trunnion.driveline.duty import Duty, Passage
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -76,7 +76,7 @@ def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of a driveline file read as TOML; quantities carry "unit", their SI unit."""
     definitions = {name: _element(name) for name in KINDS}
     operation = _model(Operation)
-    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule"), ("passages", "Passage")):
+    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule"), ("passages", "SpeedPassage")):
         stated = operation["properties"].pop(many)
         operation["properties"][many[:-1]] = {
             "type": "array",
@@ -136,7 +136,7 @@ def json_schema() -> dict[str, Any]:
             "Schedule": _model(Schedule),
             "SwitchedOff": _model(SwitchedOff),
             "Duty": _model(Duty),
-            "Passage": _model(Passage),
+            "SpeedPassage": _model(SpeedPassage),
             "Limit": _model(Limit),
             "SNCurve": _model(SNCurve),
             "Tolerance": _tolerance(),

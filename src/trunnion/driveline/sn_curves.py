@@ -24,7 +24,7 @@ from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.elements import Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.limits import SPRING_KINDS
-from trunnion.driveline.quantities import Dimensionless, Maybe, Pressure, Torque, optional
+from trunnion.driveline.quantities import RATIO, Dimensionless, Maybe, Pressure, Torque, optional, shown
 from trunnion.driveline.record import listed, one_of
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
@@ -95,8 +95,8 @@ class SNCurve(Addressed):
         return self
 
     def _wrong_numbers(self) -> Iterator[InputError]:
-        for key, value in self.shown.items():
-            if key != "miner" and not float(value) > 0:  # type: ignore[arg-type]
+        for key, value in self.stated.items():
+            if key not in ("of", "miner") and not value > 0:
                 yield InputError("must be positive", key=key, value=value, remedy=f"write {self.example}, say")
         if self.mean_sensitivity is not None and self.mean_sensitivity > 1:
             remedy = "write 0.2, say: M is the loss of amplitude over mean stress"
@@ -140,8 +140,13 @@ class SNCurve(Addressed):
 
     @property
     def shown(self) -> dict[str, object]:
-        """What it states by key."""
-        return {key: value for key, value in self.stated.items() if key != "of"}
+        """What it states as an engineer writes it."""
+        stated = {key: value for key, value in self.stated.items() if key != "of"}
+        kinds = {key: self.quantity_of(key) for key in stated}
+        return {
+            key: shown(value, kind) if (kind := kinds[key]) is not None and kind is not RATIO else value
+            for key, value in stated.items()
+        }
 
     def wrong_for(self, key: str, concerned: Elements, where: Where) -> Iterator[InputError]:
         """That none of the elements ``concerned`` can have such a curve."""
@@ -167,7 +172,7 @@ SNCurves = Annotated[
     tuple[SNCurve, ...],
     BeforeValidator(
         listed(
-            SNCurve, "S-N curve",
+            SNCurve, "stress-life curve",
             'write sn_curves=[tn.SNCurve(of="Shaft 1", torque_amplitude="2 kN*m", cycles=2e6, slope=5)]', owner="of",
         )
     ),

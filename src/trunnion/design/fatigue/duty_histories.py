@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.design.fatigue.load_history import TorqueHistory, of_response, of_run
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.duty import Duty, Passage
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about
@@ -53,7 +53,7 @@ def _of_duty(line: Driveline, operation: Operation) -> list[TorqueHistory]:
     return [found[place] for place in sorted(found)]
 
 
-def _of_passage(line: Driveline, passage: Passage) -> TorqueHistory:
+def _of_passage(line: Driveline, passage: SpeedPassage) -> TorqueHistory:
     loaded = line.with_load(passage.load_case) if passage.load_case else line
     try:
         run = run_up(loaded, passage.first, passage.last, acceleration=passage.acceleration, steady=0)
