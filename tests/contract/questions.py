@@ -49,13 +49,9 @@ def limited(line: tn.Driveline) -> tn.Driveline:
 
 
 def with_duty(line: tn.Driveline) -> tn.Driveline:
-    """With S–N curves, one of which counts means, and a duty."""
-    curves = [
-        tn.SNCurve(of=name, torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
-        for name in ("front", "rear")
-    ]
-    operation = tn.Operation(duty=[tn.Duty(share=1.0, speed=SPEED)])
-    return line.model_copy(update={"sn_curves": tuple(curves), "operation": operation})
+    """With an S–N curve of all shafts, which counts means, and a duty."""
+    curve = tn.SNCurve(of="Shaft *", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
+    return line.but(sn_curves=[curve], operation=tn.Operation(duty=[tn.Duty(share=1.0, speed=SPEED)]))
 
 
 def scheduled(line: tn.Driveline) -> tn.Driveline:
@@ -88,15 +84,13 @@ def in_rpm_for_life() -> tn.Driveline:
     """With an S–N curve, two speeds and a start."""
     stated = in_rpm()
     assert stated.operation is not None
-    operation = stated.operation.model_copy(
-        update={
-            "duty": (tn.Duty(share=0.5, speed="1500 rpm"), tn.Duty(share=0.5, speed="1600 rpm", load_case="pull")),
-            "passages": (tn.SpeedPassage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2),),
-            "life": 3.6e7,
-        }
+    operation = stated.operation.but(
+        duty=[tn.Duty(share=0.5, speed="1500 rpm"), tn.Duty(share=0.5, speed="1600 rpm", load_case="pull")],
+        passages=[tn.SpeedPassage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2)],
+        life="10000 h",
     )
     curve = tn.SNCurve(of="tube", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e3)
-    return stated.model_copy(update={"sn_curves": (curve,), "operation": operation})
+    return stated.but(sn_curves=[curve], operation=operation)
 
 
 @cache

@@ -17,7 +17,6 @@ from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.turning_points import TurningPoints, reversals, turning_points
 from trunnion.response.orders.result import OrderResponse
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import show_speed
 from trunnion.results.verdict import Verdict
 
 Source = LineSimulation | RunUp | OrderResponse | Mapping[str, ArrayLike]
@@ -137,7 +136,7 @@ def torque_history(history: LoadHistory, place: int) -> TorqueHistory:
     if isinstance(source, OrderResponse):
         at = 0 if history.speed is None else int(np.abs(source.speed - history.speed).argmin())
         if history.speed is not None and abs(source.speed[at] - history.speed) > 1e-9 * history.speed:
-            known = ", ".join(show_speed(float(one), source.unit) for one in source.speed[:8])
+            known = ", ".join(source.words.speed(float(one)) for one in source.speed[:8])
             raise InputError(
                 "is no speed of the response", key="speed", value=history.speed, remedy=f"there are {known}"
             )
@@ -167,7 +166,7 @@ def of_response(
     """One period of the steady motion at speed number ``at``; without a period, so long a part of it that a longer one
     swings no farther."""
     said = tuple(one for one in response.findings if one.gravity < Gravity.NOTE)
-    spectrum, where = response.spectrum, show_speed(float(response.speed[at]), response.unit)
+    spectrum, where = response.spectrum, response.words.speed(float(response.speed[at]))
     channels = spectrum.channels.torque
     amplitude, mean = spectrum.amplitude[at][:, channels], spectrum.mean[at, channels]
     if not (np.all(np.isfinite(amplitude)) and np.all(np.isfinite(mean))):
