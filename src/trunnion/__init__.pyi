@@ -35,14 +35,18 @@ from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
+from trunnion.driveline import SlipClutch as SlipClutch
 from trunnion.driveline import SNCurve as SNCurve
 from trunnion.driveline import SpeedPassage as SpeedPassage
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
+from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
 from trunnion.driveline import TunedDamper as TunedDamper
+from trunnion.driveline import Tyre as Tyre
+from trunnion.driveline import Vehicle as Vehicle
 from trunnion.driveline import ViscousDamper as ViscousDamper
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump
@@ -105,6 +109,7 @@ from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
+from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity

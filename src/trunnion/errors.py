@@ -36,6 +36,9 @@ class InputError(TrunnionError, ValueError):
 
     ``problems`` are the single complaints: itself, or all of them where several were found at once
     (``together``), whose text then has a line each.
+
+    >>> print(InputError("must be positive", element="Shaft 1", key="stiffness", value=-1.0))
+    Shaft 1.stiffness = -1: must be positive
     """
 
     exit_code = 2
@@ -95,13 +98,24 @@ class InputError(TrunnionError, ValueError):
 
 
 class ComputationError(TrunnionError, RuntimeError):
-    """The input was fine and the computation still failed; says at which point and which knob to turn."""
+    """The input was fine and the computation still failed; says at which point and which knob to turn.
+
+    >>> ComputationError("did not settle; raise most_steps").exit_code
+    1
+    """
 
     exit_code = 1
 
 
 class InputRemark(UserWarning):
-    """The input is accepted, but a colleague would ask whether it is meant."""
+    """The input is accepted, but a colleague would ask whether it is meant.
+
+    >>> import warnings, trunnion as tn
+    >>> with warnings.catch_warnings(record=True) as remarks:
+    ...     _ = tn.Shaft(stiffness=1e4, damping=-1.0)
+    >>> print(remarks[0].message)
+    Shaft.damping = -1: is negative and feeds energy into the line; write it positive unless that is meant
+    """
 
 
 def short(text: str, limit: int = LONGEST) -> str:

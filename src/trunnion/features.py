@@ -53,7 +53,7 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     if TABLE[analysis]["dry friction"].treatment in (Treatment.REFUSED, Treatment.NOT_JUDGED):
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     if TABLE[analysis][DRAGGED].reason == SET_ASIDE:
-        own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(ring)) for ring in feature(DRAGGED).places(line))
+        own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(slip)) for slip in feature(DRAGGED).places(line))
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
@@ -65,9 +65,11 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
+_LIKE = {"rolling resistance": "load torque", "air drag": "quadratic load", "slip of a tyre": DRAGGED}
+"""Features that every analysis treats as another, whose equations they share."""
 SET_ASIDE = "the multiplier at 1 is set aside"
-DRAGGED_ALONG = "{} is dragged along by oil alone: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
-"""What is said of the ring of a damper without a spring by what judges disturbances."""
+DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
+"""What is said of a damper without a spring by what judges disturbances."""
 
 
 def _row(
@@ -89,6 +91,7 @@ def _row(
     for treatment, reasons in treated.items():
         for key, words in (reasons or {}).items():
             row[key] = Cell(treatment, *((words,) if isinstance(words, str) else words))
+    row |= {key: row[other] for key, other in _LIKE.items()}
     return {f.key: row[f.key] for f in FEATURES}
 
 
@@ -98,6 +101,8 @@ _EVEN = {
     "angle of an ideal joint": f"at any angle it passes rotation unchanged; {_PLANE}",
     "double Cardan joint": f"centred, it passes rotation unchanged; {_PLANE}",
 }
+_STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
+_NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -149,11 +154,11 @@ _UNPROVABLE = {
     **dict.fromkeys(
         (
             *(key for key in UNEVEN if key != "Hooke's joint"),
-            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "planetary set",
+            "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "ratio", "belt", "tyre", "planetary set",
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", SERIES,
+            "quadratic load", SERIES, "slip clutch",
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -172,6 +177,7 @@ _MODES_SAID: dict[str, Words] = {
 _MODES_INERT = {
     **_TORSION,
     **_EVEN,
+    **_STICKS,
     **_FORCING,
     "fork offset": _ALIGNED,
     "joint plane": _ALIGNED,
@@ -187,9 +193,10 @@ _ONE_DRIVE = {
     **_TREES,
     "prescribed far end": "the nonlinear equations have one prescribed speed",
 }
-_ANYWHERE = {DRAGGED: "its ring may stand anywhere, so that no periodic motion is the only one"}
+_ANYWHERE = {DRAGGED: "what it drags may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NOT_SLIPPED,
     **_NOT_FOLLOWED,
     **_ANYWHERE,
     "free start": "the speed follows from the torques",
@@ -201,6 +208,7 @@ _PASSING = {
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
     **dict.fromkeys(
@@ -212,9 +220,9 @@ _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no pha
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "angle of an ideal joint",
+        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "tyre", "vehicle", "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
-        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION,
+        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
         "excitation that varies with speed or load", "cylinders", "excitation in time",
         "excitation by order and frequency", "excitation of a prescribed disk",
@@ -245,8 +253,10 @@ ROWS: dict[str, Row] = {
             **dict.fromkeys(_DAMPINGS, _UNDAMPED),
         },
     ),
-    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert=_PASSIVE, set_aside=(DRAGGED,)),
-    "multipliers": _row(refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_FORCING}, set_aside=(DRAGGED,)),
+    "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
+    "multipliers": _row(
+        refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING}, set_aside=(DRAGGED,)
+    ),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
         refused=_DRY_FRICTION,
@@ -254,6 +264,7 @@ ROWS: dict[str, Row] = {
         inert={
             **_TORSION,
             **_EVEN,
+            **_STICKS,
             **{key: _MODES_INERT[key] for key in ("fork offset", "joint plane", "drive share", "backlash")},
             "load torque": _MODES_INERT["load torque"],
         },
@@ -267,7 +278,7 @@ ROWS: dict[str, Row] = {
         },
         inert=_EVEN,
     ),
-    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert=_PASSIVE),
+    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
     "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
@@ -297,14 +308,16 @@ ROWS: dict[str, Row] = {
                 "a turn has the springs of a clutch alone; its sliders hold it within a band of twist",
             ),
         },
-        inert={**_TORSION, "free start": "the first element is driven at the speed asked for"},
+        inert={**_TORSION, **_STICKS, "free start": "the first element is driven at the speed asked for"},
     ),
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
-    "passage": _row(refused={**_PASSING, **_SLOWEST}, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
-    "branch": _row(refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE),
+    "branch": _row(
+        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
+    ),
     "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
 }
@@ -317,6 +330,7 @@ NOT_ANALYSES = {
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",
+    "submission": "shows the analyses above as a document to sign",
     "sketch": "draws the description",
     "sweep_speeds": "a grid of speeds for speed_sweep",
     "exact_oscillator": "one spring with stages between two inertias as one equation; refuses every other line",

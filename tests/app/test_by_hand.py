@@ -37,7 +37,7 @@ LONGER = {
 }
 """The other views, and the other questions of a view."""
 CASES = [
-    pytest.param(view, settings, id=view, marks=() if view in ("driveline", "verdict") else pytest.mark.slow)
+    pytest.param(view, settings, id=view, marks=() if view == "verdict" else pytest.mark.slow)
     for view, settings in QUICK.items()
 ]
 CASES += [pytest.param(*case, id=name, marks=pytest.mark.slow) for name, case in LONGER.items()]

@@ -33,6 +33,7 @@ EXPECTED = {
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
     "damper-heat": ALWAYS,
+    "slip-clutch": ALWAYS,
     "m68": ALWAYS,
     "spicer-angles": VEHICLES,
     "equal-angles": VEHICLES,
@@ -186,6 +187,9 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(
             [engine, shaft, tn.Disk(inertia=0.1), teeth, idle], limits=[*wide, tn.Limit(of="gears", max_torque=1e6)]
+        ),
+        "slip-clutch": tn.Driveline(
+            [engine, shaft, tn.Disk(inertia=0.1), tn.SlipClutch(name="clutch", torque=205.0), load], limits=wide
         ),
         "stability": tn.Driveline(fed, limits=wide),
     }

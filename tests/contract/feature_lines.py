@@ -151,19 +151,30 @@ def free(line: tn.Driveline) -> tn.Driveline:
     return swap(line, "drive", tn.Disk(inertia=0.3, drive_share=1.0, name="engine"))
 
 
-def branched(line: tn.Driveline) -> tn.Driveline:
-    """A pump beside the hub; the last element stays the last."""
-    place = line.index("hub") + 1
-    side = (tn.Shaft(stiffness=1e4, damping=5, name="side"), tn.Disk(inertia=0.05, name="pump"))
-    onward = line.elements[place]
-    return tn.Driveline(
-        [
-            *line.elements[:place],
-            *side,
-            type(onward)(**{**onward.stated, "after": "hub"}),
-            *line.elements[place + 1 :],
-        ]
-    )
+def beside_the_hub(*side: object) -> Change:
+    """A branch at the hub; the last element stays the last."""
+
+    def change(line: tn.Driveline) -> tn.Driveline:
+        place = line.index("hub") + 1
+        onward = line.elements[place]
+        onward = type(onward)(**{**onward.stated, "after": "hub"})
+        return line.but(elements=[*line.elements[:place], *side, onward, *line.elements[place + 1 :]])
+
+    return change
+
+
+branched = beside_the_hub(tn.Shaft(stiffness=1e4, damping=5, name="side"), tn.Disk(inertia=0.05, name="pump"))
+SIDE = tn.Shaft(stiffness=1e4, damping=5, name="side")
+TYRE = tn.Tyre(stiffness=1e4, damping=5, name="tyre")
+SLIP = TYRE.but(slip_stiffness=4e3, radius=0.1, travel_speed=8.0, inertia=0.01)
+
+
+def rolling(tyre: object = SIDE, **vehicle: float) -> Change:
+    """A vehicle beside the hub."""
+    return beside_the_hub(tyre, tn.Vehicle(**{"mass": 8.0, "wheel_radius": 0.1, "name": "car"} | vehicle))
+
+
+HEAVY = {"mass": 200.0, "wheel_radius": 0.02}
 
 
 def clutch(rubs: bool = False, **more: float) -> Change:
@@ -171,6 +182,11 @@ def clutch(rubs: bool = False, **more: float) -> Change:
     if not rubs:
         return front(tn.PiecewiseShaft(**stages))
     return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}], **more))
+
+
+def clutched(**more: float) -> Change:
+    """A slip clutch behind the hub."""
+    return behind("hub", tn.SlipClutch(name="slips", **more), tn.Disk(inertia=0.05, name="plate"))
 
 
 def rippled() -> Change:
@@ -246,6 +262,11 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "belt": (
         same, behind("hub", tn.Belt(radius_in=0.06, radius_out=0.12, span_stiffness=1e6, damping=2.0, inertia_out=0.02))
     ),
+    "tyre": (same, rolling(TYRE)),
+    "slip of a tyre": (rolling(TYRE), rolling(SLIP)),
+    "vehicle": (same, rolling()),
+    "rolling resistance": (rolling(**HEAVY), rolling(**HEAVY, rolling_resistance=0.05, grade=2.0)),
+    "air drag": (rolling(), rolling(drag_area=8.0)),
     "planetary set": (same, behind("hub", planetary())),
     "shafts tied to two others": (unbent, tied),
     "closed loop": (unbent, looped),
@@ -262,6 +283,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "damping in contact only": (staged(), staged(damping_law="in contact")),
     "dry friction": (clutch(), clutch(True)),
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
+    "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),

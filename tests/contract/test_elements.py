@@ -28,7 +28,10 @@ from trunnion.driveline import (
     Ratio,
     RzeppaJoint,
     Shaft,
+    SlipClutch,
     TunedDamper,
+    Tyre,
+    Vehicle,
     ViscousDamper,
     deg,
     rpm,
@@ -72,6 +75,15 @@ COMPONENTS = [
     ),
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
+    SlipClutch(
+        torque="1200 N*m",
+        sliding_torque="900 N*m",
+        stribeck_speed="20 rpm",
+        clamping_times=["0 s", "300 ms"],
+        clamping_shares=[0.2, 1],
+    ),
+    Tyre(stiffness=15e3, damping=200, slip_stiffness="60 kN", radius=0.3, travel_speed="90 km/h", inertia=0.6),
+    Vehicle(mass="1.6 t", wheel_radius=0.31, wheel_inertia=1.8, rolling_resistance="1.2 %", grade=0.05, drag_area=0.65),
 ]
 WITH_STAGES = [
     RzeppaJoint(

@@ -6,16 +6,22 @@ import doctest
 import inspect
 import re
 import sys
+from typing import Any
 
 import pytest
 
 import trunnion
+from trunnion.driveline.elements import Element
 
 PUBLIC = sorted(trunnion.__all__)
 FUNCTIONS = [name for name in PUBLIC if inspect.isfunction(getattr(trunnion, name))]
-DESCRIBED = ("trunnion.motion.", "trunnion.steady.", "trunnion.systems.")
-"""Rooms in which every public function has both; one is added as its last function gets them."""
-IN_FULL = [name for name in FUNCTIONS if getattr(trunnion, name).__module__.startswith(DESCRIBED)]
+CLASSES = [name for name in PUBLIC if inspect.isclass(getattr(trunnion, name))]
+OF_EVERY_ELEMENT = set(Element.model_fields)
+"""What a class of element takes as all of them do, see ``Element``."""
+UNNAMED = (trunnion.ComputationError, trunnion.InputRemark, trunnion.Tolerance)
+"""They take a text, or any number of an element by its own name."""
+SLOW = ("reproduce",)
+"""Names whose examples take many seconds."""
 RUNNER = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE, verbose=False)
 FINDER = doctest.DocTestFinder(recurse=False)
 
@@ -27,6 +33,15 @@ def examples(name: str) -> list[doctest.DocTest]:
     return [one for one in FINDER.find(public, name, globs=names) if one.examples]
 
 
+def taken(name: str) -> set[str]:
+    """What a function takes, or a class to be made."""
+    public = getattr(trunnion, name)
+    if public in UNNAMED:
+        return described(name)
+    parameters = set(inspect.signature(public).parameters)
+    return parameters - OF_EVERY_ELEMENT if inspect.isclass(public) and issubclass(public, Element) else parameters
+
+
 def described(name: str) -> set[str]:
     """The parameters that stand before a colon under "Parameters"."""
     text = inspect.getdoc(getattr(trunnion, name)) or ""
@@ -35,22 +50,26 @@ def described(name: str) -> set[str]:
     return {one.lstrip("*") for head in heads for one in head.split(", ")}
 
 
-@pytest.mark.parametrize("name", [name for name in PUBLIC if examples(name)])
+def with_slow(names: list[str]) -> list[Any]:
+    """``names`` as parameters, those marked whose examples take long."""
+    return [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in names]
+
+
+@pytest.mark.parametrize("name", with_slow([name for name in PUBLIC if examples(name)]))
 def test_examples_run(name: str) -> None:
     """Every line gives what stands below it."""
-    told: list[str] = []
+    failures: list[str] = []
     for one in examples(name):
-        RUNNER.run(one, out=told.append)
-    assert not told, "".join(told)
+        RUNNER.run(one, out=failures.append)
+    assert not failures, "".join(failures)
 
 
-@pytest.mark.parametrize("name", IN_FULL)
-def test_public_functions_have_an_example(name: str) -> None:
+def test_public_names_have_an_example() -> None:
     """A reader sees a call and what it gives."""
-    assert examples(name)
+    assert [name for name in FUNCTIONS + CLASSES if not examples(name)] == []
 
 
-@pytest.mark.parametrize("name", IN_FULL)
-def test_public_functions_describe_what_they_take(name: str) -> None:
-    """Each parameter once, and none that is not there."""
-    assert described(name) == set(inspect.signature(getattr(trunnion, name)).parameters)
+def test_public_names_describe_what_they_take() -> None:
+    """Every parameter, and none that is not there."""
+    wrong = {name: described(name) ^ taken(name) for name in FUNCTIONS + CLASSES}
+    assert {name: parameters for name, parameters in wrong.items() if parameters} == {}

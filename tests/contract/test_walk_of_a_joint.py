@@ -61,5 +61,5 @@ def test_a_joint_changes_at_most_five_files(tmp_path) -> None:
     walk.put("CHANGELOG.md", "\n- `Wobble`.\n", after="### Added\n")
     walk.print_features()
     walk.check(RIGHT)
-    walk.test("Wobble or wobble or page or field", "joints", "features", "source", "imports")
+    walk.test("Wobble or wobble or page or field or public", "joints", "features", "source", "imports", "examples")
     assert len(walk.changed()) <= 5, walk.changed()

@@ -67,8 +67,8 @@ def test_an_analysis_changes_at_most_eight_files(tmp_path) -> None:
     walk.print_features()
     walk.check(RIGHT)
     walk.test(
-        f"{NAME} or EnergyShares or energy-share or page or row or asked or drawings or glossary",
+        f"{NAME} or EnergyShares or energy-share or page or row or asked or drawings or glossary or public",
         *("registry", "results", "signatures", "features", "speeds_in_text_and_pictures", "imports", "source", "help"),
-        "names",
+        *("names", "examples"),
     )
     assert len(walk.changed()) <= 8, walk.changed()

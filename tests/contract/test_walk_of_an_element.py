@@ -65,5 +65,7 @@ def test_an_element_is_in_every_analysis(tmp_path) -> None:
     walk.put("tests/contract/test_bad_input.py", REFUSED, after="PYTHON = [\n")
     walk.put("CHANGELOG.md", "\n- `TorsionSpring`.\n", after="### Added\n")
     walk.check(RIGHT)
-    walk.test("TorsionSpring or field or page or torsion", "bad_input", "features", "source", "imports")
+    walk.test(
+        "TorsionSpring or field or page or torsion or public", "bad_input", "features", "source", "imports", "examples"
+    )
     assert "docs/features.md" not in walk.changed()

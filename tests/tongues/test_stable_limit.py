@@ -110,6 +110,7 @@ def test_undamped_lines_are_marginal_below_the_limit() -> None:
         assert tn.stability(line(value + 1e-4), speed).verdict is Verdict.UNSTABLE
 
 
+@pytest.mark.slow
 def test_three_shafts() -> None:
     def line(angle: float) -> tn.Driveline:
         names = {n: {"angle": angle} for n, e in zip(base.names, base.elements, strict=True) if e.kind == "HookeJoint"}
@@ -124,6 +125,7 @@ def test_three_shafts() -> None:
             assert tn.stability(line(value + 1e-5), speed).verdict is Verdict.UNSTABLE
 
 
+@pytest.mark.slow
 def test_a_chart_gives_the_same() -> None:
     """Its patches turned about, whether they were few or many."""
     speeds = np.array([0.35, 0.62, 1.12, 1.6])

@@ -79,7 +79,8 @@ def check(seed: int) -> tuple[int, int, int]:
     return len(found.windows), len(known), sum(e is not None for e, _ in ends) - len(known)
 
 
-@pytest.mark.parametrize("seed", [1, 4, 6, 7, 217])  # of the last, two rows differ by rounding
+# of seed 217, two rows differ by rounding
+@pytest.mark.parametrize("seed", [1, 4, 6, 7, pytest.param(217, marks=pytest.mark.slow)])
 def test_random_windows_hold(seed: int) -> None:
     check(seed)
 
@@ -114,7 +115,8 @@ def check_tips(seed: int) -> int:
     return len(closed)
 
 
-@pytest.mark.parametrize("seed", [1, 9, 641])  # in the last the highest point is a narrow cusp
+# of seed 641, the highest point is a narrow cusp
+@pytest.mark.parametrize("seed", [1, 9, pytest.param(641, marks=pytest.mark.slow)])
 def test_random_tips_hold(seed: int) -> None:
     check_tips(seed)
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from trunnion.reporting.overview import Overview
     from trunnion.reporting.overview_assessment import OverviewAssessment
     from trunnion.reporting.report import Report
+    from trunnion.reporting.submission import Submission
 
 
 DRAWN = 3.0
@@ -57,6 +58,13 @@ def analyze(
             "takes, then 10 s of processor time.",
         ),
     ] = None,
+    handed_in: Annotated[
+        bool,
+        typer.Option(
+            "--submission",
+            help="Instead of the report with charts: the report that is handed in and signed, NAME-submission.html.",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
@@ -84,6 +92,15 @@ def analyze(
         given = answer_of(verdict)
     if not as_json:
         print_findings(given)
+    if handed_in:
+        left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
+        handed, written = _submitted(given, file, to, left)
+        if as_json:
+            output.write_json("analyze", overview_json(at_speed(given), written))
+            return
+        _print_left_out(handed.contents.left_out)
+        output.written(written)
+        return
     left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
     with output.stoppable(left, of_processor=seconds is None) as limit:
         if left < DRAWN:
@@ -95,11 +112,15 @@ def analyze(
         output.write_json("analyze", overview_json(seen, written))
         return
     print_overview(seen, given)
-    if left_out:
-        output.heading("Left out of the report")
-    for sentence in left_out:
-        output.say(f"  {sentence}")
+    _print_left_out(left_out)
     output.written(written)
+
+
+def _print_left_out(sentences: tuple[str, ...]) -> None:
+    if sentences:
+        output.heading("Left out of the report")
+    for sentence in sentences:
+        output.say(f"  {sentence}")
 
 
 def _reported(
@@ -126,6 +147,22 @@ def _reported(
     except KeyboardInterrupt:
         kept = f"the report without its chart is in {', '.join(map(str, written))}"
         raise KeyboardInterrupt(kept) from None
+
+
+def _submitted(given: OverviewAssessment, file: str, to: Path, left: float | None) -> tuple[Submission, list[Path]]:
+    """The report that is handed in, and where it is written."""
+    from trunnion.cli.files import REPORTS
+    from trunnion.reporting.submission import submission
+    from trunnion.writing import folder_written_whole
+
+    with output.stoppable(left), output.progress("report to hand in") as advance:
+        page = submission(given, source=file, progress=advance)
+    with to_the_end():
+        if to.suffix.lower() in REPORTS:
+            return page, [page.save(to)]
+        with folder_written_whole(to) as temporary:
+            name = page.save(temporary / f"{Path(file).stem}-submission.html").name
+        return page, [to / name]
 
 
 def _written(page: Report, to: Path, file: str) -> list[Path]:

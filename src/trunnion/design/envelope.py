@@ -124,10 +124,21 @@ def envelope(
     parameter, low, high : also asks for the largest stable value of a parameter (as of ``stable_limit``) at every place
         and under every load case, over the range of speeds.
     unit : of speeds in sentences; default the one of the description.
+    progress : called as progress(share done).
 
     Raises
     ------
     InputError : as ``assess``; a number of points below 2; a line at a point of a schedule that is refused.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> bends = tn.Schedule(name="suspension", travel=["0 mm", "80 mm"], angles={"HookeJoint 1": ["2 deg", "6 deg"]})
+    >>> running, shaft = tn.Operation(speed_range=(50.0, 70.0), schedules=[bends]), tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> parts = [tn.ConstantSpeed(), tn.HookeJoint(angle="2 deg"), shaft, tn.Disk(inertia=0.8)]
+    >>> tn.envelope(tn.Driveline(parts, operation=running), points=2)
+    <Envelope: envelope from 477.465 rpm to 668.451 rpm: not judged over 3 places: torque without limit could not be
+      judged>
     """
     points = whole_number(points, "points", 2)
     report_progress = progress or (lambda share: None)

@@ -24,10 +24,13 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
@@ -56,15 +59,19 @@ __all__ = [
     "Shaft",
     "StiffnessVariation",
     "SwitchedOff",
+    "TitleBlock",
     "Tolerance",
     "TransmissionError",
     "Belt",
     "Clutch",
     "Slider",
+    "SlipClutch",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",
     "TunedDamper",
+    "Tyre",
+    "Vehicle",
     "ViscousDamper",
     "deg",
     "dump",

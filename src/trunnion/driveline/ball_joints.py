@@ -30,6 +30,9 @@ class Ripple(Record):
     amplitude : A [rad] at the joint's ``reference_angle``, or at any angle where it has none.
     phase : [rad].
     growth : power of tan β with which A grows from none at β = 0; with a reference_angle only.
+
+    >>> Ripple(order=6, amplitude="0.01 deg").order
+    6.0
     """
 
     what: ClassVar[str] = "ripple"
@@ -62,6 +65,9 @@ class RzeppaJoint(Joint):
     ripple : its harmonics, see ``Ripple``.
     reference_angle : bend angle [rad] at which their amplitudes hold; at another angle they are larger or smaller by
         (tan β/tan β_ref)^growth. Without it they are the same at any angle.
+
+    >>> RzeppaJoint(angle="8 deg", ripple=[{"order": 6, "amplitude": "0.01 deg"}]).orders
+    (6,)
     """
 
     example: ClassVar[str] = 'angle = "8 deg" and ripple = [{ order = 6, amplitude = "0.01 deg" }]'

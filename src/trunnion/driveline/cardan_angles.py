@@ -47,6 +47,14 @@ def cardan_line(
     start : φ⁰ of joint 1, the angle of its input fork from its plane at input angle 0.
     stiffness : c_ij of the shafts between the joints [N m/rad], one for each or one for all.
     load_torque : at the output [N m].
+    name : of the line; none by default.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.cardan_line(["10 deg", "10 deg"], nu=["90 deg"], beta=["0 deg"])
+    >>> line.names[2:5], round(line.elements[4].angle, 4)
+    (('HookeJoint 1', 'intermediate shaft 1', 'HookeJoint 2'), 0.1745)
     """
     n = len(_numbers(alpha, "alpha"))
     if not n:

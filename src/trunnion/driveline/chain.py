@@ -65,6 +65,10 @@ class ElementChain(Record):
                 "is not an element of this driveline", key=str(name), remedy=nearest(str(name), self.names)
             ) from None
 
+    def spring_name(self, elements: Iterable[int], number: int = 0) -> str:
+        """Name of the spring, of one element its ``number``, or of several in series."""
+        return " + ".join(f"{self.elements[i].springs[number]} {self.names[i]}".lstrip() for i in elements)
+
     @cached_property
     def parts(self) -> tuple[tuple[str, Element], ...]:
         """Name and element, in order."""

@@ -37,6 +37,9 @@ class Slider(Record):
     ----------
     torque : T that the slider holds [N m].
     stiffness : k of its spring [N m/rad].
+
+    >>> Slider(torque="6 N*m", stiffness=4000.0).torque
+    6.0
     """
 
     what: ClassVar[str] = "friction"

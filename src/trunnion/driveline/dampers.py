@@ -62,6 +62,9 @@ class ViscousDamper(Damper):
     inertia, ring_inertia, heat_rating : as of a ``Damper``.
     damping : c of the oil [N m s/rad]; ``trunnion.damper_optimum`` finds the best for one mode.
     stiffness : k′ of the oil [N m/rad] at the frequency that matters; none by default.
+
+    >>> ViscousDamper(ring_inertia=0.12, damping="45 N*m*s/rad").dragged
+    True
     """
 
     example: ClassVar[str] = 'ring_inertia = "0.12 kg*m^2" and damping = "45 N*m*s/rad"'
@@ -94,6 +97,9 @@ class TunedDamper(Damper):
     inertia, ring_inertia, heat_rating : as of a ``Damper``.
     stiffness : between housing and ring [N m/rad].
     damping : [N m s/rad]; ``trunnion.damper_optimum`` finds both for one mode.
+
+    >>> TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2.0).torsional_stiffness
+    1500.0
     """
 
     example: ClassVar[str] = 'ring_inertia = "0.02 kg*m^2", stiffness = "1.5 kN*m/rad" and damping = "2 N*m*s/rad"'

@@ -25,6 +25,9 @@ class Differential(Element):
     ratio : final drive in front of the case, input speed over that of the case; 1 by default, negative reverses.
     teeth_in, teeth_out : tooth numbers of the final drive instead.
     inertia : of the case with the crown wheel [kg m²].
+
+    >>> Differential(teeth_in=10, teeth_out=41).speed_ratio
+    4.1
     """
 
     example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"

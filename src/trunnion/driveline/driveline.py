@@ -11,7 +11,7 @@ from pydantic import field_validator, model_validator
 
 from trunnion.driveline.addressed import wrong_addresses
 from trunnion.driveline.chain import ElementChain, checked, wrong_places
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of
@@ -22,7 +22,9 @@ from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.sn_curves import SNCurve, SNCurves, curves_of
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
+from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError, InputRemark
 
 
@@ -39,11 +41,17 @@ class Driveline(ElementChain):
     limits : what its parts may bear, for ``assess``.
     sn_curves : how many cycles they bear, for ``fatigue`` and ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
+    document : title block of the report that is handed in.
 
     Raises
     ------
     InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits or tolerances of
         elements that cannot have them.
+
+    >>> import trunnion as tn
+    >>> line = Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness="10 kN*m/rad"), tn.Disk(inertia=0.8)])
+    >>> line.names
+    ('ConstantSpeed 1', 'Shaft 1', 'Disk 1')
     """
 
     what: ClassVar[str] = "driveline"
@@ -52,6 +60,7 @@ class Driveline(ElementChain):
     limits: Limits = ()
     sn_curves: SNCurves = ()
     tolerances: Tolerances = ()
+    document: TitleBlock | None = None
 
     def __init__(
         self,
@@ -65,6 +74,7 @@ class Driveline(ElementChain):
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
         sn_curves: Iterable[SNCurve] = (),
+        document: TitleBlock | None = None,
     ) -> None:
         data: dict[str, Any] = {
             "elements": checked(elements),
@@ -76,6 +86,7 @@ class Driveline(ElementChain):
             "limits": limits,
             "tolerances": tolerances,
             "sn_curves": sn_curves,
+            "document": document,
         }
         super().__init__(**data)
         if self.damping_ratio is not None and self.damping_ratio < 0:
@@ -91,9 +102,17 @@ class Driveline(ElementChain):
             raise InputError("is not an Operation", remedy='write tn.Operation(speed="1500 rpm"), say')
         return value
 
+    @field_validator("document", mode="before")
+    @classmethod
+    def _is_document(cls, value: object) -> object:
+        if value is not None and not isinstance(value, TitleBlock):
+            raise InputError("is not a TitleBlock", remedy='write tn.TitleBlock(number="TV-2031", revision="B"), say')
+        return value
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
+        wrong += _wrong_wheels(self)
         wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.sn_curves, *self.tolerances), self.parts)]
         if wrong:
             raise InputError.together(wrong)
@@ -177,8 +196,25 @@ def _wrong_damping(line: Driveline) -> Iterator[InputError]:
             )
 
 
+def _wrong_wheels(line: Driveline) -> Iterator[InputError]:
+    """A tyre leads to a vehicle, and a vehicle stands on something."""
+    for i, (name, element) in enumerate(line.parts):
+        if isinstance(element, Vehicle) and not i:
+            yield InputError("has no wheels", element=name, remedy="put it behind a Tyre, or a Shaft to its wheels")
+        if not isinstance(element, Tyre):
+            continue
+        if element.to is not None:
+            if not isinstance(line.elements[line.index(element.to)], Vehicle):
+                remedy = "name a Vehicle; what joins two disks is a Shaft"
+                yield InputError("is no Vehicle", element=name, key="to", value=element.to, remedy=remedy)
+        elif not any(isinstance(line.elements[k], Vehicle) for k, p in enumerate(line.parents) if p == i):
+            vehicles = [n for n, e in line.parts if isinstance(e, Vehicle)]
+            remedy = f'write to = "{vehicles[0]}"' if vehicles else "put a Vehicle behind it"
+            yield InputError("carries no vehicle", element=name, remedy=remedy)
+
+
 def _wrong_loads(line: Driveline) -> Iterator[InputError]:
-    disks = [n for n, e in line.parts if isinstance(e, Disk)]
+    disks = [n for n, e in line.parts if isinstance(e, Loaded)]
     for case in line.operation.load_cases if line.operation else ():
         for name, torque in case.loads.items():
             if name not in disks:
@@ -211,7 +247,7 @@ def _wrong_drives(line: Driveline) -> Iterator[InputError]:
     if not any(isinstance(element, ConstantSpeed) for element in line.elements):
         return
     for name, element in line.parts:
-        if isinstance(element, Disk) and element.drive_share:
+        if isinstance(element, Loaded) and element.drive_share:
             yield InputError(
                 "shares the drive of a line that a ConstantSpeed drives",
                 element=name,

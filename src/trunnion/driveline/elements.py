@@ -81,6 +81,8 @@ class Element(Record):
         """The class name: what ``type`` says in a file."""
         return type(self).__name__
 
+    springs: ClassVar[tuple[str, ...]] = ("",)
+    """What stands before its name in those of the springs and dampers among its parts, in order."""
     ratings: ClassVar[tuple[str, ...]] = ()
     """Numbers of its maker that move nothing and that checks compare with."""
     onward: ClassVar[int] = -1
@@ -117,6 +119,9 @@ class ConstantSpeed(Element):
     """A prescribed rotation: the drive, and at the far end of a line a clamp that turns with it.
 
     The speed itself belongs to the analysis (or to the file's ``[operation]``), not to the driveline.
+
+    >>> ConstantSpeed(name="engine").kind
+    'ConstantSpeed'
     """
 
     def parts(self) -> tuple[Part, ...]:
@@ -124,31 +129,61 @@ class ConstantSpeed(Element):
         return (Prescribed(),)
 
 
-_ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
-
-
-class Disk(Element):
-    """A rigid inertia: flywheel, flange, gear, roll, wheel.
+class Loaded(Element):
+    """What is heavy and carries outer torques: a disk, a vehicle.
 
     Parameters
     ----------
-    inertia : polar moment of inertia [kg m²]; or else the geometry.
-    outer_diameter, inner_diameter, thickness : [m]; inner_diameter = 0 has no bore.
-    material, density : its material by name, or ρ [kg/m³].
-    mass, radius : or else a mass [kg] that a wheel of that rolling radius [m] moves, a vehicle: J = m r².
     load_torque : outer torque [N m]; positive resists rotation.
     viscous_load, quadratic_load : outer torques proportional to the speed [N m s/rad] and to its square
         [N m s²/rad²]; positive resists rotation.
-    drive_share : in a free–free line (no ConstantSpeed), the disk's share of the power that balances the
-        loads at the mean speed asked for; shares count relative to each other, so one drive has any positive one.
-    excitation : harmonic torques on the disk, see ``Excitation``; in a file also the name of a CSV table beside it.
-    firing_angles : where the disk carries cylinders: ``excitation`` is that of one of them, and each adds it at its
-        own angle [rad], over 720° for four strokes; order k has the phase −k α_c.
-    misfiring : number of one of these cylinders, from 1, that does not fire: it adds only what grows with the square
-        of the speed, the inertia torque of its masses.
+    drive_share : in a free–free line (no ConstantSpeed), its share of the power that balances the loads at the mean
+        speed asked for; shares count relative to each other, so one drive has any positive one.
+    excitation : harmonic torques on it, see ``Excitation``; in a file also the name of a CSV table beside it.
     """
 
-    example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
+    load_torque: Torque = optional(default=0.0, description="outer torque; positive resists rotation")
+    viscous_load: Damping = optional(default=0.0, description="outer torque per speed; positive resists rotation")
+    quadratic_load: QuadraticLoad = optional(
+        default=0.0, description="outer torque per square of the speed; positive resists rotation"
+    )
+    drive_share: Dimensionless = optional(
+        default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
+    )
+    excitation: Excitations = optional(default=(), description="harmonic torques, in time or in the disk's rotation")
+
+    def parts(self) -> tuple[Part, ...]:
+        """An inertia on which outer torques act."""
+        return (Heavy(loaded=True),)
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment [kg m²], as stated or as it follows."""
+        return self.inertia_values[0]
+
+    def resistance(self, number: Numbers) -> tuple[Any, Any]:
+        """What resists beside the loads that are stated, for the values of its numbers, one or many: a torque [N m],
+        and one per square of the speed [N m s²/rad²]."""
+        return 0.0, 0.0
+
+    @property
+    def resists(self) -> bool:
+        """Whether there is any."""
+        return False
+
+    @property
+    def loads(self) -> tuple[float, float, float]:
+        """All that acts on it as described: constant [N m], by its speed [N m s/rad] and by the square of its speed
+        [N m s²/rad²]."""
+        constant, quadratic = self.resistance(lambda key: getattr(self, key))
+        return self.load_torque + constant, self.viscous_load, self.quadratic_load + quadratic
+
+
+_ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')
+
+
+class DiskInertia(Element):
+    """What a disk weighs: its fields stand before those of what acts on it."""
 
     inertia: Maybe[Inertia] = optional(default=None, description="polar moment of inertia; or give the geometry")
     outer_diameter: Maybe[Length] = optional(default=None, description="of the disk")
@@ -160,15 +195,30 @@ class Disk(Element):
     density: Maybe[Density] = optional(default=None, description="of its material; steel 7850 kg/m^3")
     mass: Maybe[Mass] = optional(default=None, description="of a vehicle on wheels, instead of an inertia")
     radius: Maybe[Length] = optional(default=None, description="rolling radius of the wheels that move the mass")
-    load_torque: Torque = optional(default=0.0, description="outer torque; positive resists rotation")
-    viscous_load: Damping = optional(default=0.0, description="outer torque per speed; positive resists rotation")
-    quadratic_load: QuadraticLoad = optional(
-        default=0.0, description="outer torque per square of the speed; positive resists rotation"
-    )
-    drive_share: Dimensionless = optional(
-        default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
-    )
-    excitation: Excitations = optional(default=(), description="harmonic torques, in time or in the disk's rotation")
+
+
+class Disk(Loaded, DiskInertia):
+    """A rigid inertia: flywheel, flange, gear, roll, wheel.
+
+    Parameters
+    ----------
+    inertia : polar moment of inertia [kg m²]; or else the geometry.
+    outer_diameter, inner_diameter, thickness : [m]; inner_diameter = 0 has no bore.
+    material, density : its material by name, or ρ [kg/m³].
+    mass, radius : or else a mass [kg] that a wheel of that rolling radius [m] moves, a vehicle: J = m r².
+    load_torque, viscous_load, quadratic_load, drive_share, excitation : what acts on it, see ``Loaded``.
+    firing_angles : where the disk carries cylinders: ``excitation`` is that of one of them, and each adds it at its
+        own angle [rad], over 720° for four strokes; order k has the phase −k α_c.
+    misfiring : number of one of these cylinders, from 1, that does not fire: it adds only what grows with the square
+        of the speed, the inertia torque of its masses.
+
+    >>> disk = Disk(outer_diameter="300 mm", thickness="30 mm", material="steel")
+    >>> round(disk.inertia_values[0], 4)
+    0.1873
+    """
+
+    example: ClassVar[str] = 'inertia = "0.4 kg*m^2"'
+
     firing_angles: Annotated[Several[Angle], BeforeValidator(_ANGLES)] = optional(
         default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
     )
@@ -212,10 +262,6 @@ class Disk(Element):
             remedy = "write orders; a torque fixed in time has no cylinders"
             raise InputError("repeat orders, not a frequency", key="firing_angles", remedy=remedy)
 
-    def parts(self) -> tuple[Part, ...]:
-        """An inertia on which outer torques act."""
-        return (Heavy(loaded=True),)
-
     def inertias(self, number: Numbers) -> tuple[Any, ...]:
         """As stated, or from the mass or the geometry."""
         if self.inertia is not None:
@@ -223,11 +269,6 @@ class Disk(Element):
         if self.mass is not None:
             return (number("mass") * number("radius") ** 2,)
         return (disk_inertia(*map(number, ("outer_diameter", "inner_diameter", "thickness", "density"))),)
-
-    @property
-    def moment_of_inertia(self) -> float:
-        """Polar moment [kg m²], as stated or from the geometry or the mass."""
-        return self.inertia_values[0]
 
 
 MOST_TEETH = 100_000
@@ -252,6 +293,9 @@ class Ratio(Element):
     ratio : input speed over output speed; negative reverses.
     teeth_in, teeth_out : tooth numbers instead; the ratio is teeth_out/teeth_in, exactly, and both shafts
         count their rotation positive in their own sense of turning.
+
+    >>> Ratio(teeth_in=11, teeth_out=43).speed_ratio
+    3.909090909090909
     """
 
     example: ClassVar[str] = "teeth_in = 10 and teeth_out = 41, or ratio = 4.1"

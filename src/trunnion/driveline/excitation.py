@@ -53,6 +53,10 @@ class Excitation(Record):
     torques : mean torque that the disk drives with [N m], rising.
     amplitudes : A at these points [N m].
     phases : at these points [rad], added to ``phase``; 0 by default.
+
+    >>> firing = Excitation(order=2, amplitude="60 N*m", phase="90 deg")
+    >>> round(firing.phase, 4)
+    1.5708
     """
 
     what: ClassVar[str] = "excitation"

@@ -42,10 +42,25 @@ _HEAD = re.compile(r"([A-Za-z_]+)(?:\s*[\[(]\s*([^\])]*?)\s*[\])])?")
 def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
     """Harmonic torques of a CSV file, one for each order.
 
+    Parameters
+    ----------
+    path : of the file; its columns are those of the module's first lines.
+
     Raises
     ------
     InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; an
         order with two rows for one speed.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     table = Path(folder, "orders.csv")
+    ...     _ = table.write_text("order,amplitude [N*m],phase [deg]\\n2,60,0\\n4,25,90")
+    ...     print([(one.order, one.amplitude) for one in tn.read_excitation(table)])
+    [(2.0, 60.0), (4.0, 25.0)]
     """
     place = Path(path)
     rows = _rows(place)

@@ -15,7 +15,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
@@ -24,8 +24,11 @@ from trunnion.driveline.limits import Limit
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.title_block import TitleBlock
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 Finder = Callable[[Driveline], list[str]]
 
@@ -60,7 +63,7 @@ def _where(kind: type[Element], key: str, test: Callable[[Any], object]) -> Find
 
 
 def _excited(test: Callable[[Excitation], object]) -> Finder:
-    return _where(Disk, "excitation", lambda disk: any(map(test, disk.excitation)))
+    return _where(Loaded, "excitation", lambda disk: any(map(test, disk.excitation)))
 
 
 def _dry_friction(at_one_motion: bool) -> Finder:
@@ -74,7 +77,8 @@ def _kind(kind: type[Element]) -> Finder:
 
 
 def _dragged(line: Driveline) -> list[str]:
-    return [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
+    rings = [f"ring of {name}" for name, element in line.parts if isinstance(element, Damper) and element.dragged]
+    return rings + [line.spring_name((i,), 1) for i, e in enumerate(line.elements) if isinstance(e, Tyre) and e.slips]
 
 
 def _branches(line: Driveline) -> list[str]:
@@ -117,6 +121,11 @@ def _of(name: str, *keys: str) -> tuple[str, ...]:
 def _of_springs(*keys: str) -> tuple[str, ...]:
     """Some fields of every kind of spring that has them."""
     return tuple(f"{name}.{key}" for name in SPRINGS for key in keys if key in KINDS[name].model_fields)
+
+
+def _of_loaded(key: str) -> tuple[str, ...]:
+    """A field of every kind of element that carries outer torques."""
+    return tuple(f"{name}.{key}" for name, kind in KINDS.items() if issubclass(kind, Loaded))
 
 
 FEATURES = (
@@ -174,6 +183,17 @@ FEATURES = (
         _of("Belt", "radius_in", "radius_out", "span_stiffness", "damping", "inertia_in", "inertia_out"),
         _kind(Belt),
     ),
+    Feature("tyre", _of("Tyre", "stiffness", "damping"), _kind(Tyre)),
+    Feature(
+        "slip of a tyre",
+        _of("Tyre", "slip_stiffness", "radius", "travel_speed", "inertia"),
+        _where(Tyre, "slip_stiffness", lambda tyre: tyre.slips),
+    ),
+    Feature("vehicle", _of("Vehicle", "mass", "wheel_radius", "wheel_inertia"), _kind(Vehicle)),
+    Feature("rolling resistance", _of("Vehicle", "rolling_resistance", "grade")),
+    Feature(
+        "air drag", _of("Vehicle", "drag_area", "air_density"), _where(Vehicle, "drag_area", lambda one: one.drag_area)
+    ),
     Feature(
         "planetary set",
         (
@@ -182,7 +202,7 @@ FEATURES = (
             "Planetary.teeth_planet",
         ),
     ),
-    Feature("closed loop", _of_springs("to")),
+    Feature("closed loop", (*_of_springs("to"), "Tyre.to")),
     Feature(
         "shafts tied to two others",
         (
@@ -228,17 +248,22 @@ FEATURES = (
         _dry_friction(False),
     ),
     Feature(
+        "slip clutch",
+        _of("SlipClutch", "torque", "sliding_torque", "stribeck_speed", "clamping_times", "clamping_shares"),
+        _kind(SlipClutch),
+    ),
+    Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
     ),
-    Feature("load torque", ("Disk.load_torque",)),
-    Feature("drive share", ("Disk.drive_share",)),
-    Feature("viscous load", ("Disk.viscous_load",)),
-    Feature("quadratic load", ("Disk.quadratic_load",)),
+    Feature("load torque", _of_loaded("load_torque")),
+    Feature("drive share", _of_loaded("drive_share")),
+    Feature("viscous load", _of_loaded("viscous_load")),
+    Feature("quadratic load", _of_loaded("quadratic_load")),
     Feature(
         "excitation by order",
-        ("Disk.excitation", "Excitation.order", "Excitation.amplitude"),
+        (*_of_loaded("excitation"), "Excitation.order", "Excitation.amplitude"),
         _excited(lambda one: not one.frequency),
     ),
     Feature(
@@ -275,9 +300,11 @@ NOT_FEATURES = {
     "Driveline.name": "a label",
     "Driveline.description": "a label",
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
+    "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.sn_curves": "how many cycles elements bear, which fatigue and assess go by",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     **dict.fromkeys((f"SNCurve.{key}" for key in SNCurve.model_fields), "an S–N curve, which fatigue goes by"),
     **dict.fromkeys(

@@ -43,6 +43,7 @@ from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.sn_curves import SNCurve
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.reading import below
@@ -74,6 +75,7 @@ TOP_KEYS = (
     "description",
     "damping_ratio",
     "damping_ratio_frequency",
+    "document",
     "operation",
     "limit",
     "sn_curve",
@@ -87,12 +89,24 @@ def load(path: str | os.PathLike[str], *, tables_anywhere: bool = False) -> Driv
 
     Parameters
     ----------
+    path : of the file.
     tables_anywhere : read tables of excitations wherever the file says they are; otherwise only below its own folder,
         so that the file of a stranger opens nothing else.
 
     Raises
     ------
     InputError : the file cannot be read, is not TOML or describes no driveline; names file and place.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = Path(folder, "line.toml")
+    ...     _ = path.write_text(tn.dumps(tn.catalogue("two-shaft-cardan")))
+    ...     print(tn.load(path).names[3])
+    HookeJoint 1
     """
     folder = Path(path).parent
 
@@ -103,7 +117,20 @@ def load(path: str | os.PathLike[str], *, tables_anywhere: bool = False) -> Driv
 
 
 def loads(text: str, *, source: str = "") -> Driveline:
-    """Read a driveline from TOML text; `source` is what messages call it."""
+    """Read a driveline from TOML text; `source` is what messages call it.
+
+    Parameters
+    ----------
+    text : TOML.
+    source : what messages call it; nothing by default.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> text = tn.dumps(tn.catalogue("two-shaft-cardan"))
+    >>> tn.loads(text, source="a driveline").names[3]
+    'HookeJoint 1'
+    """
     return _loads(text, source, None)
 
 
@@ -115,12 +142,32 @@ def _loads(text: str, source: str, place_of: Place | None) -> Driveline:
 
 
 def dumps(line: Driveline) -> str:
-    """`line` as TOML text that reads back as an equal driveline."""
+    """`line` as TOML text that reads back as an equal driveline.
+
+    Parameters
+    ----------
+    line : any driveline; quantities are written as they were given, or in SI units.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> print(tn.dumps(tn.Driveline([tn.ConstantSpeed(), tn.Disk(inertia="0.8 kg*m^2")])))
+    format = 1
+    <BLANKLINE>
+    [[element]]
+    type = "ConstantSpeed"
+    <BLANKLINE>
+    [[element]]
+    type = "Disk"
+    inertia = 0.8
+    """
     top: dict[str, Any] = {"format": FORMAT}
     for key in ("name", "description", *_DAMPING):
         if (value := getattr(line, key)) is not None:
             top[key] = _written(value, line.quantity_of(key))
     blocks = [_block("", top)]
+    if line.document is not None:
+        blocks.append(_block("[document]", _table(line.document)))
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
     blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
@@ -133,7 +180,23 @@ def dumps(line: Driveline) -> str:
 
 
 def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
-    """Write `line` to a TOML file; the file appears whole or stays as it was."""
+    """Write `line` to a TOML file; the file appears whole or stays as it was.
+
+    Parameters
+    ----------
+    line : any driveline; quantities are written with their units.
+    path : of the file; one that is there is replaced.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from tempfile import TemporaryDirectory
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness="10 kN*m/rad"), tn.Disk(inertia=0.8)])
+    >>> with TemporaryDirectory() as folder:
+    ...     tn.dump(line, f"{folder}/line.toml")
+    ...     print(tn.load(f"{folder}/line.toml") == line)
+    True
+    """
     if Path(path).is_dir():
         raise InputError("is a folder", key=str(path), remedy="name a file in it")
     try:
@@ -236,6 +299,8 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
 
     if "element" in table or not wrong:
         read("elements", table.get("element"), lambda value: _elements(value, source, place_of))
+    if "document" in table:
+        read("document", table["document"], _document)
     if "operation" in table:
         read("operation", table["operation"], _operation)
     if "limit" in table:
@@ -321,6 +386,12 @@ def _limit_elsewhere(error: InputError, name: str | None) -> InputError:
         return error
     of = f'of = "{name}" and ' if name else "of and "
     return error.but(remedy=f"limits stand in tables of their own: write [[limit]] with {of}{error.key}")
+
+
+def _document(table: Any) -> TitleBlock:
+    if not isinstance(table, dict):
+        raise InputError("is not a table", key="document", value=table, remedy="write [document] on its own line")
+    return TitleBlock(**table)
 
 
 def _operation(table: Any) -> Operation:

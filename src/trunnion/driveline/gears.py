@@ -59,6 +59,9 @@ class TransmissionError(_MeshHarmonic):
     amplitude : [m].
     order : cycles per tooth.
     phase : at zero rotation [rad].
+
+    >>> TransmissionError(amplitude="10 um", order=2).amplitude
+    1e-05
     """
 
     what: ClassVar[str] = "transmission_error"
@@ -74,6 +77,9 @@ class StiffnessVariation(_MeshHarmonic):
     share : amplitude over the mean stiffness.
     order : cycles per tooth.
     phase : at zero rotation [rad].
+
+    >>> StiffnessVariation(share=0.1).order
+    1.0
     """
 
     what: ClassVar[str] = "stiffness_variation"
@@ -109,6 +115,10 @@ class GearPair(Element):
 
     Linear analyses take the slope that the static load puts the mesh on, times its variation with the mesh phase; the
     transmission error is no part of them.
+
+    >>> pair = GearPair(teeth_in=25, teeth_out=40, module="3 mm", mesh_stiffness="2e8 N/m", backlash="0.1 mm")
+    >>> pair.speed_ratio, pair.total_backlash
+    (1.6, 0.0001)
     """
 
     example: ClassVar[str] = 'teeth_in = 25, teeth_out = 40, module = "3 mm" and mesh_stiffness = "2e8 N/m"'

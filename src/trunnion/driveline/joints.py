@@ -76,6 +76,9 @@ class HookeJoint(Joint):
     ----------
     angle : bend angle between its two shafts [rad], less than 90°.
     plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+
+    >>> HookeJoint(angle="12 deg").orders
+    (2,)
     """
 
     example: ClassVar[str] = 'angle = "12 deg"'
@@ -102,6 +105,9 @@ class IdealJoint(Joint):
     ----------
     angle : bend angle [rad]; for drawings, secondary couples and support forces.
     plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
+
+    >>> IdealJoint(angle="12 deg").orders
+    ()
     """
 
     angle: Angle = optional(default=0.0, description="bend angle, for drawings and secondary couples")
@@ -118,6 +124,9 @@ class TripodJoint(Joint):
     length : of the shaft that carries the spider, from the spider to the joint at its far end [m].
     plane : angle of its plane relative to the previous joint's [rad], positive in the sense of rotation.
     spider : the side the spider is on, "output" (the housing drives) or "input".
+
+    >>> TripodJoint(angle="6 deg", radius="20 mm", length="0.4 m").orders
+    (3,)
     """
 
     example: ClassVar[str] = 'angle = "8 deg", radius = "30 mm" and length = "0.5 m"'
@@ -159,6 +168,9 @@ class DoubleCardanJoint(Joint):
     distance_ratio : for a joint without centring device, distance of the first cross from the point where the
         two axes meet over that of the second; by default the joint is centred and both crosses bend equally.
     yoke_length : between the two crosses [m], for support forces.
+
+    >>> DoubleCardanJoint(angle="20 deg", distance_ratio=1.1).orders
+    (2,)
     """
 
     example: ClassVar[str] = 'angle = "20 deg"'

@@ -13,7 +13,9 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 KINDS: dict[str, type[Element]] = {
     kind.__name__: kind
@@ -23,6 +25,7 @@ KINDS: dict[str, type[Element]] = {
         Coupling,
         PiecewiseShaft,
         Clutch,
+        SlipClutch,
         DualMassFlywheel,
         Disk,
         ViscousDamper,
@@ -37,5 +40,7 @@ KINDS: dict[str, type[Element]] = {
         GearPair,
         Planetary,
         Differential,
+        Tyre,
+        Vehicle,
     )
 }

@@ -150,6 +150,16 @@ def layout(
     Raises
     ------
     InputError : coincident centres, a bend of 90° or more, an axis without direction or against the line.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> found = tn.layout([[0, 0, 0], [1, 0, -0.1]], input_axis=[1, 0, 0], output_axis=[1, 0, 0])
+    >>> print(found)
+    layout of 2 joints
+      joint 1: angle 5.7106 deg
+      joint 2: angle 5.7106 deg, plane 180.0000 deg from that of joint 1
+      shaft 2: 1.0050 m, homokinetic fork offset 0.0000 deg
     """
     centres = _centres(points)
     ends = [_direction(input_axis, "input_axis"), _direction(output_axis, "output_axis")]
@@ -242,6 +252,18 @@ def combined_angle(vertical: float | str, horizontal: float | str) -> tuple[floa
 
     tan β = √(tan²v + tan²h); the plane is measured from the vertical toward the horizontal, the same way for
     every joint of a line, so that a joint's ``plane`` is the difference from the joint before.
+
+    Parameters
+    ----------
+    vertical : angle v in side view [rad, or text with a unit].
+    horizontal : angle h in plan view [rad, or text with a unit].
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> angle, plane = tn.combined_angle("3 deg", "4 deg")
+    >>> round(angle, 5), round(plane, 5)
+    (0.08716, 0.92764)
     """
     sides = []
     for key, value in (("vertical", vertical), ("horizontal", horizontal)):

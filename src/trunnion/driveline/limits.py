@@ -40,6 +40,7 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.record import listed, one_of
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError
 
 SHIP_SHAFTS = {
@@ -55,7 +56,7 @@ SHIP_SHAFTS = {
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
 SPRING_KINDS: tuple[type[Element], ...] = (
-    Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt
+    Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt, Tyre
 )  # fmt: skip
 """Elements that carry a torque, meshes aside."""
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
@@ -64,8 +65,8 @@ _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "transient_vibratory_torque": (*SPRING_KINDS, GearPair),
     "max_stress": (Shaft,),
     "max_twist": SPRING_KINDS,
-    "max_speed_fluctuation": (Disk,),
-    "max_acceleration": (Disk,),
+    "max_speed_fluctuation": (Disk, Vehicle),
+    "max_acceleration": (Disk, Vehicle),
     "temperature_factor": (Coupling,),
     "starting_factor": (Coupling,),
     "ship_shaft": (Shaft,),
@@ -98,6 +99,9 @@ class Limit(Addressed):
     Raises
     ------
     InputError : nothing limited, or a number that is not positive.
+
+    >>> Limit(of="Shaft *", max_torque="2 kN*m", margin="10 %").max_torque
+    2000.0
     """
 
     what: ClassVar[str] = "limit"

@@ -16,12 +16,12 @@ from trunnion.driveline.quantities import (
     SPEED,
     TORQUE,
     Angle,
-    Duration,
     Maybe,
     MaybeRange,
     QuantityKind,
     Speed,
     TableList,
+    Time,
     Torque,
     json_schema_of,
     optional,
@@ -74,6 +74,9 @@ class LoadCase(Named):
     name : what it is called.
     loads : load torque [N m] by the name of the Disk it acts on; positive resists rotation. Disks that are
         not named keep their own.
+
+    >>> LoadCase(name="uphill", loads={"wheel": "400 N*m"}).loads["wheel"]
+    400.0
     """
 
     what: ClassVar[str] = "load case"
@@ -102,6 +105,10 @@ class Operation(Record):
     life : operating time [s] that the line is to last.
     duty : shares of that time at constant speeds, for ``fatigue``.
     passages : runs from one speed to another, so many an hour, for ``fatigue``.
+
+    >>> running = Operation(speed="1500 rpm", speed_range=("600 rpm", "2400 rpm"), speed_unit="rpm")
+    >>> round(running.speed, 2)
+    157.08
     """
 
     what: ClassVar[str] = "operation"
@@ -125,7 +132,7 @@ class Operation(Record):
     )
     load_cases: tuple[LoadCase, ...] = optional(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = optional(default=(), description="angles over travel and torques over speed")
-    life: Maybe[Duration] = optional(default=None, description="operating time that the line is to last")
+    life: Maybe[Time] = optional(default=None, description="operating time that the line is to last")
     duty: Duties = optional(default=(), description="shares of the operating time at constant speeds")
     passages: tuple[SpeedPassage, ...] = optional(
         default=(), description="runs from one speed to another, so many an hour"

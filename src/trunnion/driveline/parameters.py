@@ -42,7 +42,17 @@ from trunnion.errors import InputError, InputRemark
 
 @dataclass(frozen=True)
 class Term:
-    """``column(path) = offset + slope × value``."""
+    """``column(path) = offset + slope × value``.
+
+    Parameters
+    ----------
+    path : of the number (see the module's grammar).
+    slope : units of the number for one of the value.
+    offset : of the number, in its SI unit, at value 0.
+
+    >>> Term("Shaft 2.stiffness", slope=2.0)
+    Term(path='Shaft 2.stiffness', slope=2.0, offset=0.0)
+    """
 
     path: str
     slope: float = 1.0
@@ -55,6 +65,16 @@ class Parameter:
 
     Either ``path`` (see the module's grammar) or ``terms`` for a group that moves several numbers at once,
     e.g. a paper's nondimensional ratio.
+
+    Parameters
+    ----------
+    label : what results and axes call it.
+    unit : of a value of it.
+    terms : the numbers that it moves, one ``Term`` each.
+
+    >>> joints = (Term("HookeJoint 1.angle"), Term("HookeJoint 2.angle", offset=0.1))
+    >>> Parameter("bend angle", "rad", joints).label
+    'bend angle'
     """
 
     label: str
@@ -238,7 +258,22 @@ class PackedLine:
 
 
 def pack(line: Driveline, speed: float = float("nan")) -> PackedLine:
-    """List every number of ``line`` as a column; column 0 is ``speed`` [rad/s]."""
+    """List every number of ``line`` as a column; column 0 is ``speed`` [rad/s].
+
+    Parameters
+    ----------
+    line : whose numbers are listed.
+    speed : input speed [rad/s]; NaN, none, by default.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> packed = tn.pack(line, 30.0)
+    >>> packed.labels[:3], packed.values[:3], packed.value("Disk 1.inertia")
+    (('speed', 'HookeJoint 1.angle', 'HookeJoint 1.plane'), array([30. ,  0.1,  0. ]), 0.8)
+    """
     values, places = [speed], [(-1, SPEED)]
     for i, element in enumerate(line.elements):
         numbers = _numbers(element)

@@ -62,10 +62,11 @@ class Sprung:
 
 @dataclass(frozen=True)
 class Dragged:
-    """A new shaft that oil alone joins to coordinate ``to``: a damper without a spring, so that nothing holds its
-    rotation where it is."""
+    """A new shaft that a damper without a spring joins to coordinate ``to``, oil or the slip of a tyre, so that nothing
+    holds its rotation where it is; where it ``closes`` a loop, the shaft behind the element of that name."""
 
     to: int = 0
+    closes: str | None = None
 
 
 @dataclass(frozen=True)

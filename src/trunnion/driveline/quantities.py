@@ -83,9 +83,12 @@ LENGTH = QuantityKind("length", "m", "76 mm", (("m", 1.0, 1.0), ("mm", 1e-3, 0.0
 PRESSURE = QuantityKind("pressure", "Pa", "79.3 GPa", (("GPa", 1e9, 1e8), ("MPa", 1e6, 0.0)))
 DENSITY = QuantityKind("density", "kg/m^3", "7850 kg/m^3")
 MASS = QuantityKind("mass", "kg", "1800 kg", (("t", 1e3, 1e4), ("kg", 1.0, 0.0)))
+AREA = QuantityKind("area", "m^2", "0.65 m^2")
+FORCE = QuantityKind("force", "N", "60 kN", (("kN", 1e3, 1e4), ("N", 1.0, 0.0)))
+VELOCITY = QuantityKind("velocity", "m/s", "80 km/h", (("km/h", 1 / 3.6, 0.0),))
 POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
-TIME = QuantityKind("time", "s", "20000 h", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0)))
 ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
+TIME = QuantityKind("time", "s", "0.3 s", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0)))
 RATIO = QuantityKind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
@@ -103,6 +106,9 @@ KINDS = (
     PRESSURE,
     DENSITY,
     MASS,
+    AREA,
+    FORCE,
+    VELOCITY,
     POWER,
     ACCELERATION,
     TIME,
@@ -131,8 +137,11 @@ USUAL: dict[str, dict[str, float]] = {
     "Pa": {"Pa": 1.0, "MPa": 1e6, "GPa": 1e9},
     "kg/m^3": {"kg/m^3": 1.0},
     "kg": {"kg": 1.0, "t": 1e3},
+    "m^2": {"m^2": 1.0},
+    "N": {"N": 1.0, "kN": 1e3},
+    "m/s": {"m/s": 1.0, "km/h": 1000 / 3600},
     "W": {"W": 1.0, "kW": 1e3},
-    "s": {"s": 1.0, "min": 60.0, "h": 3600.0},
+    "s": {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     "1": {"percent": 0.01},
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
@@ -365,9 +374,12 @@ if TYPE_CHECKING:
     Pressure: TypeAlias = Stated[float, float | str]
     Density: TypeAlias = Stated[float, float | str]
     Mass: TypeAlias = Stated[float, float | str]
+    Area: TypeAlias = Stated[float, float | str]
+    Force: TypeAlias = Stated[float, float | str]
+    Velocity: TypeAlias = Stated[float, float | str]
     Power: TypeAlias = Stated[float, float | str]
     Acceleration: TypeAlias = Stated[float, float | str]
-    Duration: TypeAlias = Stated[float, float | str]
+    Time: TypeAlias = Stated[float, float | str]
     Dimensionless: TypeAlias = Stated[float, float | str]
 
     Of = TypeVar("Of")
@@ -400,9 +412,12 @@ else:
     Pressure = Annotated[float, Quantity(PRESSURE)]
     Density = Annotated[float, Quantity(DENSITY)]
     Mass = Annotated[float, Quantity(MASS)]
+    Area = Annotated[float, Quantity(AREA)]
+    Force = Annotated[float, Quantity(FORCE)]
+    Velocity = Annotated[float, Quantity(VELOCITY)]
     Power = Annotated[float, Quantity(POWER)]
     Acceleration = Annotated[float, Quantity(ACCELERATION)]
-    Duration = Annotated[float, Quantity(TIME)]
+    Time = Annotated[float, Quantity(TIME)]
     Dimensionless = Annotated[float, Quantity(RATIO)]
 
     class _Row:
@@ -416,15 +431,48 @@ else:
 
 
 def deg(angle: Number) -> Number:
-    """Degrees to radians; numbers or arrays."""
+    """Degrees to radians; numbers or arrays.
+
+    Parameters
+    ----------
+    angle : [°], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.deg(180.0), 5)
+    3.14159
+    """
     return angle * DEGREE
 
 
 def rpm(speed: Number) -> Number:
-    """Revolutions per minute to rad/s; numbers or arrays."""
+    """Revolutions per minute to rad/s; numbers or arrays.
+
+    Parameters
+    ----------
+    speed : [1/min], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.rpm(1500.0), 3)
+    157.08
+    """
     return speed * RPM
 
 
 def hz(frequency: Number) -> Number:
-    """Revolutions or cycles per second to rad/s; numbers or arrays."""
+    """Revolutions or cycles per second to rad/s; numbers or arrays.
+
+    Parameters
+    ----------
+    frequency : [Hz], a number or an array.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> round(tn.hz(50.0), 3)
+    314.159
+    """
     return frequency * HERTZ

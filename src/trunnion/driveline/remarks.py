@@ -10,9 +10,10 @@ from collections.abc import Iterator
 from math import inf, isfinite
 
 from trunnion.driveline.chain import ElementChain
-from trunnion.driveline.elements import ConstantSpeed, Disk
+from trunnion.driveline.elements import ConstantSpeed, Loaded
 from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.shafts import Shaft, SpringElement
+from trunnion.driveline.slip_clutches import SlipClutch
 
 HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
 DRAGGED = "damper without a spring"
@@ -27,7 +28,7 @@ def prescribed_excitations(line: ElementChain) -> tuple[str, ...]:
     return tuple(
         name
         for name, element, g in zip(line.names, line.elements, group, strict=True)
-        if isinstance(element, Disk) and g in fixed and any(one.largest for one in element.excitation)
+        if isinstance(element, Loaded) and g in fixed and any(one.largest for one in element.excitation)
     )
 
 
@@ -65,9 +66,11 @@ def unlike_in_series(line: ElementChain) -> tuple[tuple[tuple[str, ...], float],
 def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
     """The feature (see ``trunnion.driveline.features``) and one sentence with its remedy."""
     for name in prescribed_excitations(line):
+        clutch = _slip_clutch_before(line, name)
+        does = f"does nothing while {clutch} sticks" if clutch else "does nothing"
         yield (
             HELD,
-            f"{name}.excitation: does nothing, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
+            f"{name}.excitation: {does}, a ConstantSpeed holds its rotation; leave out the ConstantSpeed and "
             f"give {name} drive_share = 1, or put a Shaft between",
         )
     for names, limit in unlike_in_series(line):
@@ -77,6 +80,16 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             f"{' and '.join(names)}: in series, with no inertia between and damping over stiffness different, they "
             f"count as one shaft, which holds {holds}; put a Disk between",
         )
+
+
+def _slip_clutch_before(line: ElementChain, name: str) -> str:
+    """The last slip clutch on the way to the element of that name; "" for none."""
+    place: int | None = line.names.index(name)
+    while place is not None:
+        if isinstance(line.elements[place], SlipClutch):
+            return line.names[place]
+        place = line.parents[place]
+    return ""
 
 
 def _groups(line: ElementChain) -> list[int]:

@@ -104,6 +104,7 @@ RULES = {
         NamedRule("gear-hammer", "the teeth of a mesh stay in contact", "mechanics"),
         NamedRule("din-740", "ratings that a `Coupling` states", "DIN 740-2 in form"),
         NamedRule("damper-heat", "the heat that a damper states as its rating", "the maker's sheet"),
+        NamedRule("slip-clutch", "a slip clutch sticks: its torque stays below its capacity", "mechanics"),
         NamedRule("m68", "shafts with `ship_shaft`; in a ship one at least", "IACS UR M68 in form"),
         NamedRule(
             "spicer-angles",
@@ -154,6 +155,9 @@ class SwitchedOff(Record):
     ----------
     rule : its name, as "spicer-angles"; limits of the file and stability cannot be switched off.
     reason : one sentence, which every verdict and report prints.
+
+    >>> SwitchedOff(rule="spicer-angles", reason="the frame leaves no other angles").rule
+    'spicer-angles'
     """
 
     what: ClassVar[str] = "switched-off rule"

@@ -80,6 +80,10 @@ class Schedule(Named):
     Raises
     ------
     InputError : neither or both of travel and speed; nothing that follows; lists of another length.
+
+    >>> bends = Schedule(name="suspension", travel=["0 mm", "80 mm"], angles={"HookeJoint 1": [0.03, 0.11]})
+    >>> bends.changes_at(0.04)
+    {'HookeJoint 1': {'angle': 0.07}}
     """
 
     what: ClassVar[str] = "schedule"

@@ -19,12 +19,14 @@ from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_s
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.sn_curves import SNCurve
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
 _TUBE = ["outer_diameter", "length"]
 _SOLID = ["outer_diameter", "thickness"]
 _ROLLING = ["mass", "radius"]
 _TOOTHED = ["teeth_in", "teeth_out", "module"]
+_SLIP = ["slip_stiffness", "radius", "travel_speed", "inertia"]
 _BASE = ["base_radius_in", "base_radius_out"]
 
 
@@ -45,6 +47,14 @@ _RULES: dict[str, dict[str, Any]] = {
     "Clutch": {
         "dependentRequired": {"linear_amplitude": ["linear_frequency"], "linear_frequency": ["linear_amplitude"]}
     },
+    "SlipClutch": {
+        "dependentRequired": {
+            "sliding_torque": ["stribeck_speed"],
+            "stribeck_speed": ["sliding_torque"],
+            "clamping_times": ["clamping_shares"],
+            "clamping_shares": ["clamping_times"],
+        }
+    },
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
         "dependentRequired": {
@@ -64,6 +74,7 @@ _RULES: dict[str, dict[str, Any]] = {
         "anyOf": [{"required": ["held"]}, {"required": ["output"]}],
         "dependentRequired": {"planet_mass": ["centre_distance"], "centre_distance": ["planet_mass"]},
     },
+    "Tyre": {"dependentRequired": {key: [one for one in _SLIP if one != key] for key in _SLIP}},
     "GearPair": {
         "oneOf": [{"required": _TOOTHED}, {"required": _BASE}],
         "dependentRequired": {**dict.fromkeys(_TOOTHED, _TOOTHED), **dict.fromkeys(_BASE, _BASE)},
@@ -100,6 +111,7 @@ def json_schema() -> dict[str, Any]:
                 **json_schema_of(FREQUENCY),
                 "description": "frequency at which damping_ratio holds; default: the lowest elastic mode",
             },
+            "document": {"$ref": "#/$defs/TitleBlock"},
             "operation": {"$ref": "#/$defs/Operation"},
             "limit": {
                 "type": "array",
@@ -131,6 +143,7 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **definitions,
+            "TitleBlock": _model(TitleBlock),
             "Operation": operation,
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),

@@ -47,6 +47,10 @@ class Elastic(Element):
         """Damping [N m s/rad], likewise."""
         return number("damping")
 
+    def links(self, number: Numbers) -> tuple[tuple[Any, Any], ...]:
+        """Stiffness and damping of every spring and damper among its parts, in order."""
+        return ((self.stiffness_of(number), self.damping_of(number)),)
+
     @property
     def torsional_stiffness(self) -> float:
         """k [N m/rad], as stated or as it follows."""
@@ -135,6 +139,10 @@ class Shaft(SpringElement):
     density : ρ [kg/m³]; 0 leaves the tube without inertia.
     young_modulus : E [Pa], for bending.
     tensile_strength : σ_B [Pa], for checks.
+
+    >>> tube = Shaft(outer_diameter="90 mm", inner_diameter="84 mm", length="1.5 m", material="steel")
+    >>> round(tube.torsional_stiffness), round(tube.moment_of_inertia, 5)
+    (82123, 0.01829)
     """
 
     example: ClassVar[str] = 'stiffness = "12 kN*m/rad"'
@@ -207,8 +215,13 @@ class Coupling(SpringElement):
     vibratory_torque : T_KW [N m], amplitude carried continuously at 10 Hz.
     heat_rating : P_KV [W], damping heat carried continuously.
     fork_offset : as of a ``Shaft``.
+    to : as of a ``Shaft``.
 
     The ratings change no motion; checks compare with them.
+
+    >>> coupling = Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="10 kN*m")
+    >>> round(coupling.loss, 4)
+    0.1798
     """
 
     example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from trunnion.driveline.chain import ElementChain
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Disk, Element, Loaded
 from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
 from trunnion.driveline.shafts import Shaft
 
@@ -32,7 +32,7 @@ def _numbers(element: Element) -> list[str]:
         parts += [_size("tube", element, "length"), shown(element.torsional_stiffness, STIFFNESS, digits=4)]
         if element.density:
             parts.append(shown(element.moment_of_inertia, INERTIA, digits=4))
-    if isinstance(element, Disk) and element.mass is not None:
+    if isinstance(element, Loaded) and getattr(element, "mass", None) is not None:
         parts.append(shown(element.moment_of_inertia, INERTIA, digits=4))
     elif isinstance(element, Disk) and element.inertia is None:
         drawn = ("outer_diameter", "inner_diameter", "thickness", "density")

@@ -103,6 +103,9 @@ class Tolerance(Addressed):
     Raises
     ------
     InputError : nothing scatters; what is no tolerance.
+
+    >>> Tolerance(of="Shaft *", stiffness="5 %", fork_offset="0.5 deg").shown
+    {'stiffness': 0.05, 'fork_offset': '0.5 deg'}
     """
 
     what: ClassVar[str] = "tolerance"

@@ -18,7 +18,6 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.shafts import Elastic, SpringElement
@@ -27,6 +26,7 @@ from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
+from trunnion.equations.slip_capacity import refuse_slipping
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
 from trunnion.equations.topology import Mesh, Topology, topology
 from trunnion.errors import InputError
@@ -185,22 +185,29 @@ def _joint_law(assembly: Assembly, table: Array, place: int) -> JointLaw:
     return element.law(lambda key: table[:, assembly.packed.column(place, key), None])
 
 
-def shaft_stiffness(assembly: Assembly, table: Array, element: int) -> Array:
-    """Torsional stiffness [N m/rad] of one spring; of a mesh or a shaft with stages, that of its stiffest stage."""
+def shaft_stiffness(assembly: Assembly, table: Array, element: int, number: int = 0) -> Array:
+    """Torsional stiffness [N m/rad] of one spring, by its ``number`` in the element; with stages, of its stiffest."""
     shaft = assembly.line.elements[element]
-    column = assembly.packed.column
     if has_stages(shaft):
-        return stage_law(assembly.line, element, column, table).slopes.max(axis=1)
-    assert isinstance(shaft, Elastic)
-    stiffness = np.asarray(shaft.stiffness_of(lambda key: table[:, column(element, key)]))
-    return stiffness if stiffness.shape else np.full(len(table), float(stiffness))
+        return stage_law(assembly.line, element, assembly.packed.column, table).slopes.max(axis=1)
+    return _link(assembly, table, element, number)[0]
 
 
-def _damping_and_loss(assembly: Assembly, table: Array, element: int, stiffness: Array) -> tuple[Array, Array]:
+def _link(assembly: Assembly, table: Array, element: int, number: int) -> tuple[Array, Array]:
+    """Stiffness and damping (case,) of one of the springs and dampers of an element."""
+    one, column = assembly.line.elements[element], assembly.packed.column
+    assert isinstance(one, Elastic)
+    stiffness, damping = one.links(lambda key: table[:, column(element, key)])[number]
+    return np.broadcast_to(stiffness, len(table)), np.broadcast_to(damping, len(table))
+
+
+def _damping_and_loss(
+    assembly: Assembly, table: Array, element: int, stiffness: Array, number: int
+) -> tuple[Array, Array]:
     """Damping [N m s/rad] of one shaft or mesh, and ηk [N m/rad] of a loss factor that holds at all frequencies."""
     column, none, one = assembly.packed.column, np.zeros(len(table)), assembly.line.elements[element]
     if isinstance(one, Elastic) and not isinstance(one, SpringElement):
-        return np.asarray(one.damping_of(lambda key: table[:, column(element, key)])), none
+        return _link(assembly, table, element, number)[1], none
     if assembly.line.damping_ratio is not None:
         return assembly.common_damping(table, stiffness), none
     if (stated := column(element, "loss_factor")) >= 0:
@@ -256,16 +263,19 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
     mean = mean_load(topo, loads, table[:, 0])
+    refuse_slipping(assembly.packed, topo, table, mean)
     static = _static_torque(assembly, table, mean)
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))
     shift = np.zeros((len(table), len(topo.stations)))
     for e, compliance in enumerate(topo.compliances):
         shafts = compliance.shafts
-        each = [shaft_stiffness(assembly, table, i) for i in shafts]
+        each = [shaft_stiffness(assembly, table, i, compliance.number) for i in shafts]
         stiffness[:, e] = _stiffness(each)
         if damped:
-            parts = [_damping_and_loss(assembly, table, i, k) for i, k in zip(shafts, each, strict=True)]
+            parts = [
+                _damping_and_loss(assembly, table, i, k, compliance.number) for i, k in zip(shafts, each, strict=True)
+            ]
             damping[:, e], loss[:, e] = (_series(each, list(part)) for part in zip(*parts, strict=True))
         if has_stages(assembly.line.elements[shafts[0]]):
             if states_a_motion(assembly.line.elements[shafts[0]]) and not free:
@@ -286,8 +296,8 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             own = [twist[:, e]] if compliance.drags else [torque[:, e] / k for k in each]
         for i, turned in zip(shafts, own, strict=True):
             forks = column(i, "fork_offset")
-            if i in topo.behind:
-                shift[:, topo.behind[i]] = turned + (table[:, forks] if forks >= 0 else 0.0)
+            if (i, compliance.number) in topo.behind:
+                shift[:, topo.behind[i, compliance.number]] = turned + (table[:, forks] if forks >= 0 else 0.0)
     for s in topo.joints:
         station = topo.stations[s]
         shift[:, s] = -table[:, column(station.element, "plane")]
@@ -316,27 +326,34 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
 
 
 def _static_torque(assembly: Assembly, table: Array, mean: Array) -> Array:
-    shared = _linear_stiffness(assembly, table) if assembly.topology.graph else None
-    return static_torque(assembly.topology, mean, shared)
+    topo = assembly.topology
+    return static_torque(topo, mean, *(_sharing(assembly, table) if topo.graph and mean.any() else ()))
 
 
-def _linear_stiffness(assembly: Assembly, table: Array) -> Array:
-    """Stiffness of every compliance (case, compliance) of a line whose springs share torques by it.
+def _sharing(assembly: Assembly, table: Array) -> tuple[Array, Array]:
+    """Stiffness of every compliance and damping of the dragged ones (case, compliance), by which those of a loop share
+    torques.
 
     Raises
     ------
-    InputError : a spring with stages, whose stiffness would follow from that share.
+    InputError : a spring with stages in a loop, whose stiffness would follow from that share.
     """
-    found = np.zeros((len(table), len(assembly.topology.compliances)))
-    for e, compliance in enumerate(assembly.topology.compliances):
+    topo = assembly.topology
+    stiffness, damping = np.zeros((2, len(table), len(topo.compliances)))
+    for e, compliance in enumerate(topo.compliances):
         element = assembly.line.elements[compliance.shafts[0]]
-        if has_stages(element) and not (isinstance(element, GearPair) and not element.total_backlash):
+        linear = len(getattr(element, "stiffnesses", ())) <= 1 and not getattr(element, "total_backlash", 0.0)
+        if has_stages(element) and not linear and topo.in_loops[e]:
             raise InputError(
-                f"has stages, beside {assembly.line.names[assembly.topology.knot]}, which shares torque by stiffness",
+                "has stages and lies in a loop, whose springs share torque by their stiffness",
                 element=assembly.line.names[compliance.shafts[0]], remedy="write a Shaft of its stiffness under load",
             )  # fmt: skip
-        found[:, e] = _stiffness([shaft_stiffness(assembly, table, i) for i in compliance.shafts])
-    return found
+        stiffness[:, e] = _stiffness(
+            [shaft_stiffness(assembly, table, i, compliance.number) for i in compliance.shafts]
+        )
+        if compliance.drags:
+            damping[:, e] = _link(assembly, table, compliance.shafts[0], compliance.number)[1]
+    return stiffness, damping
 
 
 def mesh_harmonics(

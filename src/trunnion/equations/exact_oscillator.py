@@ -30,6 +30,7 @@ def exact_oscillator(line: Driveline, speed: float | str | None = None) -> Piece
 
     Parameters
     ----------
+    line : of these three elements.
     speed : mean input speed [rad/s], by which mesh phases and orders turn into frequencies; by default that of the
         line's operation.
 
@@ -43,6 +44,14 @@ def exact_oscillator(line: Driveline, speed: float | str | None = None) -> Piece
     ------
     InputError : another kind of line, loads that depend on the speed, a mesh stiffness that varies, impact damping,
         harmonics without a common frequency, no speed where one is needed.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> gap = tn.PiecewiseShaft(stiffnesses=[1e4, 0.0, 1e4], breakpoints=[-0.01, 0.01], damping=2.0)
+    >>> one = tn.exact_oscillator(tn.Driveline([tn.ConstantSpeed(), gap, tn.Disk(inertia=0.5, load_torque=10.0)]))
+    >>> one.inertia, one.breakpoints, one.mean_force
+    (0.5, (-0.01, 0.01), -10.0)
     """
     spring = _three(line)
     exact, assembly = staged_line(line, speed), assemble(line)

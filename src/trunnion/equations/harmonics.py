@@ -21,7 +21,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Disk, Loaded
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.amplitudes import Running, amplitude, where
@@ -192,7 +192,7 @@ def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTor
     found = []
     for s, place in topo.disks:
         disk = packed.line.elements[place]
-        assert isinstance(disk, Disk)
+        assert isinstance(disk, Loaded)
         for i, law in enumerate(disk.excitation, start=1):
             keys = ("amplitude" if law.points else law.stated_as, "phase", "frequency")
             columns = tuple(packed.column(place, f"excitation {i} {key}") for key in keys)
@@ -214,9 +214,9 @@ def mesh_errors(assembly: Assembly, mesh: Mesh, row: Array) -> tuple[MeshError, 
     )
 
 
-def cylinders(disk: Disk, law: Excitation) -> complex:
+def cylinders(disk: Loaded, law: Excitation) -> complex:
     """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 1 where it has none."""
-    if not disk.firing_angles or law.order is None:
+    if not isinstance(disk, Disk) or not disk.firing_angles or law.order is None:
         return 1.0
     turned = np.exp(-1j * law.order * np.array(disk.firing_angles))
     if disk.misfiring is not None and law.quadratic_amplitude is None:
@@ -227,8 +227,9 @@ def cylinders(disk: Disk, law: Excitation) -> complex:
 def unexcited(line: Driveline) -> Driveline:
     """``line`` without excitations of disks and transmission errors."""
     for name, element in zip(line.names, line.elements, strict=True):
-        if isinstance(element, Disk) and element.excitation:
-            line = line.replace(name, excitation=None, firing_angles=None, misfiring=None)
+        if isinstance(element, Loaded) and element.excitation:
+            cylinders_too = {"firing_angles": None, "misfiring": None} if isinstance(element, Disk) else {}
+            line = line.replace(name, excitation=None, **cylinders_too)
         if isinstance(element, GearPair) and element.transmission_error:
             line = line.replace(name, transmission_error=())
     return line

@@ -21,10 +21,11 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly, mesh_harmonics
 from trunnion.equations.harmonics import mesh_errors
 from trunnion.equations.sliders import beyond_capacity, sliders
+from trunnion.equations.slip_clutches import placed_clutches
 from trunnion.equations.stage_laws import StageLaw, has_stages, impact_damping, spring_damping, stage_law
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
-from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, stages_of
+from trunnion.laws.stages import GUARDS, HELD, SLIDER_STAGES, STICKS, Stages, clutch_stages, stages_of
 from trunnion.numerics.compiled import kernel_file
 from trunnion.systems.regimes import SLACK, Regimes
 from trunnion.systems.user_functions import from_kernel
@@ -41,6 +42,12 @@ def guards_kernel() -> ModuleType:
     """The compiled switching functions and jumps of lines."""
     here = Path(__file__)
     return kernel_file(str(here.with_name("line_guards_kernel.py")), str(here.with_name("line_kernel.py")))
+
+
+def slip_kernel() -> ModuleType:
+    """The compiled right-hand side of lines with slip clutches, what switches there, and what observes them."""
+    names = ("slip_kernel.py", "line_kernel.py", "line_guards_kernel.py")
+    return kernel_file(*(str(Path(__file__).with_name(name)) for name in names))
 
 
 @dataclass(frozen=True)
@@ -133,6 +140,7 @@ class LineRegimes(Regimes):
     transitions: Integers | None = None
     directions: Integers | None = None
     sliders: tuple[_Part, ...] = ()
+    clutches: tuple[_Part, ...] = ()
 
     def tables(self) -> tuple[Integers, Integers]:
         assert self.transitions is not None and self.directions is not None
@@ -162,6 +170,11 @@ class LineRegimes(Regimes):
         slips = length @ (stages != STICKS)
         return np.flatnonzero(slips <= most * length.sum())
 
+    def clutches_stick(self, regime: Integers) -> Array:
+        """Whether each slip clutch sticks (m, clutch) in regimes (m,)."""
+        stages = regime[:, None] // np.array([c.stride for c in self.clutches], dtype=np.int64) % SLIDER_STAGES
+        return np.asarray(stages == STICKS)
+
     def conserved(self, which: Integers, slopes: Array) -> Array:
         # A twist depends on the rotations as its rate does on their rates, and that is the last guard of a slider.
         count, n = len(self.sliders), slopes.shape[1] - 1
@@ -187,11 +200,17 @@ class LineRegimes(Regimes):
         return numbers[first : first + per * len(self.sliders)].reshape(-1, per)
 
     def at(self, time: float, state: Array, parameters: Mapping[str, float], numbers: Array) -> int:
-        return int(self._core.locate(float(time), np.ascontiguousarray(state, dtype=float), numbers))
+        at, x = float(time), np.ascontiguousarray(state, dtype=float)
+        found = int(self._core.locate(at, x, numbers))
+        if not self.clutches:
+            return found
+        core = slip_kernel()
+        return int(core.located(core.slipping_line.address, at, x, numbers.copy(), found))
 
 
 def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
-    """Strides of the stages of ``count`` sliders, which come after those of the springs."""
+    """Strides of the stages of ``count`` sliders and slip clutches, which come after those of the springs, the clutches
+    last."""
     first = prod(spring.stages for spring in springs.values())
     return [first * SLIDER_STAGES**i for i in range(count)]
 
@@ -227,16 +246,19 @@ def line_regimes(assembly: Assembly) -> LineRegimes | None:
                     directions[regime, GUARDS * i + guard] = int(law.guards[stage, guard, 3])
     names = tuple(", ".join(f"{p.name} {p.words[p.stage(r)]}" for p in parts) for r in range(count))
     guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
+    slips = placed_clutches(assembly, assembly.table(1)[0])
+    jump = from_kernel(slip_kernel, "slipping_jump") if slips else from_kernel(guards_kernel, "line_jump")
     return LineRegimes(
         names,
         guards,
-        from_kernel(guards_kernel, "line_guards"),
+        from_kernel(slip_kernel, "slipping_guards") if slips else from_kernel(guards_kernel, "line_guards"),
         (),
         lambda t, x, p: 0,
-        from_kernel(guards_kernel, "line_jump") if any(part.along for part in parts) else None,
+        jump if any(part.along for part in parts) else None,
         transitions=transitions,
         directions=directions,
         sliders=tuple(part for part in parts if part.along),
+        clutches=tuple(parts[len(parts) - len(slips) :]),
     )
 
 
@@ -250,8 +272,12 @@ def _parts(assembly: Assembly) -> list[_Part]:
     ]
     friction_sliders = sliders(assembly.packed, assembly.topology, row)
     first, words = len(found), ("slips back", "sticks", "slips on")
-    for slider, stride in zip(friction_sliders, slider_strides(springs, len(friction_sliders)), strict=True):
+    clutches = placed_clutches(assembly, row)
+    strides = slider_strides(springs, len(friction_sliders) + len(clutches))
+    for slider, stride in zip(friction_sliders, strides, strict=False):
         # All that slip on one twist stick together: it turns for them at the same instant.
         along = tuple(first + j for j, other in enumerate(friction_sliders) if other.compliance == slider.compliance)
         found.append(_Part(slider.name, stride, slider.stages, words, along))
+    for clutch, stride in zip(clutches, strides[len(friction_sliders) :], strict=True):
+        found.append(_Part(clutch.name, stride, clutch_stages(), words))
     return found

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
@@ -22,9 +22,10 @@ from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonic
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_kernel as kernel
-from trunnion.equations.line_regimes import line_regimes, slider_strides, staged_springs
+from trunnion.equations.line_regimes import line_regimes, slider_strides, slip_kernel, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
 from trunnion.equations.sliders import PlacedSlider, sliders
+from trunnion.equations.slip_clutches import PlacedClutch, clutch_numbers, placed_clutches, slipping
 from trunnion.equations.steady_base import require_tree
 from trunnion.errors import InputError
 from trunnion.laws.fourier import FourierLaw
@@ -83,8 +84,8 @@ class LineSystem(Portable):
     @property
     def shafts(self) -> tuple[str, ...]:
         """Names of the compliances; massless shafts in series count as one."""
-        names = self.assembly.line.names
-        return tuple(" + ".join(names[i] for i in c.shafts) for c in self.assembly.topology.compliances)
+        line = self.assembly.line
+        return tuple(line.spring_name(c.shafts, c.number) for c in self.assembly.topology.compliances)
 
     @cached_property
     def torques(self) -> tuple[DiskTorque, ...]:
@@ -105,6 +106,11 @@ class LineSystem(Portable):
         return sliders(self.assembly.packed, self.assembly.topology, self.assembly.table(1)[0])
 
     @cached_property
+    def clutches(self) -> tuple[PlacedClutch, ...]:
+        """Its slip clutches that may slip."""
+        return placed_clutches(self.assembly, self.assembly.table(1)[0])
+
+    @cached_property
     def system(self) -> System:
         """The line as a system, its parameters being those of the description."""
         packed = self.assembly.packed
@@ -119,7 +125,7 @@ class LineSystem(Portable):
                 *(f"deflection of {slider.name}" for slider in friction_sliders),
             ),
             units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(friction_sliders),
-            rate=from_kernel(kernel, "line"),
+            rate=from_kernel(slip_kernel, "slipping_line") if self.clutches else from_kernel(kernel, "line"),
             parameters=values,
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
@@ -192,9 +198,10 @@ class LineSystem(Portable):
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
         harmonics = [self._harmonic(one, on, row) for one in self.torques]
-        strides = slider_strides(laws, len(friction_sliders))
+        clutches = placed_clutches(self.assembly, row)
+        strides = slider_strides(laws, len(friction_sliders) + len(clutches))
         friction = [
-            [s.compliance, s.stiffness, s.reach, step] for s, step in zip(friction_sliders, strides, strict=True)
+            [s.compliance, s.stiffness, s.reach, step] for s, step in zip(friction_sliders, strides, strict=False)
         ]
         # Behind them the laws of springs with stages and of joints that are Fourier series.
         begin = core.HEAD + stations.size + compliances.size
@@ -211,6 +218,7 @@ class LineSystem(Portable):
             added[s] += joint.turned
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
+        behind.append(clutch_numbers(clutches, strides[len(friction_sliders) :]))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
@@ -283,19 +291,32 @@ class LineSystem(Portable):
                 carried[s] += carried[station.before] * (topo.mean_speeds[s] / topo.mean_speeds[station.before])
         return carried
 
-    def observe(self, system: System, time: ArrayLike, state: ArrayLike) -> LineMotion:
-        """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters)."""
+    def observe(self, system: System, time: ArrayLike, state: ArrayLike, regime: Integers | None = None) -> LineMotion:
+        """Twists, torques and rotations along a motion of ``system`` (this line's, or with other parameters), which was
+        in ``regime`` (time,); by default in those that its states tell."""
         t, x = np.atleast_1d(np.asarray(time, dtype=float)), np.atleast_2d(np.asarray(state, dtype=float))
-        return self.observed(t, x, system.numbers)
+        return self.observed(t, x, system.numbers, regime)
 
-    def observed(self, t: Array, x: Array, numbers: Array) -> LineMotion:
+    def observed(self, t: Array, x: Array, numbers: Array, regime: Integers | None = None) -> LineMotion:
         """The same of states x (time, state) at times t (time,), under ``numbers`` as of ``numbers``."""
-        topo = self.assembly.topology
+        return self._observed(t, x, numbers, regime)[0]
+
+    def slip(self, t: Array, x: Array, numbers: Array, regime: Integers | None = None) -> tuple[Array, Array]:
+        """Slip speed [rad/s] and torque [N m] of every slip clutch (time, clutch), likewise."""
+        motion, slip = self._observed(t, x, numbers, regime)
+        return slip, motion.torque[:, [clutch.compliance for clutch in self.clutches]]
+
+    def _observed(self, t: Array, x: Array, numbers: Array, regime: Integers | None) -> tuple[LineMotion, Array]:
+        topo, states = self.assembly.topology, np.ascontiguousarray(x)
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
         rotation, speed = np.empty((2, len(t), len(topo.stations)))
-        stages = np.zeros(twist.shape, dtype=np.int64)
-        kernel().observe(t, np.ascontiguousarray(x), numbers, twist, torque, rotation, speed, stages)
-        return LineMotion(twist, torque, rotation)
+        stages, slip = np.zeros(twist.shape, dtype=np.int64), np.empty((len(t), len(self.clutches)))
+        kernel().observe(t, states, numbers, twist, torque, rotation, speed, stages)
+        if self.clutches:
+            core, known = slip_kernel(), np.full(len(t), -1) if regime is None else regime
+            rate = core.slipping_line.address
+            core.observe_clutches(rate, t, states, numbers.copy(), known, stages, torque, slip)
+        return LineMotion(twist, torque, rotation), slip
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
         """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the
@@ -345,15 +366,15 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
 
 
-def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False) -> LineSystem:
+def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False, slips: bool = False) -> LineSystem:
     """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
-    leave).
+    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``.
 
     Raises
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = assemble(line)
+    assembly = slipping(assemble(line)) if slips else assemble(line)
     refuse_second_speed(assembly)
     require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:

@@ -40,7 +40,13 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
 
 
 def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
-    return StationLoads(*(_of_disks(topo, column, table, k) for k in ("load_torque", "viscous_load", "quadratic_load")))
+    keys = ("load_torque", "viscous_load", "quadratic_load")
+    constant, viscous, quadratic = (_of_disks(topo, column, table, key) for key in keys)
+    for station, place, element in topo.resisting:
+        more = element.resistance(lambda key, i=place: table[:, column(i, key)])  # type: ignore[misc]
+        constant[:, station] += more[0]
+        quadratic[:, station] += more[1]
+    return StationLoads(constant, viscous, quadratic)
 
 
 def _of_disks(topo: Topology, column: Column, table: Array, key: str) -> Array:
@@ -129,19 +135,19 @@ def drive_places(topo: Topology, column: Column, table: Array) -> Array:
     return np.where(share.any(axis=1, keepdims=True), share, first)
 
 
-def static_torque(topo: Topology, load: Array, stiffness: Array | None = None) -> Array:
+def static_torque(topo: Topology, load: Array, stiffness: Array | None = None, damping: Array | None = None) -> Array:
     """Torque in each compliance under the loads [N m], positive with the twist; shape (case, compliance).
 
     Mean balance of power: a load M at a station of speed ratio R asks for M |R| behind the input, and a
     shaft of speed ratio R_g carries −Σ M |R| / R_g (Hooke's joints pass torque on average unchanged). Round loops
-    springs share it by their ``stiffness`` (case, compliance).
+    springs share it by their ``stiffness`` (case, compliance), and what drags by its ``damping``.
     """
     torque = np.zeros((len(load), len(topo.compliances)))
     if not load.any():
         return torque
     if topo.graph:
-        assert stiffness is not None
-        return _shared_torque(topo, load, stiffness)
+        assert stiffness is not None and damping is not None
+        return _shared_torque(topo, load, stiffness, damping)
     for e, behind in enumerate(topo.stations_behind):
         own = topo.mean_speeds[topo.reference[topo.compliances[e].far_group]]
         torque[:, e] = load[:, behind] @ (-np.abs(topo.mean_speeds[behind]) / own)
@@ -153,12 +159,17 @@ def loads_on_unknowns(topo: Topology, load: Array) -> Array:
     return np.asarray((load * np.sign(topo.mean_speeds)) @ topo.turning)
 
 
-def _shared_torque(topo: Topology, load: Array, stiffness: Array) -> Array:
+def _shared_torque(topo: Topology, load: Array, stiffness: Array, damping: Array) -> Array:
     """The same where springs or the legs of a differential share the torque of a shaft: in balance for every unknown,
-    and round every loop by the stiffness of its springs."""
-    root, elongations = np.sqrt(stiffness), topo.elongations
-    felt, found = loads_on_unknowns(topo, load), np.zeros_like(stiffness)
+    and round every loop by the stiffness of its springs. What drags carries what no spring does, by steady slip."""
+    felt, found, dragged = loads_on_unknowns(topo, load), np.zeros_like(stiffness), list(topo.dragged)
+    slips = topo.elongations[dragged] @ topo.loose
     for case in np.flatnonzero(load.any(axis=1)):
-        scaled = elongations.T * root[case]
-        found[case] = root[case] * np.linalg.lstsq(scaled, -felt[case], rcond=None)[0]
+        if dragged:
+            root = np.sqrt(damping[case, dragged])
+            own = np.linalg.lstsq(slips.T * root, -topo.loose.T @ felt[case], rcond=None)[0]
+            found[case, dragged] = root * own
+        root = np.sqrt(stiffness[case])
+        left = felt[case] + topo.elongations.T @ found[case]
+        found[case] += root * np.linalg.lstsq(topo.elongations.T * root, -left, rcond=None)[0]
     return found

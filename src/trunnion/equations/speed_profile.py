@@ -20,6 +20,10 @@ class SpeedProfile:
     ----------
     time : [s], rising, from 0.
     speed : [rad/s] at those times, positive.
+
+    >>> profile = SpeedProfile([0.0, 5.0], [50.0, 250.0])
+    >>> float(profile.at(2.5)), float(profile.angle(5.0))
+    (150.0, 750.0)
     """
 
     time: tuple[float, ...]

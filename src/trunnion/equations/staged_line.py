@@ -23,7 +23,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
@@ -31,6 +31,7 @@ from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, li
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
 from trunnion.equations.sliders import PlacedSlider, sliders
+from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -319,6 +320,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
     nonuniform = {line.names[topo.stations[j].element] for j, law in laws if law.nonuniform}
     refuse_dragged(assembly)
+    refuse_slip_clutches(line)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in nonuniform:
@@ -327,10 +329,13 @@ def _refuse_inexact(assembly: Assembly) -> None:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"
         elif isinstance(element, GearPair) and element.impact_damping:
             found = "impact_damping", "goes with the depth of contact, so that no stage is linear"
-        elif isinstance(element, Disk) and any(one.varies for one in element.excitation):
+        elif isinstance(element, Loaded) and any(one.varies for one in element.excitation):
             found = "excitation", "has an amplitude that depends on the speed or the load"
-        elif isinstance(element, Disk) and element.quadratic_load:
-            found = "quadratic_load", "is not linear in the speed, so that no motion is exact"
+        elif isinstance(element, Loaded) and element.loads[2]:
+            found = (
+                "quadratic_load" if element.quadratic_load else "drag_area",
+                "is not linear in the speed, so that no motion is exact",
+            )
         if found:
             key, problem = found
             value = getattr(element, key)
@@ -399,7 +404,7 @@ class _Builder:
                 remedy="give speed=tn.rpm(1500), say",
             )  # fmt: skip
         parts = self._parts()
-        springs = tuple(" + ".join(line.names[i] for i in c.shafts) for c in topo.compliances)
+        springs = tuple(line.spring_name(c.shafts, c.number) for c in topo.compliances)
         inverse, names = self.accelerated @ self.twisting.T, tuple(s.name for s in self.sliders)
         return StagedLine(
             assembly=self.assembly, springs=springs, sliders=names, source=self.source, turns=self.turns, speed=speed,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
 from trunnion.errors import InputError
@@ -47,7 +48,7 @@ def refuse_periodic_base(assembly: Assembly, remedy: str, *, bends: bool = False
 
 
 def refuse_dragged(assembly: Assembly) -> None:
-    """Refuse a line whose motion does not repeat in one way alone, as a ring that oil alone drags may stand anywhere.
+    """Refuse a line whose motion does not repeat in one way alone, as what a damper alone drags may stand anywhere.
 
     Raises
     ------
@@ -55,13 +56,19 @@ def refuse_dragged(assembly: Assembly) -> None:
     """
     topo = assembly.topology
     for e in topo.dragged:
-        raise InputError(
-            "has no spring, so that its ring may stand anywhere and no periodic motion is the only one",
-            element=assembly.line.names[topo.compliances[e].shafts[0]],
-            key="stiffness",
-            remedy='write stiffness = "1 kN*m/rad", say, that of the oil at the frequency that matters; '
-            "tn.simulate and linear analyses take it without",
+        place = topo.compliances[e].shafts[0]
+        tyre = isinstance(assembly.line.elements[place], Tyre)
+        instead = (
+            "leave it out, and what belongs to it"
+            if tyre
+            else 'write stiffness = "1 kN*m/rad", say, that of the oil at the frequency that matters'
         )
+        raise InputError(
+            f"has no spring, so that its {'vehicle' if tyre else 'ring'} may stand anywhere and no periodic motion is "
+            "the only one",
+            element=assembly.line.names[place], key="slip_stiffness" if tyre else "stiffness",
+            remedy=f"{instead}; tn.simulate and linear analyses take it {'as it is' if tyre else 'without'}",
+        )  # fmt: skip
 
 
 def has_joint_angles(assembly: Assembly, table: Array | None = None) -> bool:
@@ -175,7 +182,10 @@ def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     station, element = _driving(assembly, row[None])
     name = assembly.line.names[element]
     remedy = f'give the driving disk, "{name}" say, drive_share = 1'
-    if any(row[assembly.packed.column(i, key)] for _, i in topo.disks for key in ("viscous_load", "quadratic_load")):
+    by_speed = [
+        row[assembly.packed.column(i, key)] for _, i in topo.disks for key in ("viscous_load", "quadratic_load")
+    ]
+    if any(by_speed) or any(element.loads[2] for _, _, element in topo.resisting):
         return remedy  # no constant torque balances at more than one speed
     needed = float(row[assembly.packed.column(element, "load_torque")]) - left / abs(float(topo.speed_ratio[station]))
     return f'{remedy}, or load_torque = "{needed:.10g} N*m"'

@@ -22,12 +22,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Places
+from trunnion.arrays import Array, Flags, Places
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Element
+from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
-from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
@@ -48,6 +47,8 @@ Plane = tuple[tuple[int, float], ...]
 """Constant-velocity joints behind the last bend, with the speeds of their shafts over that behind the last of them."""
 RANK = 1e-12
 """Singular values below this share of the largest count as none."""
+SELF_STRESS = 1e-9
+"""Share of a torque that a loop holds in itself which counts as none."""
 TIED = (LinkKind.JOINT, LinkKind.RATIO)
 """Links that tie a station rigidly to the one in front of it."""
 
@@ -58,7 +59,8 @@ class Station:
 
     ``orders``: of the unevenness of a joint, in cycles per turn of its own shaft; ``planes``: constant-velocity joints
     between it and the bend before, which turn the plane that its own is measured from, and what their shafts' speeds
-    are over its own; ``of``: stations whose rotations add up to its own, and their shares.
+    are over its own; ``of``: stations whose rotations add up to its own, and their shares; ``spring``: which of the
+    element's own it is behind.
     """
 
     before: int
@@ -68,13 +70,14 @@ class Station:
     orders: tuple[int, ...] = ()
     planes: Plane = ()
     of: tuple[tuple[int, Fraction], ...] = ()
+    spring: int = 0
 
 
 @dataclass(frozen=True)
 class Compliance:
     """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop.
 
-    ``drags`` : a damper without a spring.
+    ``drags`` : a damper without a spring; ``number`` : of one element, among its springs and dampers.
     """
 
     near: int
@@ -82,6 +85,7 @@ class Compliance:
     shafts: tuple[int, ...]
     far: int | None = None
     drags: bool = False
+    number: int = 0
 
 
 @dataclass(frozen=True)
@@ -113,7 +117,8 @@ class Topology:
     an exact fraction. ``inertias`` are station, element and number among the element's own of every inertia, ``disks``
     station and element of those that outer torques act on; ``meshes`` are those that vary with their phase. ``names``
     are those of the unknowns; ``points`` are station and name of what is seen to move: each disk where it is, what else
-    is heavy where none is. What follows from these is found once.
+    is heavy where none is; ``resisting`` are station, place and element of those of the disks that resist by a law of
+    their own. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -127,6 +132,7 @@ class Topology:
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
     points: tuple[tuple[int, str], ...]
+    resisting: tuple[tuple[int, int, Loaded], ...] = ()
 
     @cached_property
     def size(self) -> int:
@@ -152,7 +158,14 @@ class Topology:
             unknowns = np.unique([u for u in self.unknown_of[self.stations_behind[e]] if u >= 0])
             own = self.mean_speeds[self.reference[self.compliances[e].far_group]]
             dragged[unknowns, k] = self.mean_speeds[self.firsts][unknowns] / own
-        return _fixed(np.hstack([self.rigid, dragged]))
+        if not self.graph:
+            return _fixed(np.hstack([self.rigid, dragged]))
+        # What hangs on a link may be held by springs elsewhere, and several of them may let go of more together.
+        sprung = np.delete(self.elongations, self.dragged, axis=0)
+        alone = np.array([self.compliances[e].far is None for e in self.dragged], dtype=bool)
+        alone &= np.abs(sprung @ dragged).max(axis=0, initial=0.0) < RANK
+        found = np.hstack([self.rigid, dragged[:, alone]])
+        return _fixed(np.hstack([found, _null_space(np.vstack([sprung, found.T]))]))
 
     @property
     def still(self) -> int:
@@ -202,14 +215,18 @@ class Topology:
         whole = self.mean_speeds[self.firsts][:, None] if self.free else np.zeros((self.size, 0))
         if not self.graph:
             return _fixed(whole)
-        _, size, basis = np.linalg.svd(np.vstack([self.elongations, whole.T]))
-        still = basis[int(np.sum(size > RANK * size.max(initial=1.0))) :].T
-        return _fixed(np.hstack([whole, still]))
+        return _fixed(np.hstack([whole, _null_space(np.vstack([self.elongations, whole.T]))]))
 
     @property
     def rigid_count(self) -> int:
         """How many of these there are."""
         return int(self.rigid.shape[1])
+
+    @cached_property
+    def in_loops(self) -> Flags:
+        """Whether a compliance lies in a loop, so that its torque is not that of its loads alone (compliance,)."""
+        own = _null_space(self.elongations.T)
+        return np.asarray(np.abs(own).max(axis=1, initial=0.0) > SELF_STRESS)
 
     @cached_property
     def joints(self) -> tuple[int, ...]:
@@ -269,15 +286,15 @@ class Topology:
         return np.array([self.coordinate[station.group] for station in self.stations], dtype=np.intp)
 
     @cached_property
-    def behind(self) -> dict[int, int]:
-        """The station behind every shaft, by its element."""
-        return {one.element: s for s, one in enumerate(self.stations) if one.link is LinkKind.SHAFT}
+    def behind(self) -> dict[tuple[int, int], int]:
+        """The station behind every shaft, by its element and its number there."""
+        return {(one.element, one.spring): s for s, one in enumerate(self.stations) if one.link is LinkKind.SHAFT}
 
     @cached_property
     def stations_behind(self) -> tuple[Places, ...]:
         """Per compliance all stations that it drives: those of its far group and of every group behind that."""
         behind = [[s for s, one in enumerate(self.stations) if one.group == c.far_group] for c in self.compliances]
-        into = {c.far_group: e for e, c in enumerate(self.compliances)}
+        into = {c.far_group: e for e, c in enumerate(self.compliances) if c.far is None}
         for e in range(len(self.compliances) - 1, -1, -1):
             before = into.get(self.group_of(self.compliances[e].near))
             if before is not None:
@@ -374,6 +391,12 @@ def behind_joint(stations: Sequence[Station], station: int) -> bool:
     return one.link in TIED and (one.link is LinkKind.JOINT or behind_joint(stations, one.before))
 
 
+def _null_space(rows: Array) -> Array:
+    """What all ``rows`` (k, n) leave free, as columns (n, m)."""
+    _, size, basis = np.linalg.svd(rows)
+    return np.asarray(basis[int(np.sum(size > RANK * size.max(initial=1.0))) :].T)
+
+
 def _fixed(numbers: ArrayLike) -> Array:
     """As an array that nobody can change."""
     found = np.array(numbers)
@@ -427,7 +450,7 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
             here, plane = found.add(-1, LinkKind.ROOT, i, Fraction(1)), Plane()
         else:
             here, plane = coordinates[parent][line.hangs_on[i]]
-        own, turned, heavy = [here], [plane], 0
+        own, turned, heavy, springs = [here], [plane], 0, 0
         for part in element.parts():
             match part:
                 case Prescribed():
@@ -447,7 +470,7 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                     if orders or even:
                         here = found.add(here, LinkKind.JOINT, i, found.speed_ratio[here], orders=orders, planes=plane)
                     plane = Plane() if orders else (*plane, (i, 1.0))
-                case Sprung(to, closes) if closes is not None:
+                case Sprung(to, closes) | Dragged(to, closes) if closes is not None:
                     end = line.index(closes)
                     here, plane = coordinates[end][line.elements[end].onward]
                     if here == own[to]:
@@ -455,12 +478,15 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                             "closes onto the shaft that it starts from, and would never twist", element=line.names[i],
                             key="to", value=closes, remedy="name an element behind another spring",
                         )  # fmt: skip
-                    found.compliances.append(Compliance(own[to], found.stations[here].group, (i,), here))
-                    _require_closed(line, found, i, own[to], here)
-                case Sprung(to) | Dragged(to):
-                    here, plane = found.add(own[to], LinkKind.SHAFT, i, found.speed_ratio[own[to]]), turned[to]
                     drags, group = isinstance(part, Dragged), found.stations[here].group
-                    found.compliances.append(Compliance(own[to], group, (i,), drags=drags))
+                    found.compliances.append(Compliance(own[to], group, (i,), here, drags, springs))
+                    _require_closed(line, found, i, own[to], here)
+                    springs += 1
+                case Sprung(to) | Dragged(to):
+                    here = found.add(own[to], LinkKind.SHAFT, i, found.speed_ratio[own[to]], spring=springs)
+                    plane, drags, group = turned[to], isinstance(part, Dragged), found.stations[here].group
+                    found.compliances.append(Compliance(own[to], group, (i,), drags=drags, number=springs))
+                    springs += 1
                 case Loose(to, speed):
                     here, plane = found.add(own[to], LinkKind.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()
                 case Tied(of):
@@ -478,14 +504,12 @@ def _require_closed(line: Driveline, found: LineStations, element: int, near: in
     """Refuse a loop round which the ratios do not come out: its springs would wind up with every turn."""
     apart = found.speed_ratio[far] - found.speed_ratio[near]
     if apart:
-        spring = line.elements[element]
-        assert isinstance(spring, SpringElement)
         turns = [float(found.speed_ratio[s]) for s in (near, far)]
         raise InputError(
             f"closes a loop whose ratios do not: its ends turn {turns[0]:.6g} and {turns[1]:.6g} times as fast as the "
             f"input, {100 * abs(turns[1] / turns[0] - 1):.3g} % apart, and wind it up by "
             f"{360 * abs(float(apart)):.3g} deg with every turn", element=line.names[element], key="to",
-            value=spring.to, remedy="check the ratios on both ways round",
+            value=getattr(line.elements[element], "to", None), remedy="check the ratios on both ways round",
         )  # fmt: skip
 
 
@@ -525,6 +549,7 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
         coordinate=tuple(coordinate), prescribed=tuple(draft.prescribed), disks=tuple(draft.disks),
         inertias=tuple(draft.inertias), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
         meshes=tuple(_meshes(line, draft, compliances)), points=tuple(_points(line, draft, coordinate, names)),
+        resisting=tuple(_resisting(line, draft)),
     )  # fmt: skip
 
 
@@ -539,6 +564,13 @@ def _points(line: Driveline, draft: LineStations, coordinate: list[int], names: 
     with_disk = {draft.stations[s].group for s, _ in draft.disks}
     found += [(draft.reference[g], names[c]) for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
     return sorted(found, key=lambda point: point[0])
+
+
+def _resisting(line: Driveline, draft: LineStations) -> Iterable[tuple[int, int, Loaded]]:
+    for s, i in draft.disks:
+        element = line.elements[i]
+        if isinstance(element, Loaded) and element.resists:
+            yield s, i, element
 
 
 def _meshes(line: Driveline, draft: LineStations, compliances: list[Compliance]) -> Iterable[Mesh]:

@@ -116,3 +116,15 @@ def slider_stages(stiffness: float, reach: float) -> Stages:
     found.leave(SLIPS_BACK, 2, (0.0, 1.0, 0.0), 1, STICKS)
     found.leave(SLIPS_ON, 2, (0.0, 1.0, 0.0), -1, STICKS)
     return found
+
+
+def clutch_stages() -> Stages:
+    """The stages of a slip clutch, whose surfaces ``equations.slip_kernel`` knows: it slips beyond its capacity, and
+    where the slip ends it sticks, or slips the other way at once."""
+    found = Stages.apart([[0.0, 0.0, 0.0]] * SLIDER_STAGES, [-1, 0, 1])
+    for stage, number, direction, behind in (
+        (STICKS, 0, -1, SLIPS_BACK), (STICKS, 1, 1, SLIPS_ON), (SLIPS_ON, 2, -1, STICKS), (SLIPS_ON, 0, -1, SLIPS_BACK),
+        (SLIPS_BACK, 2, 1, STICKS), (SLIPS_BACK, 1, 1, SLIPS_ON),
+    ):  # fmt: skip
+        found.leave(stage, number, (0.0, 0.0, 0.0), direction, behind)
+    return found

@@ -44,7 +44,20 @@ def tube_critical_speed(outer: float, inner: float, length: float, young_modulus
 
 
 def bending_speeds(line: Driveline | Assembly) -> tuple[BendingSpeed, ...]:
-    """Critical speed of every shaft of ``line`` described as a tube with a density, in order."""
+    """Critical speed of every shaft of ``line`` described as a tube with a density, in order.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> tube = tn.Shaft(outer_diameter="90 mm", inner_diameter="84 mm", length="1.5 m", material="steel")
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tube, tn.Disk(inertia=0.8)])
+    >>> round(tn.bending_speeds(line)[0].critical_speed, 2)
+    691.59
+    """
     assembly = assemble(line)
     described, topo = assembly.line, assembly.topology
     ratio = {e: abs(float(topo.speed_ratio[c.near])) for c in topo.compliances for e in c.shafts}

@@ -60,12 +60,21 @@ def damper_optimum(line: Driveline | Assembly, damper: str, mode: int = 1) -> Da
 
     Parameters
     ----------
+    line : a ``Driveline`` or its ``Assembly``.
     damper : its name.
     mode : number among the elastic modes of the line without its ring, from 1.
 
     Raises
     ------
     InputError : no damper of that name; no such mode; a mode that has a node where the damper stands.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> damper = tn.ViscousDamper(name="damper", inertia=0.01, ring_inertia=0.05, damping=1.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.5), damper])
+    >>> round(tn.damper_optimum(line, "damper").damping, 4)
+    6.5236
     """
     assembly = assemble(line)
     described, topo = assembly.line, assembly.topology

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import UnitMasses, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import left_out
@@ -45,7 +46,7 @@ class NaturalFrequencies(Result):
 
     @property
     def still(self) -> int:
-        """How many modes no spring resists: those of rigid motions, and rings that oil alone drags along."""
+        """How many modes no spring resists: those of rigid motions, and of what a damper alone drags along."""
         return self.assembly.topology.still
 
     @property
@@ -159,13 +160,20 @@ class NaturalFrequencies(Result):
             return f"0, rigid body ({how})"
         if mode < self.still:
             ring, slip = self._moves_most(mode), self.words.number(self.decay_rate[mode][1])
-            return f"0, {ring} (oil alone drags it along; slip decays at {slip} 1/s)"
+            return f"0, {ring} ({self._drag} alone drags it along; slip decays at {slip} 1/s)"
         undamped = self._shown(self.undamped_frequency[mode])
         if self.overdamped[mode]:
             return f"overdamped, {self._decay(mode)}; undamped {undamped}"
         ratio, frequency = self.damping_ratio[mode], self.frequency[mode]
         apart = abs(frequency - self.undamped_frequency[mode]) > ALIKE * frequency
         return f"{self._shown(frequency)}, damping ratio {ratio:.3g}{f'; undamped {undamped}' if apart else ''}"
+
+    @property
+    def _drag(self) -> str:
+        """What joins it to the line."""
+        topo, elements = self.assembly.topology, self.assembly.line.elements
+        tyres = {isinstance(elements[topo.compliances[e].shafts[0]], Tyre) for e in topo.dragged}
+        return "oil" if tyres == {False} else "slip" if tyres == {True} else "damping"
 
     def _shown(self, frequency: float) -> str:
         words = self.words
@@ -180,6 +188,19 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     frequencies are those of the damped line, from the complex eigenvalues λ: ω_d = Im λ = √(1 − ζ²)|λ|. Undamped ones,
     with C and H left out, stand beside them; resonance speeds are named after those. Ratios turn at their constant
     speed ratio; a ConstantSpeed end does not vibrate. Joint angles change these frequencies only at second order.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> print(tn.natural_frequencies(line))
+    1 natural frequencies of the aligned line (joint angles zero)
+      mode 1: 111.796 rad/s = 17.793 Hz, damping ratio 0.0112
     """
     assembly = assemble(line)
     topo = assembly.topology

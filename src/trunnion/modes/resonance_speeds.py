@@ -141,9 +141,24 @@ class ResonanceSpeeds(Result):
 def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSpeeds:
     """Named parametric resonance speeds of ``line`` up to order k = ``orders``, ascending; of joints and meshes.
 
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+    orders : highest order k [1].
+
     Raises
     ------
     InputError : ``orders`` is not a positive whole number.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> print(tn.resonance_speeds(line, 1))
+    2 resonance speeds up to order 1
+      55.9017 rad/s  harmonic ω₁/2
+      111.803 rad/s  subharmonic ω₁
     """
     if isinstance(orders, bool) or not isinstance(orders, int) or orders < 1:
         raise InputError("must be a whole number, 1 or more", key="orders", value=orders)

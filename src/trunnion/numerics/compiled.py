@@ -29,14 +29,15 @@ def kernel_file(source: str, *used: str) -> ModuleType:
     """The file of kernels ``source``, which imports nothing of the package, compiled from a cached copy.
 
     Copied rather than imported, so that the folder's name tells which sources the machine code belongs to.
-    It may build on other such files: those in ``used`` are there for it as ``trunnion_kernels.NAME``.
+    It may build on other such files: those in ``used`` are there for it as ``trunnion_kernels.NAME``, each of which may
+    build on those before it.
     """
     text = Path(source).read_text(encoding="utf-8")
     whole = text
-    for other in used:
+    for place, other in enumerate(used):
         stem = Path(other).stem
         sys.modules.setdefault("trunnion_kernels", ModuleType("trunnion_kernels"))
-        sys.modules[f"trunnion_kernels.{stem}"] = kernel_file(other)
+        sys.modules[f"trunnion_kernels.{stem}"] = kernel_file(other, *used[:place])
         whole += Path(other).read_text(encoding="utf-8")
     digest = hashlib.sha256(f"{whole}{VERSIONS} {scipy.__version__}".encode()).hexdigest()[:16]
     return _module(Path(source).stem, text, digest)

@@ -20,7 +20,7 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.dampers import Damper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Loaded, Ratio
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import DEGREE
@@ -39,7 +39,8 @@ HEADROOM = 1.75
 LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
-    "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25,
+    "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
+    "SlipClutch": 0.7,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 SHAFTS = (SpringElement, PiecewiseShaft)
@@ -104,8 +105,8 @@ def draw(line: Driveline) -> Figure:
     for place, parent in zip(places, line.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
-        if isinstance(place.element, SpringElement) and place.element.to is not None:
-            closed = places[line.index(place.element.to)]
+        if (to := getattr(place.element, "to", None)) is not None:
+            closed = places[line.index(to)]
             _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
@@ -189,6 +190,13 @@ def _stages(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     turns = np.linspace(-0.36, 0.36, 10)[:, None] * _along(place.direction)
     turns = place.middle + turns + np.tile([0.14, -0.14], 5)[:, None] * _across(place.direction)
     _bar(axes, *turns, lw=1.1, zorder=4)
+
+
+def _slip_clutch(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """Two linings that are pressed together."""
+    _bar(axes, place.start, place.end)
+    for begin, face in ((-0.17, SOLID), (-0.05, "#8a8a8a"), (0.05, SOLID)):
+        _box(axes, place.part(begin, begin + (0.1 if face != SOLID else 0.12)), 0.42, fc=face)
 
 
 def _dual_mass(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
@@ -280,6 +288,39 @@ def _differential(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(gear), 0.22, 0.34, angle=np.rad2deg(place.direction), **look))
 
 
+def _tyre(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """A tyre above and below its rim, with grooves."""
+    _bar(axes, place.start, place.end)
+    for side in (1, -1):
+        off = side * 0.66 * _across(place.direction)
+        tread = replace(place, start=place.start + off, end=place.end + off)
+        _bar(axes, place.middle, tread.middle, lw=1.4)
+        _box(axes, tread.part(-0.2, 0.2), 0.16, fc="#8a8a8a")
+        for groove in (-0.07, 0.07):
+            _bar(axes, *(tread.part(groove, groove).middle + k * _across(place.direction) for k in (-0.13, 0.13)),
+                 color="white", lw=0.8, zorder=4)  # fmt: skip
+
+
+def _vehicle(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """A body on two wheels."""
+    body = [
+        (-0.7, -0.15),
+        (-0.7, 0.18),
+        (-0.4, 0.24),
+        (-0.2, 0.56),
+        (0.28, 0.56),
+        (0.45, 0.22),
+        (0.7, 0.14),
+        (0.7, -0.15),
+    ]
+    along, across = _along(place.direction), _across(place.direction)
+    corners = [place.middle + x * along + y * across for x, y in body]
+    axes.add_patch(Polygon(corners, closed=True, fc="#c9d8e3", ec=INK, lw=1.1, zorder=3))
+    for x in (-0.42, 0.42):
+        wheel = place.middle + x * along - 0.2 * across
+        axes.add_patch(Ellipse(tuple(wheel), 0.3, 0.3, fc="#8a8a8a", ec=INK, lw=1.1, zorder=4))
+
+
 def _joint(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two forks on a cross; a full circle where rotation passes unchanged; the bend as a dashed wedge."""
     centre = place.start + 0.5 * JOINT_LENGTH * _along(place.direction)
@@ -306,10 +347,13 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "TunedDamper": _damper,
     "Belt": _belt,
     "DualMassFlywheel": _dual_mass,
+    "Tyre": _tyre,
+    "Vehicle": _vehicle,
     "Planetary": _planetary,
     "Differential": _differential,
     "PiecewiseShaft": _stages,
     "Clutch": _stages,
+    "SlipClutch": _slip_clutch,
 }
 
 
@@ -358,7 +402,7 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
     elif isinstance(element, GEARS):
         text = f"i {element.speed_ratio:.4g}"
-    elif isinstance(element, Disk) and element.load_torque:
+    elif isinstance(element, Loaded) and element.load_torque:
         text = f"load\n{element.load_torque:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"

@@ -92,6 +92,13 @@ def sketch(
         it is.
     input_angle : at which the forks are drawn [rad].
     lengths : joint-to-joint lengths [m] by shaft of a driveline, where they are not those of tubes.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> figure = tn.sketch(tn.catalogue("two-shaft-cardan"))
+    >>> print(figure)
+    Figure(860x520)
     """
     scene = _of_layout(subject, input_angle) if isinstance(subject, Layout) else _of_line(
         subject, input_angle, dict(lengths or {})

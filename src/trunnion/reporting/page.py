@@ -2,9 +2,32 @@
 
 from __future__ import annotations
 
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from trunnion.reporting.tables import with_signs
+from trunnion.writing import written_whole
+
+
+@dataclass(frozen=True)
+class HtmlPage:
+    """A page as text. ``save`` writes it; a notebook shows it."""
+
+    html: str
+
+    def save(self, path: str | os.PathLike[str]) -> Path:
+        """Write the page; an existing file is replaced only when all is written."""
+        with written_whole(path) as temporary:
+            temporary.write_text(self.html, encoding="utf-8", newline="\n")
+        return Path(path)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        return f'<iframe srcdoc="{escape(self.html)}" style="width:100%;height:80vh;border:0"></iframe>'
 
 
 def environment(*parts: str) -> Environment:

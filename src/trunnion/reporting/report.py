@@ -19,6 +19,7 @@ from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
 from trunnion.reporting.overview import Overview, overview
+from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import provenance
 from trunnion.reporting.under_load import heaviest
@@ -26,23 +27,15 @@ from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import speed_factor
 from trunnion.results.words import Words
 from trunnion.waiting import to_the_end
-from trunnion.writing import written_whole
 
 
 @dataclass(frozen=True)
-class Report:
-    """A page as text, and the results it was made from. ``save`` writes it; a notebook shows it."""
+class Report(HtmlPage):
+    """A page, and the results it was made from."""
 
-    html: str
     contents: Contents
     pictures: Mapping[str, ReportPicture]
     source: Path | None = None
-
-    def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the page; an existing file is replaced only when all is written."""
-        with written_whole(path) as temporary:
-            temporary.write_text(self.html, encoding="utf-8", newline="\n")
-        return Path(path)
 
     def charted(self, seen: Overview) -> Report:
         """The same report with the chart of ``seen``; nothing else is computed or drawn again."""
@@ -50,11 +43,6 @@ class Report:
         with to_the_end():  # what there is is drawn
             shown = {**self.pictures, **chart_pictures(contents)}
             return Report(_page(contents, shown, self.source), contents, shown, self.source)
-
-    def _repr_html_(self) -> str:
-        from html import escape
-
-        return f'<iframe srcdoc="{escape(self.html)}" style="width:100%;height:80vh;border:0"></iframe>'
 
     def __repr__(self) -> str:
         size = len(self.html.encode()) / 1e6
@@ -86,6 +74,13 @@ def report(
     Raises
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
+    >>> tn.report(line, speed=30.0)
+    report on a driveline, 0.1 MB of HTML; .save(path) writes it
     """
     if unit is not None:
         speed_factor(unit)
@@ -100,8 +95,6 @@ def report(
 
 
 def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
-    from trunnion.reporting.page import environment
-
     seen = contents.overview
     unit, frequency_unit = seen.unit, reading_of_frequencies(seen.unit)
     made = datetime.now().astimezone()

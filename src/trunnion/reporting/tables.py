@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
 from trunnion.reporting.contents import Contents
@@ -44,7 +44,8 @@ class Table:
     @property
     def numeric(self) -> tuple[bool, ...]:
         """Whether a column holds numbers alone."""
-        return tuple(all(_is_number(row[i]) for row in self.rows) for i in range(len(self.heads)))
+        columns = [[row[i] for row in self.rows] for i in range(len(self.heads))]
+        return tuple(any(column) and all(map(_is_number, column)) for column in columns)
 
 
 def _is_number(text: str) -> bool:
@@ -88,7 +89,7 @@ def _numbers(element: Element) -> list[str]:
         parts.append("hence " + ", ".join(_signs(t) for t in tube))
     if isinstance(element, Shaft) and element.loss_factor_frequency is not None:
         parts.append("hence " + _signs(shown(element.damping_coefficient, DAMPING, digits=4)))
-    if isinstance(element, Disk) and element.inertia is None:
+    if isinstance(element, Loaded) and getattr(element, "inertia", None) is None:
         parts.append("hence " + _signs(shown(element.moment_of_inertia, INERTIA, digits=4)))
     return parts
 
@@ -307,6 +308,6 @@ def operation(contents: Contents, unit: str) -> Table:
         first, last = (np.rad2deg(a) for a in seen.angle_range)
         rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
     for name, element in zip(seen.line.names, seen.line.elements, strict=True):
-        if isinstance(element, Disk) and element.load_torque:
+        if isinstance(element, Loaded) and element.load_torque:
             rows.append((f"load torque on {name}", f"{four(element.load_torque)} N·m"))
     return Table(("", ""), tuple(rows))

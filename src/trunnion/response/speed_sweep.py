@@ -103,9 +103,27 @@ def speed_sweep(
 ) -> SpeedSweep:
     """Torque and twist amplitudes of every shaft at each of ``speeds`` [rad/s]; see ``sweep_speeds`` for a grid.
 
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+    speeds : (speed,) input speeds [rad/s].
+    statically_twisted : as in ``stability``.
+    progress : called as progress(share done).
+
     Raises
     ------
     InputError : speeds that are not positive; a line without steady base motion or with too long a period.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> found = tn.speed_sweep(line, [40.0, 56.0, 70.0])
+    >>> found.torque_amplitude.round(1)
+    array([[  26.3],
+           [1108.5],
+           [  69.1]])
     """
     found = order_response(line, speeds, statically_twisted=statically_twisted, progress=progress)
     return SpeedSweep(
@@ -121,7 +139,23 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     which a torque of any spring is largest.
 
     An even grid alone would step over the peaks of lightly damped modes. The largest torques over the range are those
-    at these speeds, to 0.1 % (``range_search.largest``).
+    at these speeds, to 0.1 % (``response.ranges.largest``).
+
+    Parameters
+    ----------
+    line : a ``Driveline`` or its ``Assembly``.
+    low : lowest input speed [rad/s].
+    high : highest input speed [rad/s].
+    points : of the even grid.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> speeds = tn.sweep_speeds(line, 40.0, 70.0, 21)
+    >>> print(len(speeds) > 21, speeds[[0, -1]])
+    True [40. 70.]
     """
     assembly = assemble(line)
     require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")

@@ -101,12 +101,20 @@ def catalogue(name: str, **changes: Any) -> Driveline: ...
 def catalogue(name: str, **changes: Any) -> Driveline | DoubleTripod | PiecewiseOscillator:
     """A published driveline by name; keyword arguments change its numbers (see the entry's builder).
 
-    >>> catalogue("two-shaft-cardan", angle=0.2).names[3]
-    'HookeJoint 1'
+    Parameters
+    ----------
+    name : of the entry, as "two-shaft-cardan".
+    **changes : new values of its numbers, in its own units; see the entry's builder.
 
     Raises
     ------
     InputError : no such entry (the nearest is suggested), or a keyword it does not have.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> tn.catalogue("two-shaft-cardan", angle=0.2).names[3]
+    'HookeJoint 1'
     """
     for entry in _ENTRIES:
         if entry.name == name:

@@ -54,6 +54,13 @@ def reproduce(
     Raises
     ------
     InputError : no such paper.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> found = tn.reproduce("gear-rattle", points=50)
+    >>> found.tables[0].title
+    'Methods against the exact motion, B₀ = 0.05 (half peak-to-peak, ω)'
     """
     if name != ALL and name not in PAPERS:
         known = ", ".join((*PAPERS, ALL))

@@ -30,6 +30,9 @@ class Event:
     direction : +1 rising, −1 falling, 0 both.
     stop : whether the integration ends there.
     name : in results; by default "z = 27" or the function's name.
+
+    >>> Event("z", level=27.0, direction=+1).label
+    'z = 27'
     """
 
     function: Callable[..., Any] | str

@@ -137,7 +137,7 @@ class IntegratedMap:
     phase : t₀ [s].
     periods : forcing periods per application.
     look : (system, times, states) → curves (times, c) to be observed; by default the states.
-    held : numbers of the sliders that are kept from slipping.
+    fixed : numbers of the sliders that are kept from slipping.
     """
 
     family: Callable[..., System]
@@ -358,10 +358,17 @@ class StroboscopicMap(_Applied):
     system : with a forcing period.
     phase : t₀ [s].
     periods : forcing periods per application.
+    tolerance : error allowed per step, relative to the scale of a state + |x|.
+    most_steps : steps after which an application ends.
 
     Raises
     ------
     InputError : an autonomous system, periods that are no whole number from 1.
+
+    >>> import trunnion as tn
+    >>> section = StroboscopicMap(tn.reference_system("duffing"))
+    >>> section([0.1, 0.0]).round(4)
+    array([-0.1371,  0.4198])
     """
 
     system: System
@@ -401,10 +408,17 @@ class SectionMap(_Applied):
     section : the surface, with a direction of +1 or −1.
     longest : time [s] after which the section counts as never crossed; by default 1000 forcing periods, or
         1000 s for an autonomous system.
+    tolerance : error allowed per step, relative to the scale of a state + |x|.
+    most_steps : steps after which an application ends.
 
     Raises
     ------
     InputError : a section without a direction.
+
+    >>> import trunnion as tn
+    >>> section = SectionMap(tn.reference_system("lorenz"), Event("z", level=27.0, direction=+1))
+    >>> section([1.0, 1.0, 20.0]).round(4)
+    array([14.0025, 20.1258, 27.    ])
     """
 
     system: System

@@ -43,6 +43,11 @@ class PeriodicLinearSystem(Portable):
         named after them.
     fastest : the highest frequency of the coefficients in radians per unit τ, where known: no step of an integration
         is longer than a quarter of its cycle.
+
+    >>> from trunnion.systems.periodic_linear import from_matrices
+    >>> system = from_matrices([[1.0]], [[0.0]], lambda t: (1.2 - 0.4 * np.cos(2 * t))[:, None, None], period=np.pi)
+    >>> system.coefficients(np.zeros(1)).stiffness
+    array([[[0.8]]])
     """
 
     period: float

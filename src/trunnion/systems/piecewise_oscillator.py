@@ -43,8 +43,8 @@ class PiecewiseOscillator:
     ----------
     breakpoints : rising places where the slope changes, (n,).
     slopes : of g below, between and above them, (n + 1,), none negative.
-    damping : c; with ``damping_law`` "always", "in contact" (outside the softest piece only) or "never pulling"
-        (there too, and so that a surface never pulls nor more than doubles its push: with τ the elastic force
+    damping, damping_law : c, and when it acts: "always", "in contact" (outside the softest piece only) or "never
+        pulling" (there too, and so that a surface never pulls nor more than doubles its push: with τ the elastic force
         pressed on and d = c x′, τ + min(τ, d), and 0 where τ + d ≤ 0, mirrored below; the law of
         Modelica.Mechanics.Rotational.Components.ElastoBacklash).
     mean_force : B₀.
@@ -52,6 +52,7 @@ class PiecewiseOscillator:
     harmonics : further harmonics (k, p_k, q_k).
     frequency : ω [rad/s].
     inertia : m.
+    name : for titles and messages.
     speed_unit : of one made from a driveline, what its description prints speeds in.
 
     Units are the caller's: metre, kilogram, newton, or radian, kg m², N m.

@@ -18,7 +18,18 @@ SLACK = 1e-6
 
 
 class Switch(NamedTuple):
-    """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``."""
+    """In ``regime``, when ``guard`` crosses zero in ``direction`` (+1 rising, −1 falling), go to ``then``.
+
+    Parameters
+    ----------
+    regime : name of the one that is left.
+    guard : name of the switching function.
+    direction : +1 where it rises through zero, −1 where it falls.
+    then : name of the regime behind.
+
+    >>> Switch("free", "x = 1", +1, "contact").then
+    'contact'
+    """
 
     regime: str
     guard: str
@@ -35,7 +46,7 @@ class Regimes(Portable):
     names : of the regimes; the right-hand side f(t, x, p, regime) receives their numbers 0, 1, ….
     guards : names of the switching functions.
     guard : (t, x, p) or (t, x, p, regime) → one number per guard, smooth wherever it is watched; or a
-        ``CFunction`` of the guards' signature (see ``numerics.integration_kernel``).
+        ``CFunction`` of the guards' signature (see ``numerics.integration.integration_kernel``).
     switches : see ``Switch``.
     locate : (t, x, p) → number of the regime of a state, for starts.
     jump : (t, x, p, guard number) → state behind the guard, for impacts; by default the state is continuous.

@@ -17,7 +17,19 @@ from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 @dataclass(frozen=True)
 class Spring(Portable):
     """A nonlinear spring along d: force(u) and slope(u) at elongations u = dᵀx of any shape; kinks: where the slope
-    jumps."""
+    jumps.
+
+    Parameters
+    ----------
+    direction : d (n,), what each unknown adds to the elongation u = dᵀx.
+    force : u of any shape → force of the same shape.
+    slope : its derivative by u, likewise.
+    kinks : elongations at which the slope jumps.
+
+    >>> spring = Spring((1.0, -1.0), lambda u: 2 * u**3, lambda u: 6 * u**2)
+    >>> spring.force(np.array([0.5, 1.0]))
+    array([0.25, 2.  ])
+    """
 
     direction: tuple[float, ...]
     force: Callable[[Array], Array]
@@ -86,10 +98,16 @@ class SecondOrder:
     mean : F₀ (n,).
     harmonics : (k, p_k (n,), q_k (n,)).
     names : of the unknowns.
+    name : for titles and messages.
 
     Raises
     ------
     InputError : shapes that do not fit, a singular mass matrix, no harmonic of force.
+
+    >>> spring = cubic_spring([1.0], cubic=2.0)
+    >>> system = SecondOrder([[1.0]], [[0.1]], [[1.0]], (spring,), [0.0], [(1, [0.3], [0.0])])
+    >>> system.size, system.names
+    (1, ('x',))
     """
 
     mass: Array

@@ -54,7 +54,7 @@ class System(Portable):
     name : for titles and messages.
     states, units : name and unit of each state, (n,).
     rate : the right-hand side, see the module.
-    parameters : value of each parameter; parameter_units where they have one.
+    parameters, parameter_units : value of each parameter, and its unit where it has one.
     period : of the forcing [s]: a number, a function of the parameters, or None for an autonomous system.
     start : a state to begin with where the caller gives none.
     scale : the size of each state that counts as one, in which errors are measured; ones by default.

@@ -37,6 +37,7 @@ from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.quantities import QuantityKind, eye_unit, parse
 from trunnion.driveline.rules import RULES
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
@@ -45,7 +46,10 @@ ROUNDING = 1e-15
 """What a number may lose when it is written short."""
 LARGEST_FILE = 1_000_000
 """Characters of a file that is taken from the browser."""
-_WORDS = ("name", "description", "after", "of", "speed_unit", "application", "rule", "reason")
+_WORDS = (
+    *("name", "description", "after", "of", "speed_unit", "application", "rule", "reason"),
+    *TitleBlock.model_fields,
+)
 
 
 @dataclass(frozen=True)
@@ -324,6 +328,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Shaft": {"stiffness": "12 kN*m/rad", "damping": "3 N*m*s/rad"},
     "Coupling": {"stiffness": "12 kN*m/rad", "relative_damping": 0.8},
     "Clutch": {"stiffnesses": ["800 N*m/rad"], "friction": [{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}]},
+    "SlipClutch": {"torque": "1200 N*m"},
     "Disk": {"inertia": "0.4 kg*m^2"},
     "HookeJoint": {"angle": "12 deg"},
     "IdealJoint": {"angle": "12 deg"},
@@ -340,6 +345,8 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     },
     "Ratio": {"teeth_in": 10, "teeth_out": 41},
     "Differential": {"teeth_in": 10, "teeth_out": 41},
+    "Tyre": {"stiffness": "15 kN*m/rad", "damping": "200 N*m*s/rad"},
+    "Vehicle": {"mass": "1600 kg", "wheel_radius": "0.31 m"},
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }
 """What a new element starts with."""

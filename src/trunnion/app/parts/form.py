@@ -14,6 +14,7 @@ from trunnion.driveline.quantities import ANGLE, RATIO, SPEED, TORQUE
 from trunnion.driveline.rules import APPLICATIONS, RULES, SwitchedOff
 from trunnion.driveline.schedules import KEYS as FOLLOWED
 from trunnion.driveline.schedules import OVER as SCHEDULE_OVER
+from trunnion.driveline.title_block import TitleBlock
 from trunnion.errors import InputError
 
 Path = tuple[str | int, ...]
@@ -89,7 +90,7 @@ def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Field
     left = _OpenErrors(problems)
     elements, operation = data.get("element", []), data.get("operation", {})
     names, disks = names_of(elements), disks_of(elements)
-    groups = [_whole(data, left), _operation(operation, left)]
+    groups = [_whole(data, left), _document(data.get("document", {}), left), _operation(operation, left)]
     groups += [_switched_off(i, one, left) for i, one in enumerate(operation.get(SWITCHED_OFF, []))]
     groups += [_load_case(i, case, disks, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
     groups += [_schedule(i, table, elements, left) for i, table in enumerate(operation.get(SCHEDULE, []))]
@@ -107,6 +108,17 @@ def _whole(data: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
         if key in data
     ]
     return FieldGroup((), "line", "", tuple(fields), tuple(k for k in _WHOLE if k not in data))
+
+
+def _document(table: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
+    path = owners = ("document",)
+    fields = [
+        Field((*path, key), label_of(key), str(table[key]), message=left.said(owners, key))
+        for key in TitleBlock.model_fields
+        if key in table
+    ]
+    addable = tuple(key for key in TitleBlock.model_fields if key not in table)
+    return FieldGroup(path, "document", "", tuple(fields), addable, left.rest(owners))
 
 
 def _operation(table: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:
@@ -248,7 +260,7 @@ def joints_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def disks_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
     """Names of the elements that a load acts on."""
-    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") == "Disk"]
+    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") in ("Disk", "Vehicle")]
 
 
 def _owns(error: InputError, owners: tuple[Any, ...]) -> bool:

@@ -18,6 +18,7 @@ from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.result import Assessment, verdict_of
 from trunnion.design.assessment.separation import separation
 from trunnion.design.assessment.ship_shafts import ship_shafts
+from trunnion.design.assessment.slip_clutches import slip_clutches
 from trunnion.design.assessment.stated_limits import stated_limits
 from trunnion.driveline.arguments import SpeedEnds, running_range
 from trunnion.driveline.driveline import Driveline
@@ -31,7 +32,7 @@ from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
-OF_RESPONSE = (stated_limits, coupling_ratings, ship_shafts, gear_hammer)
+OF_RESPONSE = (stated_limits, coupling_ratings, ship_shafts, gear_hammer, slip_clutches)
 
 
 @keeps_time

@@ -117,7 +117,7 @@ def guideline(
     inputs: str = "",
     element: str = "",
 ) -> Check:
-    """The check of a rule of practice for the whole line; ``compared`` and ``numbers`` as of ``at_worst``."""
+    """The check of a rule of practice for the whole line; ``compared`` and ``numbers`` as of ``at_largest``."""
     value, limit, unit = compared
     margin = below(value, limit)
     return Check(

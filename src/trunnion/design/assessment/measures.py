@@ -17,7 +17,9 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.limits import SHIP_SHAFTS, OneLimit
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
+from trunnion.response.orders.clutch_torque import clutch_torque
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import SearchedQuantity
 
@@ -85,6 +87,8 @@ def measures(assembly: Assembly) -> Iterator[Measure]:
                 yield of_rating(assembly, name, key, getattr(element, key))
         if isinstance(element, GearPair):
             yield of_hammer(assembly, name)
+        if isinstance(element, SlipClutch) and (carried := of_slip_clutch(assembly, name)):
+            yield carried
 
 
 def spring_of(assembly: Assembly, element: str) -> int:
@@ -236,6 +240,15 @@ def of_hammer(assembly: Assembly, name: str) -> Measure:
         partial(_vibratory, c=c), lambda response: np.abs(response.mean_torque[:, c]),
         _of_spring(c), margin=required_of(assembly, name), bars=True,
     )  # fmt: skip
+
+
+def of_slip_clutch(assembly: Assembly, name: str) -> Measure | None:
+    """Torque of a slip clutch against its capacity; None where neither of its sides tells it."""
+    found = clutch_torque(assembly, name)
+    if found is None:
+        return None
+    margin = required_of(assembly, name)
+    return Measure(f"capacity of {name}", name, found.peak, _constant(found.holds), found.parts, margin=margin)
 
 
 @dataclass(frozen=True)

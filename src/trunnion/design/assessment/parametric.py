@@ -4,7 +4,7 @@
 
 The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
 slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
-looked at, and the ends of unstable ranges are located (``range_search.unstable``); lines with joint angles and with
+looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``); lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are looked at at 25 speeds and at
 named resonances.
 

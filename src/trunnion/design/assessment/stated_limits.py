@@ -3,7 +3,7 @@
     largest |mean + vibratory| ≤ limit          of torque, stress τ = 16 T D/(π(D⁴ − d⁴)), twist
     half of peak-to-peak over the cycle ≤ limit     of vibratory torque, speed fluctuation, acceleration
 
-by the linear response to every order, wherever in the running range it is largest (``range_search.largest``).
+by the linear response to every order, wherever in the running range it is largest (``response.ranges.largest``).
 """
 
 from __future__ import annotations

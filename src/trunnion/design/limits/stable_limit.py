@@ -62,6 +62,7 @@ def stable_limit(
 
     Parameters
     ----------
+    line : a ``Driveline`` or its ``Assembly``.
     parameter : as for a chart: "HookeJoint 1.angle", "HookeJoint *.angle", "factor of Shaft *.stiffness".
     speeds : one or more input speeds [rad/s].
     low, high : range that is searched, SI units; by default 0 to 60° for angles.
@@ -71,6 +72,7 @@ def stable_limit(
     scan : steps of the grid on which the limits of the description are compared.
     tolerance : of the patches that tell where to look; edges are solved for by themselves.
     within : seconds that it may take; the limit is unknown at speeds that were not reached, and ``ended`` says so.
+    progress : called as progress(share done).
 
     Undecided points (the spectral radius is 1 to within its error) and marginal ones (undamped lines) do not
     count as unstable.

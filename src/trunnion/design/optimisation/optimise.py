@@ -60,6 +60,7 @@ def optimise(
 
     Parameters
     ----------
+    line : to start from; numbers that are not free stay as they are.
     free : path → (low, high), SI units or texts, as {"joint 2.angle": ("2 deg", "8 deg")}; a pattern as
         "Shaft *.stiffness" frees each number by itself, "factor of Shaft *.stiffness" all together. What ranges
         over more than a factor of ten is searched by its logarithm.

@@ -1,9 +1,9 @@
 """Judging a line with one number changed, quickly to search and wholly to be sure.
 
 Checks are judged in groups, that of the check in question first: what does not satisfy it, or breaks another, costs no
-more. Of a free–free line with joint angles every speed takes a motion of its own. There the search looks at the
+more. Of a free–free line with joint angles every speed takes its periodic steady state. There the search looks at the
 response about the motion of rigid shafts, right to first order in what joints force; what it finds is judged about the
-line's own motions, as ``assess`` does.
+periodic steady states, as ``assess`` does.
 """
 
 from __future__ import annotations

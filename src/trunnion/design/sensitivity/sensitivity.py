@@ -64,6 +64,7 @@ def sensitivity(
 
     Parameters
     ----------
+    line : whose numbers are varied.
     speeds : input speed or speeds [rad/s] of growth rates and torques; default the operating speed of the description,
         or the ends of its range, or none.
     parameters : paths; "HookeJoint *.angle" is each joint's, "factor of Shaft *.damping" all together; default
@@ -174,7 +175,7 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
 
 def _growth(problem: _SensitivityProblem) -> Iterator[SensitivityRows]:
     if has_periodic_base(problem.assembly):
-        # Its own motion follows every parameter, so lines beside it are judged.
+        # Its periodic steady state follows every parameter, so lines beside it are judged.
         if len(problem.at):
             here, slope, error = _by_differences(problem, free_line_growth)
             for k, speed in enumerate(problem.at.tolist()):

@@ -1,9 +1,10 @@
 """A line's chart in plain NumPy, for an installation that has not compiled the kernels of charts yet.
 
-What a report shows takes few monodromy matrices, or is a picture of some thousand points: seconds here, a tenth of that
-in compiled kernels, and most of a minute to compile them. Every step is that of ``building``: patches of the largest
-multipliers (``few_nodes``) or pixel by pixel, pixels on a border judged once more, a check at random pixels by another
-method, Runge–Kutta steps of order 8 over whole periods. Where any of it would take long, ``building`` does.
+What a report shows takes few monodromy matrices, or is a picture of some thousand points: seconds here, a tenth of
+that in compiled kernels, and most of a minute to compile them. Every step is that of ``building``: patches of the
+largest multipliers (``leading_group``) or pixel by pixel, pixels on a border judged once more, a check at random
+pixels by another method, Runge–Kutta steps of order 8 over whole periods. Where any of it would take long,
+``building`` does.
 """
 
 from __future__ import annotations

@@ -74,6 +74,13 @@ def stability_chart(
     InputError : see ``axes.axis``; both axes the same; no speed.
     ComputationError : the chart's check of itself fails in every way of building it.
     KeyboardInterrupt : passed on; nothing is kept.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.catalogue("two-shaft-cardan")
+    >>> tn.stability_chart(line, ("speed", 1.0, 3.0, 20), ("HookeJoint 1.angle", 0.0, 0.5, 10))
+    <StabilityChart: stability chart, speed × HookeJoint 1.angle, 20 × 10 points: 193 stable, 7 unstable>
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
     task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
@@ -297,6 +304,22 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
 
     A chart of a family of your own is in the file without its function: give ``family`` again, or regions that
     were not patched are out of reach of ``at`` and ``zoom``.
+
+    Parameters
+    ----------
+    path : of the file.
+    family : the function it was made from, where that is one's own.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from tempfile import TemporaryDirectory
+    >>> line = tn.catalogue("two-shaft-cardan")
+    >>> chart = tn.stability_chart(line, ("speed", 1.0, 3.0, 20), ("HookeJoint 1.angle", 0.0, 0.5, 10))
+    >>> with TemporaryDirectory() as folder:
+    ...     chart.save(f"{folder}/chart.npz")
+    ...     print(tn.load_chart(f"{folder}/chart.npz").at(2.0, 0.3))
+    stable: spectral radius 0.999400 (error 8e-11)
     """
     from trunnion.results.chart import read_chart
 

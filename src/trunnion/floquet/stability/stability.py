@@ -215,6 +215,14 @@ def stability(
     ------
     InputError : no speed; a line without inertia, period or steady base motion.
     ComputationError : the integration did not settle.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> tn.stability(line, 56.0)
+    <Stability: stable at 56 rad/s: every disturbance dies out>
     """
     if not 0 < one_number(tolerance, "tolerance", "1e-10, say") < 1:
         raise InputError("must lie between 0 and 1", key="tolerance", value=tolerance, remedy="1e-10, say")

@@ -1,6 +1,6 @@
 """Every instability region in a box, as smooth curves with the resonance that names it.
 
-Rows y = const are searched from end to end (``rows``), joined into tongues (``joining``), and closed at their tips
+Rows y = const are searched from end to end (``rows``), joined into tongues (``shapes``), and closed at their tips
 (``ridges``). All that is printed of a tongue is solved for with integrations of its own at 1e-13; the patches only tell
 where to look.
 """
@@ -62,10 +62,12 @@ def tongues(
     ----------
     line : a driveline, or a ``PeriodicLinearFamily`` of your own.
     x, y : ``(parameter, low, high)``, parameters as of a chart, SI units. Tongues are followed along y: take an angle
-    or a
-        damping for it, and the speed for x.
+        or a damping for it, and the speed for x.
     speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
     rows : values of y searched to begin with, more where tongues are born, close or meet.
+    statically_twisted : as in ``stability``.
+    threads : default one per core.
+    progress : called as progress(share done).
 
     Up to three unknowns every row is searched completely: every change of stability is a zero of one of three analytic
     functions, and their zeros on a row are all found. Longer lines are sampled. ``search`` in the result says which.
@@ -73,6 +75,15 @@ def tongues(
     Raises
     ------
     InputError : see ``stability_chart``; fewer than three rows.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.catalogue("two-shaft-cardan")
+    >>> found = tn.tongues(line, ("speed", 1.5, 1.7), ("HookeJoint 1.angle", 0.05, 0.5), rows=9)
+    >>> print(str(found).splitlines()[1])
+      1  subharmonic ω₂: closes below at input speed 1.61804 rad/s, angle of HookeJoint 1 6.88441°; grows by up to
+      0.04468 1/s
     """
     if isinstance(rows, bool) or not isinstance(rows, int | np.integer) or rows < 3:
         raise InputError("must be a whole number, 3 or more", key="rows", value=rows)

@@ -22,6 +22,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Loaded
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
@@ -283,7 +284,8 @@ def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
     line, topo = result.nonlinear.line.assembly.line, result.nonlinear.line.assembly.topology
     for station, place in topo.disks:
         name = line.names[place]
-        if not getattr(line.elements[place], "quadratic_load", 0.0) or name not in linear.inertias:
+        element = line.elements[place]
+        if not (isinstance(element, Loaded) and element.loads[2]) or name not in linear.inertias:
             continue
         fluctuation = float(linear.speed_fluctuation[0, linear.inertias.index(name)])
         share = fluctuation / (abs(float(topo.speed_ratio[station])) * result.speed)

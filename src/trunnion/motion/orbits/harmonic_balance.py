@@ -9,10 +9,10 @@ Stability comes from the monodromy matrix along the motion that starts where the
 motion misses its start after a period is the ``defect``, the error of the series measured by another method.
 
 One driver follows every balance: a branch with so many harmonics, or with as many as its tail asks for. What differs
-is the residual: here of any first-order system, in ``harmonic_balance_springs`` of masses on springs. Own motions of
-free lines (``steady.own.free_balance``) lie on no branch: their speeds are given, and one Newton's method takes its
-steps for all of them together (``numerics.continuation.newton``). Harmonics are doubled alike, and the matrices of the
-balance are the same for all (``numerics.harmonics``).
+is the residual: here of any first-order system, in ``harmonic_balance_springs`` of masses on springs. Periodic steady
+states of free–free lines (``steady.free.free_balance``) lie on no branch: their speeds are given, and one Newton's
+method takes its steps for all of them together (``numerics.continuation.newton``). Harmonics are doubled alike, and
+the matrices of the balance are the same for all (``numerics.harmonics``).
 """
 
 from __future__ import annotations

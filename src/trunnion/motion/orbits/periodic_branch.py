@@ -1,8 +1,8 @@
 """A branch of periodic motions followed over a parameter by shooting, through folds, stable or not.
 
 The branch is the curve P(x; λ) = x in the space of z = (x, λ), followed by pseudo-arclength
-(``numerics.arclength``) with the exact ∂P/∂x. Lengths are measured in the scale of the states and in the range of
-the parameter. A free–free line keeps its mean speed by its drives, as in ``periodic_response``.
+(``numerics.continuation.arclength``) with the exact ∂P/∂x. Lengths are measured in the scale of the states and in the
+range of the parameter. A free–free line keeps its mean speed by its drives, as in ``periodic_response``.
 
 Exact motions of a piecewise linear oscillator, or of a driveline with stages, are followed over their frequency or
 speed with the exact derivative by that as well: what other methods are measured against.
@@ -24,6 +24,7 @@ from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
+from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.staged_line import StagedLine, staged_line
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.errors import InputError
@@ -107,6 +108,7 @@ def system_over(
         return _of_system(line, str(parameter), first, (high - low) * width)
     description = line.line if isinstance(line, Assembly) else line
     refuse_friction(description, NOT_FOLLOWED, STAND_IN)
+    refuse_slip_clutches(description)
     over_speed = parameter == "speed"
     prepared = line_system(line, first if over_speed and first > 0 else operating_speed(description, speed))
     refuse_dragged(prepared.assembly)

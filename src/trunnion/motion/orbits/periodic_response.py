@@ -22,6 +22,7 @@ from trunnion.equations.clutch_capacity import carries_static_torque, refuse_ove
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
+from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import (
     has_joint_angles,
     imbalance,
@@ -324,6 +325,7 @@ def periodic_response(
             raise InputError("belongs to a driveline", key="speed", value=speed, remedy="leave it out")
         return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
     description = line.line if isinstance(line, Assembly) else line
+    refuse_slip_clutches(description)
     prepared = line_system(line, operating_speed(description, speed))
     refuse_dragged(prepared.assembly)
     if prepared.assembly.topology.free:

@@ -45,7 +45,16 @@ def describing_function(oscillator: PiecewiseOscillator, amplitude: float, mean:
 
 
 class DescribingFunction(SlowFlow):
-    """The averaged rates of the exact piecewise oscillator."""
+    """The averaged rates of the exact piecewise oscillator.
+
+    Parameters
+    ----------
+    oscillator : with one harmonic of force and damping that always acts.
+
+    >>> gap = PiecewiseOscillator.gap(half_gap=1.0, damping=0.05, mean_force=0.2, force=0.4)
+    >>> [round(frequency, 4) for frequency in DescribingFunction(gap).frequencies(2.0)]
+    [0.448, 0.7718]
+    """
 
     method = "describing function"
     note = "averaging of the exact piecewise force; the mean from the mean force; no fit"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Self
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.line_regimes import LineRegimes
 from trunnion.equations.line_system import LineMotion, LineSystem
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
@@ -36,6 +37,8 @@ from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
 from trunnion.results.speeds import rounded_speed
 from trunnion.systems.system import System
+
+GAUSS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 @dataclass(frozen=True, repr=False)
@@ -94,6 +97,11 @@ class Simulation:
         """First and last time [s]."""
         return float(self.cuts[0]), self.end
 
+    @property
+    def is_dense(self) -> bool:
+        """Whether states between steps are known."""
+        return len(self.trajectory.coefficients) > 0 or not self.steps
+
     def at(self, time: ArrayLike) -> Array:
         """States at any times of the run, (..., n), to about ten times the tolerance; NaN outside it.
 
@@ -101,12 +109,19 @@ class Simulation:
         ------
         InputError : the run was made with ``dense=False``.
         """
-        if not len(self.trajectory.coefficients) and self.steps:
+        if not self.is_dense:
             raise InputError("was left out", element="simulation", key="dense", value=False, remedy="set dense=True")
         times, (first, last) = np.asarray(time, dtype=float), self.time_range
         inside = (times >= first) & (times <= last)
         found = self.trajectory.at(np.where(inside, times, first))
         return np.asarray(np.where(inside[..., None], found, np.nan))
+
+    def regime_at(self, time: Array) -> Integers:
+        """Number of the regime (m,) at times (m,) of the run."""
+        run = self.trajectory
+        if not run.steps:
+            return np.full(len(time), run.final_regime, dtype=np.int64)
+        return run.regime[np.searchsorted(run.start[1:], time, side="right")]
 
     def without_dense_output(self) -> Self:
         """The same without what ``at`` needs."""
@@ -120,10 +135,7 @@ class SystemSimulation(Simulation, Result):
     @property
     def regime(self) -> Integers:
         """Number of the regime (points,)."""
-        run = self.trajectory
-        if not run.steps:
-            return np.full(len(self.time), run.final_regime, dtype=np.int64)
-        return run.regime[np.searchsorted(run.start[1:], self.time, side="right")]
+        return self.regime_at(self.time)
 
     @property
     def event_name(self) -> tuple[str, ...]:
@@ -267,20 +279,65 @@ class LineSimulation(Simulation, OfShafts, Described):
         return self._observed(time, ("torque",))[0]
 
     def _observed(self, time: ArrayLike, names: tuple[str, ...]) -> list[Array]:
+        def observe(piece: Simulation, times: Array, states: Array) -> tuple[Array, ...]:
+            motion = self.line.observe(piece.system, times, states, piece.regime_at(times))
+            return tuple(getattr(motion, name) for name in names)
+
+        return self._of_pieces(time, observe)
+
+    def _of_pieces(
+        self, time: ArrayLike, observe: Callable[[Simulation, Array, Array], tuple[Array, ...]]
+    ) -> list[Array]:
+        """What is observed of each piece at the times (m,) in it; NaN outside the run."""
         times = np.atleast_1d(np.asarray(time, dtype=float))
         order = np.argsort(times, kind="stable")
         states, times = self.at(times[order]), times[order]
         ends = np.searchsorted(times, [*(piece.time_range[0] for piece in self.pieces), np.nextafter(self.end, np.inf)])
         parts = [
-            self.line.observe(piece.system, times[i:j], states[i:j])
-            for piece, i, j in zip(self.pieces, ends, ends[1:], strict=False)
+            observe(piece, times[i:j], states[i:j]) for piece, i, j in zip(self.pieces, ends, ends[1:], strict=False)
         ]
         whole = []
-        for columns in ([getattr(part, name) for part in parts] for name in names):
+        for columns in zip(*parts, strict=True):
             found = np.full((len(times), columns[0].shape[1]), np.nan)
             found[order[ends[0] : ends[-1]]] = np.concatenate(columns)
             whole.append(found)
         return whole
+
+    @property
+    def clutches(self) -> tuple[str, ...]:
+        """Names of the slip clutches."""
+        return tuple(clutch.name for clutch in self.line.clutches)
+
+    def slip_at(self, time: ArrayLike) -> tuple[Array, Array]:
+        """Slip speed [rad/s] and torque [N m] of every slip clutch (m, clutch) at times (m,) of the run."""
+
+        def observe(piece: Simulation, times: Array, states: Array) -> tuple[Array, ...]:
+            return self.line.slip(times, states, piece.system.numbers, piece.regime_at(times))
+
+        slip, torque = self._of_pieces(time, observe)
+        return slip, torque
+
+    @property
+    def slip(self) -> Array:
+        """Slip speed [rad/s] of every slip clutch (points, clutch), positive where its output leads."""
+        return self.slip_at(self.time)[0]
+
+    @cached_property
+    def slip_heat(self) -> Array:
+        """Heat ∫|T v| dt [J] of every slip clutch (clutch,), and the angle ∫|v| dt [rad] by which it slipped, over the
+        whole run: (2, clutch). Gauss's rule in every step."""
+        begin, length = self.cuts[:-1, None], np.diff(self.cuts)[:, None]
+        times = begin + length * (1 + GAUSS) / 2
+        slip, torque = self.slip_at(times.ravel())
+        weights = (length * GAUSS_WEIGHTS / 2).ravel()
+        slips = np.logical_not(self._sticks(times.ravel()))
+        return np.array([weights @ (np.abs(torque * slip) * slips), weights @ (np.abs(slip) * slips)])
+
+    def _sticks(self, times: Array) -> Array:
+        """Whether each slip clutch sticks (m, clutch)."""
+        regimes = self.pieces[0].system.regimes
+        assert isinstance(regimes, LineRegimes)
+        return regimes.clutches_stick(np.asarray(self.regime_at(times)))
 
     @property
     def starts_free(self) -> bool:
@@ -353,6 +410,13 @@ class LineSimulation(Simulation, OfShafts, Described):
             yield data_coordinate("slider", [slider.name for slider in self.line.sliders])
             yield data_variable("time slider", "deflection", self.state[:, 2 * n :], "rad")
         yield from data_variables("time shaft", self, twist="rad", torque="N*m")
+        if self.clutches:
+            yield data_coordinate("clutch", self.clutches)
+            yield data_variable("time clutch", "slip", self.slip, "rad/s", "positive where the output leads")
+            if self.is_dense:
+                heat, angle = self.slip_heat
+                yield data_variable("clutch", "slip_heat", heat, "J", "of the whole run")
+                yield data_variable("clutch", "slip_angle", angle, "rad", "by which it slipped, either way")
         yield data_variable("time", "input_speed", self.input_speed, "rad/s")
         yield data_variable("time", "input_angle", self.input.angle(self.time), "rad")
         if self.starts_free:
@@ -381,7 +445,16 @@ class LineSimulation(Simulation, OfShafts, Described):
         ]
         head = f"motion of {self.system.name} over {self.end:.6g} s ({self.turns:.6g} turns): "
         own = [f"  {self._turning(unit or self.unit)}"] if self.starts_free else []
-        return "\n".join([f"{head}{self.steps} steps", *own, *rows, f"  {self.outcome}"])
+        return "\n".join([f"{head}{self.steps} steps", *own, *rows, *self._slips(), f"  {self.outcome}"])
+
+    def _slips(self) -> list[str]:
+        """How far every slip clutch slipped, and what heat that was."""
+        if not (self.clutches and self.is_dense):
+            return []
+        return [
+            f"  {name}: slips by {np.rad2deg(angle):.4g} deg, {heat:.4g} J of heat" if angle else f"  {name}: sticks"
+            for name, heat, angle in zip(self.clutches, *self.slip_heat, strict=True)
+        ]
 
     def _turning(self, unit: str) -> str:
         """How fast a free–free line turned."""

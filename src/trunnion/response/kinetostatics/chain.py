@@ -18,12 +18,13 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element
+from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Elastic
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
 from trunnion.equations.topology import LinkKind, Station, stations_of
@@ -225,16 +226,20 @@ class _ChainDraft:
             if element.orders:
                 law = element.law(lambda key: np.asarray(self.packed.values[self.packed.column(i, key)]))
             return self._joint(parent, name, speed, law=law, orders=element.orders, **bend)
+        if isinstance(element, SlipClutch):
+            return parent  # sticks
         if station.link is LinkKind.RATIO:
             axis, ratio = Member(-1, self.members[-1].train + 1, speed), self.steps[parent].speed / speed
             return self._step(LinkKind.RATIO, parent, name, speed, axis, ratio=float(ratio))
         if isinstance(element, GearPair):
             return parent  # rigid and in contact
         assert isinstance(element, Elastic | PiecewiseShaft)
+        name = self.line.spring_name((i,), station.spring)
         more: dict[str, Any] = {"fork_offset": getattr(element, "fork_offset", 0.0)}
         if isinstance(element, Elastic):
-            # What oil alone drags along turns with its housing in a turn.
-            more["stiffness"] = element.torsional_stiffness or np.inf
+            # What a damper alone drags along turns with its housing in a turn.
+            links = element.links(lambda key: getattr(element, key))
+            more["stiffness"] = float(links[station.spring][0]) or np.inf
         else:
             more["stages"] = stage_law(self.line, i, self.packed.column, self.packed.table(1))
         here = self._step(LinkKind.SHAFT, parent, name, speed, **more)
@@ -247,10 +252,11 @@ class _ChainDraft:
         """One of an element's inertias, with the loads of a disk, at the station behind a step."""
         here = self.steps[step]
         here = replace(here, inertia=here.inertia + element.inertia_values[number])
-        if isinstance(element, Disk):
+        if isinstance(element, Loaded):
+            constant, viscous, quadratic = element.loads
             here = replace(
-                here, load=here.load + element.load_torque, viscous_load=here.viscous_load + element.viscous_load,
-                quadratic_load=here.quadratic_load + element.quadratic_load,
+                here, load=here.load + constant, viscous_load=here.viscous_load + viscous,
+                quadratic_load=here.quadratic_load + quadratic,
             )  # fmt: skip
         self.steps[step] = here
 

@@ -25,6 +25,10 @@ class CrossFriction:
     coefficient : μ of the pin bearings [1]; a few thousandths for needle bearings.
     pin_radius : r, where the bearing slides or rolls on the pin [m].
     arm : R, distance of the bearings' middle from the centre of the cross [m].
+
+    >>> friction = CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")
+    >>> round(friction.pin_moment, 6)
+    0.0015
     """
 
     coefficient: float

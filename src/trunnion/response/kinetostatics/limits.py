@@ -28,6 +28,7 @@ def check_limits(
 
     Parameters
     ----------
+    result : of ``kinetostatics``.
     irregularity : of the output [1]; the default is the guideline of cardan-shaft makers, None leaves it out.
     output_acceleration, shaft_acceleration : largest angular acceleration [rad/s²] of the output (which
         shakes what it drives) and of any shaft in between (whose inertia shakes its neighbours). Makers'
@@ -35,6 +36,16 @@ def check_limits(
     deviation : largest lead or lag of the output [rad].
     secondary_couple : on any fork [N m].
     support_force : on any bearing [N].
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.05), shaft, tn.Disk(inertia=0.8)])
+    >>> for finding in tn.check_limits(tn.kinetostatics(line, speed=100.0), output_acceleration=50.0):
+    ...     print(finding)
+    note: pass: irregularity of the output 0.002501 keeps the limit of 0.0027
+    note: pass: angular acceleration of the output 25.01 rad/s^2 keeps the limit of 50 rad/s^2
     """
     even, jerk = _limit("irregularity", irregularity), _limit("output_acceleration", output_acceleration)
     lag = _limit("deviation", deviation, ANGLE)

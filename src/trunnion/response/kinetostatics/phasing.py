@@ -97,6 +97,15 @@ def phase_forks(
     Raises
     ------
     InputError : no shaft between two such joints, or a pitch that does not divide a turn.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> joints = tn.HookeJoint(angle="10 deg"), tn.HookeJoint(angle="10 deg", plane="30 deg")
+    >>> line = tn.Driveline([tn.ConstantSpeed(), joints[0], tn.Shaft(stiffness=1e4), joints[1], tn.Disk(inertia=1.0)])
+    >>> found = tn.phase_forks(line)
+    >>> round(found.offsets["Shaft 1"], 4), round(found.before, 5)
+    (0.5236, 0.03062)
     """
     train = chain(line, branch=branch)
     free = phased_shafts(train)

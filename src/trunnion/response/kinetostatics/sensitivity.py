@@ -65,8 +65,21 @@ def assembly_sensitivity(
 
     Parameters
     ----------
+    line : with joints.
     error : size of every error [rad].
     branch : name of an element on the branch whose output is asked about; default the one that ends the line.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> line = tn.cardan_line(["10 deg", "10 deg"], nu=["90 deg"], beta=["0 deg"])
+    >>> tn.assembly_sensitivity(line, "0.5 deg")
+    assembly errors of ± 0.5 deg: irregularity 0.06124 without, up to 0.06756 with all together (as one Hooke's
+      joint of 14.8 deg)
+      HookeJoint 1.angle: 0.05824 with − error, 0.0644 with + error
+      HookeJoint 2.angle: 0.05824 with − error, 0.0644 with + error
+      HookeJoint 2.plane: 0.06124 with − error, 0.06124 with + error
+      intermediate shaft 1.fork_offset: 0.06124 with − error, 0.06124 with + error
     """
     size = quantity(error, ANGLE, "error")
     if not size > 0:

@@ -68,9 +68,24 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None) ->
     Cylinders are the ``firing_angles`` of disks. One that misfires adds only the inertia torque of its masses
     (``quadratic_amplitude``); ``misfire(...).line`` is the line with the worst one, for ``assess`` and all else.
 
+    Parameters
+    ----------
+    line : with cylinders.
+    speeds : (speed,) input speeds [rad/s].
+    load_case : name of one of the line's load cases; by default the loads of its disks.
+
     Raises
     ------
     InputError : no disk has cylinders; as of ``order_response``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> torque, angles = tn.Excitation(order=0.5, amplitude=40.0), ["0 deg", "180 deg", "450 deg", "540 deg"]
+    >>> engine = tn.Disk(inertia=0.2, excitation=[torque], firing_angles=angles, drive_share=1)
+    >>> line = tn.Driveline([engine, tn.Shaft(stiffness=2e4, damping=2.0), tn.Disk(inertia=2.0, load_torque=50.0)])
+    >>> tn.misfire(line, [100.0, 150.0])
+    <Misfire: misfire: cylinder 2 of Disk 1 is the worst of 4>
     """
     if load_case is not None:
         line = line.with_load(load_case)

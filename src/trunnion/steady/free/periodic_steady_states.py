@@ -2,7 +2,7 @@
 them.
 
 Each is solved once by ``free_balance``, whoever asks: the orders and the stability along a range. Excitations of disks
-and transmission errors are left out, as in ``own_motion``, which finds one motion by shooting.
+and transmission errors are left out, as in ``periodic_steady_state``, which finds one motion by shooting.
 
 Joints shake such a line by themselves. Near a resonance of that it swings so far that its frequency changes with the
 swing, and the curve of its motions over the mean speed leans over: coming from slow speeds one motion goes on as far

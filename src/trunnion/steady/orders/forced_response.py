@@ -138,5 +138,4 @@ def linear_response(assembly: Assembly, speed: float, *, statically_twisted: boo
 
 def shaft_names(assembly: Assembly) -> tuple[str, ...]:
     """Names of the compliances; massless shafts in series count as one."""
-    names = assembly.line.names
-    return tuple(" + ".join(names[i] for i in c.shafts) for c in assembly.topology.compliances)
+    return tuple(assembly.line.spring_name(c.shafts, c.number) for c in assembly.topology.compliances)

@@ -53,7 +53,7 @@ class SteadyStateBase:
 
 
 class SteadyStateOrders:
-    """Own motions of one line at any speeds."""
+    """Periodic steady states of one line at any speeds."""
 
     def __init__(self, assembly: Assembly, solved: SteadyStatesBySpeed | None = None) -> None:
         self.solved = solved or SteadyStatesBySpeed(assembly.line)

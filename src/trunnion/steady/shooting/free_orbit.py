@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Loaded
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, joint_laws
@@ -122,10 +122,11 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDistur
     faster = np.concatenate([np.zeros(n), turn, others])
     column = line.assembly.packed.column
     loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
+    drags = [c for _, i, _ in topo.resisting if (c := column(i, "drag_area")) >= 0]
     unsteady = [one.columns[0] for one in line.torques]
 
     def at(system: System, x: Array) -> NeutralDisturbances:
-        by_speed = _any(line, system, loads)
+        by_speed = _any(line, system, [*loads, *drags])
         steady = not (by_speed or _nonuniform(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
         moved = np.concatenate([turn * speed, np.zeros(n), others])
@@ -150,8 +151,8 @@ def _nonuniform(line: LineSystem, system: System) -> bool:
 
 def loaded_by_speed(assembly: Assembly) -> bool:
     """Whether any load of the line depends on the speed."""
-    disks = [element for element in assembly.line.elements if isinstance(element, Disk)]
-    return any(disk.viscous_load or disk.quadratic_load for disk in disks)
+    disks = [element for element in assembly.line.elements if isinstance(element, Loaded)]
+    return any(disk.loads[1] or disk.loads[2] for disk in disks)
 
 
 def torque_scale(line: LineSystem) -> float:

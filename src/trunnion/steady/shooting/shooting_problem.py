@@ -152,7 +152,7 @@ class ShootingProblem(Generic[M]):
         return by_modulus(passage.tangents) if passage.done else np.full(self.size, np.nan, dtype=complex)
 
     def observed(self, point: CurvePoint) -> tuple[Array, Array, Array, float]:
-        """See ``branch.Problem``."""
+        """See ``motion.orbits.branch.BranchProblem``."""
         place = self.place(point.z)
         return (*place.observe(self.start(point), self.passage(point)), place.length)
 

@@ -1,0 +1,181 @@
+"""The report that is handed in: to a classification society, a customer, a colleague who signs.
+
+Its first sheet is one A4 page with the verdict, what it stands on, and room to sign. What follows is what a reviewer
+recomputes: mass–elastic system, Holzer tables, excitation, torques of every shaft against what it may bear,
+malfunction, heat, rules with their sources, what was searched and how far values may be low.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trunnion._version import __version__
+from trunnion.design.assessment.check import Check
+from trunnion.driveline.driveline import Driveline
+from trunnion.modes.mass_elastic import HolzerTable
+from trunnion.reporting import submission_tables as tables
+from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
+from trunnion.reporting.page import HtmlPage, environment
+from trunnion.reporting.pictures import ReportPicture, picture
+from trunnion.reporting.provenance import fingerprint
+from trunnion.reporting.submission_contents import SubmissionContents, gather
+from trunnion.reporting.tables import Table
+from trunnion.results.finding import Gravity
+from trunnion.results.speeds import frequency_unit
+from trunnion.results.words import HERTZ, Words
+from trunnion.waiting import to_the_end
+
+MOST_CURVES, MOST_UNLIMITED = 10, 3
+"""Checks that are drawn over speed, and springs without a check."""
+FIRST_FINDINGS = 5
+"""Findings on the first sheet."""
+
+
+@dataclass(frozen=True)
+class Submission(HtmlPage):
+    """The report that is handed in, and the results it was made from."""
+
+    contents: SubmissionContents
+    pictures: Mapping[str, ReportPicture]
+
+    def __repr__(self) -> str:
+        name = self.contents.seen.line.name or "a driveline"
+        return f"report to hand in on {name}, {len(self.html.encode()) / 1e6:.1f} MB of HTML; .save(path) writes it"
+
+
+def submission(
+    line: Driveline | OverviewAssessment,
+    *,
+    speed: float | str | None = None,
+    unit: str | None = None,
+    source: str | os.PathLike[str] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Submission:
+    """The report on ``line`` that is handed in; title block and names come from its ``document``.
+
+    Parameters
+    ----------
+    line : the driveline, or the answer on it that is computed already (then ``speed`` and ``unit`` are its own).
+    speed : operating speed [rad/s]; default the one of the description.
+    unit : of speeds: "rpm", "Hz" or "rad/s"; default the description's.
+    source : the file the line was read from, for its name and hash.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : the line has no equations of motion, or no steady motion to judge.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> disk = tn.Disk(inertia=0.8, excitation=[{"order": 2, "amplitude": 10.0}])
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), disk])
+    >>> tn.submission(line, speed=30.0)
+    report to hand in on a driveline, 0... MB of HTML; .save(path) writes it
+    """
+    seen = line if isinstance(line, OverviewAssessment) else answer(judged(asked(line, speed=speed, unit=unit)))
+    contents = gather(seen, progress)
+    with to_the_end():  # what there is is drawn
+        shown = _pictures(contents)
+        return Submission(_page(contents, shown, None if source is None else Path(source)), contents, shown)
+
+
+def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
+    seen, made = contents.seen, datetime.now().astimezone()
+    first = [one for one in seen.findings if one.gravity is not Gravity.NOTE][:FIRST_FINDINGS]
+    name, digest = fingerprint(seen.line, source)
+    facts: dict[str, Any] = {
+        "title": seen.line.name or "Driveline",
+        "description": seen.line.description or "",
+        "verdict": seen.assessment.sentence,
+        "status": str(seen.assessment.verdict).replace(" ", "-"),
+        "title_block": tables.title_block(seen.line.document, made.strftime("%Y-%m-%d")),
+        "signatures": tables.signatures(seen.line.document),
+        "particulars": tables.particulars(contents),
+        "first_checks": tables.first_checks(contents),
+        "more_checks": tables.more_checks(contents),
+        "first_findings": first,
+        "findings": seen.findings,
+        "rests_on": seen.assessment.rests_on,
+        "switched_off": seen.assessment.switched_off,
+        "masses": tables.mass_table(contents),
+        "springs": tables.spring_table(contents),
+        "modes": Table.of(seen.natural_frequencies.table(frequency_unit(seen.unit))),
+        "holzer": [(_mode_title(one), *tables.holzer_table(contents, one)) for one in contents.holzer],
+        "excitations": tables.excitations(contents),
+        "powers": tables.powers(contents),
+        "crossings": tables.crossings(contents),
+        "shafts": tables.shafts(contents),
+        "misfires": tables.misfires(contents) if contents.misfiring else None,
+        "barred": tables.barred(contents),
+        "heats": tables.heats(contents),
+        "rules": tables.rules(contents),
+        "left_out": contents.left_out,
+        "range": Words(seen.unit).ends(*seen.speed_range),
+        "curves": [key for key in shown if key.startswith("torque of ")],
+        "pictures": shown,
+        "program": f"Trunnion {__version__}, NumPy {np.__version__}",
+        "made": made.strftime("%Y-%m-%d %H:%M %Z").strip(),
+        "source": name,
+        "digest": digest,
+    }
+    return environment().get_template("submission.html.j2").render(**facts)
+
+
+def _mode_title(mode: HolzerTable) -> str:
+    return f"Mode {mode.mode}: {HERTZ.speed(mode.frequency)} undamped"
+
+
+def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
+    """Sketch, modes, Campbell diagram, and the torque of the shafts that matter over speed."""
+    from trunnion.driveline.elements import ConstantSpeed
+    from trunnion.pictures import driveline_sketch
+    from trunnion.pictures.campbell_diagram import campbell_diagram
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.modes import mode_shapes
+    from trunnion.pictures.orders import course, order_response
+
+    seen, unit = contents.seen, contents.seen.unit
+    frequencies = frequency_unit(unit)
+    drive = seen.line.names[0] if isinstance(seen.line.elements[0], ConstantSpeed) else None
+    shown = {
+        "sketch": picture(driveline_sketch.draw(seen.line), "Sketch of the driveline, element by element"),
+        "modes": picture(draw(mode_shapes(seen.natural_frequencies, unit=frequencies, drive=drive)), "Mode shapes"),
+    }
+    if contents.campbell is not None:
+        diagram = campbell_diagram(contents.campbell, unit=unit, frequency_unit=frequencies, operating=seen.operation)
+        shown["campbell"] = picture(draw(diagram), "Campbell diagram: modes and excitations over speed")
+    for check in _with_course(contents):
+        assert check.course is not None
+        loaded = f", load case {check.load_case}" if check.load_case else ""
+        words = f"{capital(check.name)}: orders, their synthesis and what is allowed over speed{loaded}."
+        curve = course(check.course, unit=unit, operating=seen.operation)
+        shown[f"torque of {check.name}"] = picture(draw(curve), f"{check.name} over speed by order", words)
+    for spring, case in _unlimited(contents):
+        response = next(one for one in contents.cases if one.name == case).answered
+        curve = order_response(response, spring=spring, unit=unit, operating=seen.operation)
+        loaded = f", load case {case}" if case else ""
+        words = f"Vibratory torque of {spring}, for which no limit is stated: orders and their synthesis{loaded}."
+        shown[f"torque of {spring}"] = picture(draw(curve), f"Torque of {spring} over speed by order", words)
+    return shown
+
+
+def _with_course(contents: SubmissionContents) -> list[Check]:
+    """Checks of torque and stress that decide, the binding ones first."""
+    judged = [one for one in contents.seen.assessment.checks if one.decides and one.course and one.course.by_order.size]
+    return judged[:MOST_CURVES]
+
+
+def _unlimited(contents: SubmissionContents) -> list[tuple[str, str]]:
+    """Springs that no check is about, those that vibrate most, and the load case in which each does."""
+    checked = {check.element for check in contents.seen.assessment.checks if check.course is not None}
+    free = [one for one in contents.shafts if checked.isdisjoint(one.spring.split(" and "))]
+    most = sorted(free, key=lambda one: -float(np.nan_to_num(one.vibratory.value)))[:MOST_UNLIMITED]
+    return [(one.spring, one.vibratory.case) for one in most]

@@ -1,0 +1,205 @@
+"""What is handed in beyond the verdict: mass–elastic system, modes, powers, torques of every shaft, malfunction, heat.
+
+Everything is computed once, from the responses that the verdict stands on; nothing is drawn here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from trunnion.design.assessment.assessment_input import LoadCaseResponse, with_torques
+from trunnion.design.assessment.measures import torque_measures
+from trunnion.driveline.elements import Disk
+from trunnion.equations.coefficients import assemble
+from trunnion.errors import ComputationError, InputError
+from trunnion.modes.mass_elastic import HolzerTable, holzer
+from trunnion.reporting.overview_assessment import OverviewAssessment
+from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
+from trunnion.waiting import OutOfTime
+
+Found = TypeVar("Found")
+MOST_MODES = 8
+"""Modes of which a Holzer table is printed."""
+POWERS = 9
+"""Speeds at which torque and power are stated."""
+WORDS = ("vibratory", "peak")
+"""Torques that are searched of every spring."""
+
+
+@dataclass(frozen=True)
+class MeanPower:
+    """Mean torque [N m] and power [W] of a spring at one input speed [rad/s], under one load case ("" as described)."""
+
+    case: str
+    speed: float
+    spring: str
+    torque: float
+    power: float
+
+
+@dataclass(frozen=True)
+class LargestTorque:
+    """A largest value over range and load cases; its input speed [rad/s], its case, and what it may be low by."""
+
+    value: float
+    speed: float
+    case: str
+    error: float
+
+
+@dataclass(frozen=True)
+class ShaftTorque:
+    """The largest values of one spring, and the order that leads at the largest vibratory torque.
+
+    vibratory, peak: torques [N m]; stress: vibratory [Pa], NaN without a diameter; heat [W]: at the speeds searched.
+    """
+
+    spring: str
+    vibratory: LargestTorque
+    peak: LargestTorque
+    stress: float
+    heat: LargestTorque
+    leading: str
+
+
+@dataclass(frozen=True)
+class Malfunction:
+    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range.
+
+    ended: what ended the search before it was done, "" where nothing did.
+    """
+
+    cylinder: str
+    vibratory: tuple[LargestTorque, ...]
+    ended: str
+
+
+@dataclass(frozen=True)
+class SubmissionContents:
+    """Results of the report that is handed in; None or empty where a question does not apply."""
+
+    seen: OverviewAssessment
+    campbell: CampbellDiagram | None
+    holzer: tuple[HolzerTable, ...]
+    powers: tuple[MeanPower, ...]
+    shafts: tuple[ShaftTorque, ...]
+    misfiring: tuple[Malfunction, ...]
+    cases: tuple[LoadCaseResponse, ...]
+    left_out: tuple[str, ...]
+
+
+def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = None) -> SubmissionContents:
+    """What belongs on the pages after the verdict; ``progress`` is called as progress(share done)."""
+    left_out: list[str] = []
+
+    def unless_refused(question: str, answer: Callable[[], Found]) -> Found | None:
+        try:
+            return answer()
+        except (InputError, ComputationError) as error:
+            left_out.append(f"{question}: {error}")
+        except OutOfTime as error:
+            left_out.append(f"{question}: not computed, {error.why}")
+        return None
+
+    low, high = seen.speed_range
+    speeds = np.linspace(max(low, high / 200), high, 201)
+    campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(seen.assembly, speeds))
+    left_out += [f"Torques{case.suffix}: {case.answer}" for case in seen.subject.cases if case.response is None]
+    cases = _searched(case for case in seen.subject.cases if case.response is not None)
+    powers = unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case)))
+    shafts = unless_refused("Torques of the shafts", lambda: _shafts(cases))
+    misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, cases, progress)))
+    left_out += [f"Torques{case.suffix}: searched in part, {why}" for case in cases for why in {*case.ended_by}]
+    left_out += [f"Misfire of {one.cylinder}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
+    return SubmissionContents(
+        seen=seen,
+        campbell=campbell,
+        holzer=tuple(holzer(seen.natural_frequencies, mode) for mode in _modes(seen, campbell)),
+        powers=powers or (),
+        shafts=shafts or (),
+        misfiring=misfiring or (),
+        cases=cases,
+        left_out=tuple(left_out),
+    )
+
+
+def _searched(cases: Iterable[LoadCaseResponse]) -> tuple[LoadCaseResponse, ...]:
+    """Cases in which the torques of all springs are searched, not only those that a limit bounds."""
+    known = list(cases)
+    asked = [(word, s) for word in WORDS for s in range(len(known[0].answered.springs))] if known else []
+    return tuple(with_torques(known, tuple(asked)))
+
+
+def _modes(seen: OverviewAssessment, campbell: CampbellDiagram | None) -> list[int]:
+    """Modes up to the highest that an excitation meets in the range; the lowest elastic one in any case."""
+    found = seen.natural_frequencies
+    first = found.still + 1
+    met = [crossing.mode for crossing in campbell.crossings] if campbell else []
+    return list(range(first, min(max(met, default=first), first + MOST_MODES - 1, len(found.mode)) + 1))
+
+
+def _powers(case: LoadCaseResponse) -> Iterator[MeanPower]:
+    """Of the spring that carries the most power, over the range."""
+    response, topo = case.answered, case.assembly.topology
+    ratios = np.array(
+        [topo.mean_speeds[topo.reference[c.far_group] if c.far is None else c.far] for c in topo.compliances]
+    )
+    most = int(np.nan_to_num(np.abs(response.mean_torque * ratios)).max(axis=0).argmax())
+    low, high = max(case.low, case.speeds[0]), case.high
+    speeds = np.linspace(low, high, POWERS) if low < high else np.array([high])
+    torque = case.respond(speeds).mean_torque[:, most]
+    for speed, one in zip(speeds, torque, strict=True):
+        power = abs(float(one * ratios[most] * speed))
+        yield MeanPower(case.name, float(speed), response.springs[most], abs(float(one)), power)
+
+
+def _shafts(cases: tuple[LoadCaseResponse, ...]) -> tuple[ShaftTorque, ...]:
+    return tuple(_shaft(cases, s, name) for s, name in enumerate(cases[0].answered.springs)) if cases else ()
+
+
+def _shaft(cases: tuple[LoadCaseResponse, ...], spring: int, name: str) -> ShaftTorque:
+    vibratory = _largest(cases, "vibratory", spring)
+    leads = next(case for case in cases if case.name == vibratory.case).answered
+    heats = [(*case.answered.largest(case.answered.heat[:, spring]), case.name, np.nan) for case in cases]
+    return ShaftTorque(
+        spring=name,
+        vibratory=vibratory,
+        peak=_largest(cases, "peak", spring),
+        stress=vibratory.value * float(leads.stress_factor[spring]),
+        heat=LargestTorque(*max(heats)),
+        leading=leads.leading(name)[0],
+    )
+
+
+def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> LargestTorque:
+    """Of all cases; infinite where a steady state is missing."""
+    tops = []
+    for case in cases:
+        (measure,) = torque_measures(case.assembly, ((word, spring),))
+        found = case.largest(measure)
+        tops.append(LargestTorque(found.value, float(case.speeds[found.at]), case.name, found.error))
+    return max(tops, key=lambda top: top.value)
+
+
+def _misfiring(
+    seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
+) -> Iterator[Malfunction]:
+    """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds."""
+    disks = [(name, one) for name, one in seen.line.parts if isinstance(one, Disk)]
+    cylinders = [(name, number, one) for name, one in disks for number in range(1, len(one.firing_angles) + 1)]
+    for done, (name, number, disk) in enumerate(cylinders if cases else (), start=1):
+        called = f"cylinder {number} of {name}" if len(disk.firing_angles) > 1 else name
+        failing = tuple(_with_misfire(case, name, number) for case in cases)
+        springs = range(len(cases[0].answered.springs))
+        found = tuple(_largest(failing, "vibratory", s) for s in springs)
+        yield Malfunction(called, found, "; ".join({why: None for case in failing for why in case.ended_by}))
+        if progress is not None:
+            progress(done / len(cylinders))
+
+
+def _with_misfire(case: LoadCaseResponse, name: str, number: int) -> LoadCaseResponse:
+    return replace(case, assembly=assemble(case.assembly.line.replace(name, misfiring=number)))

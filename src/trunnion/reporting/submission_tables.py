@@ -1,0 +1,342 @@
+"""Tables of the report that is handed in, in the units a reviewer reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+
+from trunnion.design.assessment.check import Check, Status
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
+from trunnion.driveline.title_block import TitleBlock
+from trunnion.modes.mass_elastic import HolzerTable, masses, springs
+from trunnion.reporting.submission_contents import LargestTorque, SubmissionContents
+from trunnion.reporting.tables import Table, four
+from trunnion.results.speeds import order_name
+from trunnion.results.units import signs
+from trunnion.results.words import HERTZ, Words
+
+EMPTY = "–"
+FIRST_CHECKS = 8
+"""Checks on the first page, which is one sheet."""
+MOST_EXCITATIONS = 60
+KIND_OF = {kind.unit: kind for kind in (ANGLE, TORQUE, PRESSURE, POWER, ACCELERATION, RATIO)}
+"""Kinds of what checks compare, by the unit that they compare in."""
+VIBRATORY, PEAK, HEAT = "vibratory_torque", "max_torque", "heat rating"
+
+
+def title_block(document: TitleBlock | None, made: str) -> Table:
+    """What the document is."""
+    of = document or TitleBlock()
+    rows = [
+        ("document", of.number or EMPTY),
+        ("revision", of.revision or EMPTY),
+        ("date", made),
+        ("plant", of.plant or EMPTY),
+    ]
+    return Table(("", ""), tuple(rows))
+
+
+def signatures(document: TitleBlock | None) -> Table:
+    """Who answers for it, with room to sign."""
+    of = document or TitleBlock()
+    names = (("computed", of.author), ("checked", of.checked_by), ("approved", of.approved_by))
+    return Table(("", "name", "date", "signature"), tuple((word, name or "", "", "") for word, name in names))
+
+
+def particulars(contents: SubmissionContents) -> Table:
+    """The line in a few numbers."""
+    seen = contents.seen
+    words = Words(seen.unit)
+    low, high = seen.speed_range
+    rows = [("running range", words.ends(low, high))]
+    if seen.speed:
+        rows.append(("operating speed", words.speed(seen.speed)))
+    if contents.powers:
+        most = max(contents.powers, key=lambda one: one.power)
+        rows.append(("largest mean power", f"{_power(most.power)}, in {most.spring} at {words.speed(most.speed)}"))
+    if seen.line.operation and (cases := seen.line.operation.load_cases):
+        rows.append(("load cases", ", ".join(["as described", *(case.name for case in cases)])))
+    count = len(masses(seen.assembly)), len(springs(seen.assembly))
+    rows.append(("model", f"{count[0]} masses, {count[1]} springs, torsion only"))
+    elastic = seen.natural_frequencies.elastic
+    if len(elastic):
+        lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
+        rows.append(("lowest natural frequencies", f"{lowest} Hz"))
+    return Table(("", ""), tuple(rows))
+
+
+def _power(watts: float) -> str:
+    return f"{watts / 1e3:.4g} kW" if watts < 1e6 else f"{watts / 1e6:.4g} MW"
+
+
+def first_checks(contents: SubmissionContents) -> Table:
+    """The checks that decide, the binding one first, as many as fit on the first sheet."""
+    words = Words(contents.seen.unit)
+    judged = [check for check in contents.seen.assessment.checks if check.exceeded or check.satisfied or check.missing]
+    rows = [
+        (
+            str(c.status),
+            c.name,
+            c.margin_word,
+            _speed(c.speed, words),
+            _quantity(c.value, c.unit, words),
+            _quantity(c.limit, c.unit, words),
+        )
+        for c in judged[:FIRST_CHECKS]
+    ]
+    heads = ("", "check", "margin", f"at [{contents.seen.unit}]", "value", "limit")
+    return Table(heads, tuple(rows))
+
+
+def more_checks(contents: SubmissionContents) -> int:
+    """How many checks that decide stand on later sheets only."""
+    checks = contents.seen.assessment.checks
+    return max(sum(c.exceeded or c.satisfied or c.missing for c in checks) - FIRST_CHECKS, 0)
+
+
+def _quantity(value: float, unit: str, words: Words) -> str:
+    """A value of a check in the unit that suits it, speeds in that of the line."""
+    if not np.isfinite(value):
+        return EMPTY
+    if unit == SPEED.unit:
+        return f"{four(value * words.factor)} {words.unit}"
+    kind = KIND_OF.get(unit)
+    return signs(shown(value, kind, digits=4)).replace(" deg", "°") if kind else f"{four(value)} {signs(unit)}"
+
+
+def _speed(speed: float, words: Words) -> str:
+    return four(speed * words.factor) if np.isfinite(speed) else ""
+
+
+def mass_table(contents: SubmissionContents) -> Table:
+    """Masses of the mass–elastic system."""
+    return Table.of(
+        {
+            "no.": i,
+            "mass": row.name,
+            "inertia [kg·m²]": row.inertia,
+            "speed over the input's": row.speed_ratio,
+            "referred to the input [kg·m²]": row.referred,
+        }
+        for i, row in enumerate(masses(contents.seen.assembly), start=1)
+    )
+
+
+def spring_table(contents: SubmissionContents) -> Table:
+    """Springs of the mass–elastic system, at the speed of the mass behind them."""
+    return Table.of(
+        {
+            "spring": row.name,
+            "between": f"{row.between[0]} – {row.between[1]}",
+            "stiffness [kN·m/rad]": row.stiffness / 1e3,
+            "referred to the input [kN·m/rad]": row.referred / 1e3,
+            "damping [N·m·s/rad]": row.damping,
+            "loss factor": row.loss,
+            "smallest diameter [mm]": 1e3 * row.diameter,
+        }
+        for row in springs(contents.seen.assembly)
+    )
+
+
+def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table, Table]:
+    """Masses and springs of one mode, at ±1 mrad of the mass that moves most."""
+    milli = 1e-3
+    listed = masses(contents.seen.assembly)
+    balance = [
+        {
+            "mass": row.name,
+            "relative amplitude": float(amplitude),
+            "J ω² θ [N·m]": milli * float(torque),
+        }
+        for row, amplitude, torque in zip(listed, mode.amplitude, mode.inertia_torque, strict=True)
+    ]
+    at = dict(mode.nodes)
+    in_springs = [
+        {
+            "spring": row.name,
+            "torque [N·m]": milli * float(torque),
+            "node": f"at {100 * at[row.name]:.0f} % of its twist" if row.name in at else "",
+        }
+        for row, torque in zip(springs(contents.seen.assembly), mode.torque, strict=True)
+    ]
+    return Table.of(balance), Table.of(in_springs)
+
+
+def excitations(contents: SubmissionContents) -> Table:
+    """Everything that excites: harmonics of disks, joints, meshes."""
+    rows = list(_excitations(contents))
+    if len(rows) > MOST_EXCITATIONS:
+        left = len(rows) - MOST_EXCITATIONS
+        rows = [*rows[:MOST_EXCITATIONS], ("", f"and {left} more, in the description", "", "")]
+    return Table(("element", "excitation", "amplitude", "phase [°]"), tuple(rows))
+
+
+def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str]]:
+    line = contents.seen.line
+    for name, element in line.parts:
+        for one in element.excitation if isinstance(element, Disk) else ():
+            size = (
+                f"{four(one.amplitude)} N·m"
+                if one.amplitude is not None
+                else f"{four(one.quadratic_amplitude)} N·m·s² times ω²"
+                if one.quadratic_amplitude is not None
+                else f"table of {len(one.amplitudes)} points up to {four(max(one.amplitudes, default=0.0))} N·m"
+            )
+            phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
+            yield name, order_name(one.order or 0.0, one.frequency or 0.0), size, phase
+        if isinstance(element, Disk) and element.firing_angles:
+            angles = ", ".join(four(float(np.rad2deg(angle))) for angle in element.firing_angles)
+            yield name, f"{len(element.firing_angles)} cylinders", "each as above", f"firing at {angles}"
+        if hasattr(element, "angle") and element.angle:
+            angle = four(float(np.rad2deg(element.angle)))
+            orders = getattr(element, "orders", ())
+            called = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
+            yield name, f"{element.kind}, {called if orders else 'even'}", f"{angle}° bend", ""
+
+
+def powers(contents: SubmissionContents) -> Table:
+    """Mean torque and power of the spring that carries most, over the range."""
+    words = Words(contents.seen.unit)
+    several = len(contents.cases) > 1
+    return Table.of(
+        {
+            **({"load case": one.case or "as described"} if several else {}),
+            f"input speed [{words.unit}]": one.speed * words.factor,
+            "in": one.spring,
+            "mean torque [N·m]": one.torque,
+            "power [kW]": one.power / 1e3,
+        }
+        for one in contents.powers
+    )
+
+
+def shafts(contents: SubmissionContents) -> Table:
+    """LargestTorque torques of every spring beside the limits stated for it."""
+    words, several = Words(contents.seen.unit), len(contents.cases) > 1
+    limits = _limits(contents)
+    return Table.of(
+        {
+            "spring": one.spring,
+            "vibratory [N·m]": one.vibratory.value,
+            f"at [{words.unit}]": one.vibratory.speed * words.factor,
+            "leading order": one.leading,
+            "limit of it [N·m]": limits(one.spring, VIBRATORY),
+            "vibratory stress [MPa]": one.stress / 1e6,
+            "peak [N·m]": one.peak.value,
+            f"peak at [{words.unit}]": one.peak.speed * words.factor,
+            "limit of peak [N·m]": limits(one.spring, PEAK),
+            **({"load case": one.peak.case or "as described"} if several else {}),
+        }
+        for one in contents.shafts
+    )
+
+
+def _limits(contents: SubmissionContents) -> Any:
+    stated = {(one.element, one.key): one.value for one in contents.seen.line.limits_by_element}
+
+    def of(spring: str, key: str) -> float:
+        known = [stated[name, key] for name in spring.split(" and ") if (name, key) in stated]
+        return min(known, default=np.nan)
+
+    return of
+
+
+def misfires(contents: SubmissionContents) -> Table:
+    """Every spring with all cylinders firing and with the worst of them out of work."""
+    words, limits = Words(contents.seen.unit), _limits(contents)
+
+    def worst(spring: int) -> tuple[str, LargestTorque]:
+        found = max(contents.misfiring, key=lambda one: one.vibratory[spring].value)
+        return found.cylinder, found.vibratory[spring]
+
+    rows: list[dict[str, object]] = []
+    for s, shaft in enumerate(contents.shafts):
+        cylinder, top = worst(s)
+        limit = limits(shaft.spring, VIBRATORY)
+        over = top.value > limit
+        rows.append(
+            {
+                "spring": shaft.spring,
+                "all firing [N·m]": shaft.vibratory.value,
+                "one misfiring [N·m]": top.value,
+                "worst": cylinder,
+                f"at [{words.unit}]": top.speed * words.factor,
+                "limit [N·m]": limit,
+                "": "exceeded" if over else "within" if np.isfinite(limit) else "no limit",
+            }
+        )
+    return Table.of(rows)
+
+
+def crossings(contents: SubmissionContents) -> Table:
+    """Critical speeds: where excitations meet modes in the range."""
+    words = Words(contents.seen.unit)
+    found = contents.campbell.crossings if contents.campbell else ()
+    return Table.of(
+        {
+            f"critical speed [{words.unit}]": one.speed * words.factor,
+            "mode": one.mode,
+            "frequency [Hz]": one.frequency * HERTZ.factor,
+            "excitation": one.line.name,
+            "by": ", ".join(one.line.causes),
+            "amplification": one.amplification,
+        }
+        for one in found
+    )
+
+
+def heats(contents: SubmissionContents) -> Table:
+    """Springs that become warm, with the heat that they are rated for."""
+    words = Words(contents.seen.unit)
+    rated = {c.element: c.limit for c in contents.seen.assessment.checks if HEAT in c.name}
+
+    def rating(spring: str) -> float:
+        return min((rated[name] for name in spring.split(" and ") if name in rated), default=np.nan)
+
+    return Table.of(
+        {
+            "spring": one.spring,
+            "heat [W]": one.heat.value,
+            f"at [{words.unit}]": one.heat.speed * words.factor,
+            "rating [W]": rating(one.spring),
+        }
+        for one in contents.shafts
+        if one.heat.value > 0
+    )
+
+
+def barred(contents: SubmissionContents) -> Table:
+    """Ranges that may only be passed, and the check that bars them."""
+    words = Words(contents.seen.unit)
+    return Table.of(
+        {f"barred range [{words.unit}]": words.ends(*ends), "because of": check.name}
+        for check in contents.seen.assessment.checks
+        if check.decides
+        for ends in check.barred
+    )
+
+
+def rules(contents: SubmissionContents) -> Table:
+    """Every check with the rule it stands on, where it was searched and what its value may be low by."""
+    seen = contents.seen
+    words = Words(seen.unit)
+    return Table.of(
+        _rule(check, words) for check in seen.assessment.checks if check.status is not Status.NOT_APPLICABLE
+    )
+
+
+def _rule(check: Check, words: Words) -> dict[str, object]:
+    searched: Iterable[tuple[float, float]] = check.covered
+    return {
+        "check": check.name,
+        "result": f"{check.word}{f', {check.margin_word}' if check.margin_word else ''}",
+        "rule": check.rule.formula,
+        "source": f"{check.rule.source} ({check.rule.certainty})",
+        "value": _quantity(check.value, check.unit, words),
+        "limit": _quantity(check.limit, check.unit, words),
+        f"searched [{words.unit}]": " and ".join(words.ends(*ends) for ends in searched) or EMPTY,
+        "may be low by": _quantity(float(f"{check.error:.1g}"), check.unit, words),
+    }

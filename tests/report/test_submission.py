@@ -1,0 +1,205 @@
+"""The report that is handed in: its numbers against a recursion and dense matrices, its pages, its title block."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import trunnion as tn
+from trunnion.cli.program import app
+from trunnion.equations.coefficients import assemble
+from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.reporting.submission import Submission
+
+TEXT = """
+format = 1
+name = "generator set <& co>"
+
+[document]
+number = "TV-2031"
+revision = "B"
+author = "the author"
+
+[operation]
+speed = "1500 rpm"
+speed_range = ["600 rpm", "1800 rpm"]
+
+[[limit]]
+of = "shaft"
+vibratory_torque = "6 kN*m"
+
+[[element]]
+type = "Disk"
+name = "engine"
+inertia = 3.0
+drive_share = 1.0
+firing_angles = ["0 deg", "540 deg", "180 deg", "360 deg"]
+excitation = [
+  { order = 0.5, amplitude = "120 N*m", phase = "20 deg" },
+  { order = 1.0, amplitude = "160 N*m", phase = "50 deg" },
+  { order = 1.5, amplitude = "170 N*m" },
+  { order = 2.0, amplitude = "150 N*m" },
+]
+[[element]]
+type = "Shaft"
+name = "coupling"
+stiffness = "21 kN*m/rad"
+damping = "20 N*m*s/rad"
+[[element]]
+type = "Disk"
+name = "flange"
+inertia = 0.4
+[[element]]
+type = "Shaft"
+name = "shaft"
+damping = "5 N*m*s/rad"
+outer_diameter = "90 mm"
+length = "1.2 m"
+shear_modulus = "80 GPa"
+[[element]]
+type = "Disk"
+name = "rotor"
+inertia = 5.0
+viscous_load = "2 N*m*s/rad"
+"""
+SHEETS = (
+    "first", "mass-elastic", "modes", "excitation", "critical", "torques", "malfunction", "barred", "heat", "rules",
+    "assumptions",
+)  # fmt: skip
+
+
+@cache
+def made() -> Submission:
+    return tn.submission(tn.loads(TEXT))
+
+
+def test_holzers_recursion_closes_at_every_frequency() -> None:
+    """θ_{i+1} = θ_i − ω² Σ J θ / k from the free end, as he did it by hand (1921); a geared chain, by its input."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=2.0, drive_share=1.0), tn.Shaft(stiffness=3e4), tn.Disk(inertia=0.7), tn.Ratio(ratio=-2.5),
+            tn.Shaft(stiffness=9e4), tn.Disk(inertia=4.0), tn.Shaft(stiffness=5e4), tn.Disk(inertia=1.5),
+        ]
+    )  # fmt: skip
+    found = tn.natural_frequencies(line)
+    ratio = -1 / 2.5
+    inertia, stiffness = [2.0, 0.7, 4.0 * ratio**2, 1.5 * ratio**2], [3e4, 9e4 * ratio**2, 5e4 * ratio**2]
+    assert [one.referred for one in masses(found.assembly)] == pytest.approx(inertia)
+    assert [one.referred for one in springs(found.assembly)] == pytest.approx(stiffness)
+    for mode in range(2, 5):
+        table = holzer(found, mode)
+        theta, torque = [1.0], 0.0
+        for i, k in enumerate(stiffness):
+            torque += inertia[i] * table.frequency**2 * theta[i]
+            theta.append(theta[i] - torque / k)
+        torque += inertia[-1] * table.frequency**2 * theta[-1]
+        assert abs(torque) < 1e-9 * table.frequency**2
+        at_input = table.amplitude / np.array([1, 1, ratio, ratio])
+        assert at_input / at_input[0] == pytest.approx(theta)
+        behind, ahead = np.array(theta[1:]), np.array(theta[:-1])
+        assert len(table.nodes) == mode - 1 == np.sum(behind * ahead < 0)
+        crossing = np.flatnonzero(behind * ahead < 0)
+        assert [share for _, share in table.nodes] == pytest.approx(list((ahead / (ahead - behind))[crossing]))
+
+
+@pytest.mark.parametrize("name", ["truck", "harbour-tug", "rolling-mill-spindle"])
+def test_every_mass_is_in_balance(name: str) -> None:
+    found = tn.natural_frequencies(tn.load(f"examples/{name}.toml"))
+    for mode in range(1 + found.still, len(found.mode) + 1):
+        table = holzer(found, mode)
+        felt = found.assembly.topology.elongations.T @ table.torque
+        assert felt == pytest.approx(table.inertia_torque, abs=1e-9 * np.abs(table.torque).max())
+
+
+def dense(speed: np.ndarray, cylinders: list[int]) -> np.ndarray:
+    """Vibratory torque of the two springs (speed, 2) with own matrices: order by order, then the sum over two turns."""
+    orders, size, phase = [0.5, 1.0, 1.5, 2.0], [120, 160, 170, 150], np.deg2rad([20, 50, 0, 0])
+    firing = np.deg2rad([0, 540, 180, 360])
+    m = np.diag([3.0, 0.4, 5.0])
+    tube = 80e9 * np.pi * 0.09**4 / 32 / 1.2
+    k = np.array([[21e3, -21e3, 0], [-21e3, 21e3 + tube, -tube], [0, -tube, tube]])
+    c = np.array([[20.0, -20, 0], [-20, 25, -5], [0, -5, 5 + 2]])
+    turns = np.exp(1j * np.outer(orders, np.linspace(0, 4 * np.pi, 1440, endpoint=False)))
+    found = []
+    for omega in speed:
+        torque = []
+        for order, a, p in zip(orders, size, phase, strict=True):
+            v = order * omega
+            acting = a * np.exp(1j * p) * sum(np.exp(-1j * order * firing[n]) for n in cylinders)
+            q = np.linalg.solve(k + 1j * v * c - v**2 * m, [acting, 0, 0])
+            torque.append([(21e3 + 20j * v) * (q[1] - q[0]), (tube + 5j * v) * (q[2] - q[1])])
+        wave = np.real(np.array(torque).T @ turns)
+        found.append(np.ptp(wave, axis=1) / 2)
+    return np.array(found)
+
+
+def test_the_largest_torques_and_those_of_misfires_are_those_of_dense_matrices() -> None:
+    """On a grid that the search knows nothing of: nothing lies above what is stated, and its own speed gives it."""
+    speed = np.linspace(20 * np.pi, 60 * np.pi, 2003)
+    every, contents = [0, 1, 2, 3], made().contents
+    largest = dense(speed, every).max(axis=0)
+    for s, shaft in enumerate(contents.shafts):
+        assert largest[s] <= shaft.vibratory.value + shaft.vibratory.error + 1e-5 * largest[s]
+        there = dense(np.array([shaft.vibratory.speed]), every)[0, s]
+        assert shaft.vibratory.value == pytest.approx(there, rel=1e-4)
+    assert [one.cylinder for one in contents.misfiring] == [f"cylinder {n} of engine" for n in (1, 2, 3, 4)]
+    for n, case in enumerate(contents.misfiring):
+        firing = [one for one in every if one != n]
+        largest = dense(speed, firing).max(axis=0)
+        for s, top in enumerate(case.vibratory):
+            assert largest[s] <= top.value + top.error + 1e-5 * largest[s]
+            assert top.value == pytest.approx(dense(np.array([top.speed]), firing)[0, s], rel=1e-4)
+            assert top.value > 1.5 * contents.shafts[s].vibratory.value
+
+
+def test_power_and_heat_by_hand() -> None:
+    contents = made().contents
+    most = max(contents.powers, key=lambda one: one.power)
+    assert most.speed == pytest.approx(60 * np.pi)
+    assert most.torque == pytest.approx(2 * 60 * np.pi) and most.power == pytest.approx(2 * (60 * np.pi) ** 2)
+    warm = next(one for one in contents.shafts if one.spring == "coupling")
+    assert warm.heat.value > 0 and contents.shafts[1].stress == pytest.approx(
+        contents.shafts[1].vibratory.value * 16 / (np.pi * 0.09**3)
+    )
+
+
+def test_sheets_and_what_they_say() -> None:
+    page = made().html
+    assert [page.index(f'id="{name}"') for name in SHEETS] == sorted(page.index(f'id="{name}"') for name in SHEETS)
+    for words in ("TV-2031", "the author", "generator set &lt;&amp; co&gt;", "approved", "cylinder 2 of engine"):
+        assert words in page
+    assert "http" not in page.replace("http-equiv", "") and "<script" not in page
+    malfunction = page.split('id="malfunction"')[1].split("</section>")[0]
+    worst = max(case.vibratory[1].value for case in made().contents.misfiring)
+    assert (">exceeded<" in malfunction) == (worst > 6e3) and (">within<" in malfunction) == (worst <= 6e3)
+
+
+def test_title_block_goes_through_files_and_changes_no_number() -> None:
+    line = tn.loads(TEXT)
+    assert line.document == tn.TitleBlock(number="TV-2031", revision="B", author="the author")
+    assert tn.loads(tn.dumps(line)) == line
+    without = line.but(document=None)
+    assert without.document is None and "[document]" not in tn.dumps(without)
+    same = [tn.natural_frequencies(one).undamped_frequency for one in (line, without)]
+    assert np.array_equal(*same) and assemble(without) is not None
+
+
+def test_a_line_without_cylinders_and_response_says_so() -> None:
+    line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=1.0)])
+    page = tn.submission(line, speed="900 rpm").html
+    assert "The description has no cylinders that could misfire." in page and "Nothing excites the line." in page
+
+
+def test_the_command_writes_it_and_json_stays_alone(tmp_path) -> None:
+    file, folder = tmp_path / "set.toml", tmp_path / "out"
+    file.write_text(TEXT)
+    run = CliRunner().invoke(app, ["analyze", str(file), "--submission", "-o", str(folder), "--json"])
+    assert run.exit_code == 0, run.output
+    said = json.loads(run.stdout)
+    assert said["written"] == [str(folder / "set-submission.html")]
+    assert "Torsional vibration calculation" in (folder / "set-submission.html").read_text()
+    assert list(folder.iterdir()) == [folder / "set-submission.html"]
