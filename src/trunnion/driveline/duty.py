@@ -50,6 +50,11 @@ class Duty(Record):
     Raises
     ------
     InputError : a share that is not above 0 and at most 1, a speed that is not positive.
+
+    Examples
+    --------
+    >>> Duty(share="60 %", speed="1500 rpm").share
+    0.6
     """
 
     what: ClassVar[str] = "duty"
@@ -83,6 +88,12 @@ class SpeedPassage(Named):
     Raises
     ------
     InputError : numbers that are not positive, two equal speeds.
+
+    Examples
+    --------
+    >>> start = SpeedPassage(name="start", first="300 rpm", last="1500 rpm", acceleration="20 rad/s^2", per_hour=0.5)
+    >>> round(start.last, 1)
+    157.1
     """
 
     what: ClassVar[str] = "passage"

@@ -60,6 +60,11 @@ class SNCurve(Addressed):
     ------
     InputError : stress and torque at once or neither, numbers that are not positive, an ultimate value below the
         amplitude, two corrections for the mean.
+
+    Examples
+    --------
+    >>> SNCurve(of="tube", stress_amplitude="90 MPa", cycles=2e6, slope=5, ultimate_stress="480 MPa").of_stress
+    True
     """
 
     what: ClassVar[str] = "S-N curve"

@@ -49,6 +49,11 @@ class LoadHistory:
     Raises
     ------
     InputError : share and per_hour at once or neither, a history that is too short, numbers that are not finite.
+
+    Examples
+    --------
+    >>> LoadHistory({"shaft": [0.0, 2400.0, -900.0, 0.0]}, per_hour=0.01, name="jam").name
+    'jam'
     """
 
     source: Source
