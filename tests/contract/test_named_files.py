@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import trunnion as tn
-from trunnion.driveline.excitation_file import LARGEST_TABLE
+from trunnion.driveline.csv_table import LARGEST_TABLE
 
 posix = pytest.mark.skipif(os.name != "posix", reason="pipes, devices and links")
 TABLE = "order,amplitude [N*m]\n2,30\n"

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trunnion.design.limits.result import StableLimit
+    from trunnion.response.orders.misfire import Misfire
     from trunnion.response.orders.result import OrderResponse
     from trunnion.response.speed_sweep import SpeedSweep
     from trunnion.results.finding import Finding
@@ -137,6 +138,24 @@ def order_response(
 
 
 @Command("torque over speed")
+def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: SpeedUnit) -> CommandOutput:
+    """Example: trunnion misfire ship.toml --speed 300rpm:800rpm -o misfire.png
+
+    --cut-out/--misfiring  Nothing is left of the gas torque of a cylinder, or what compression does.
+    """
+    result = tn.misfire(line, speeds, cut_out=cut_out).in_unit(unit)
+    seen = result.response.in_unit(unit)
+
+    def more() -> None:
+        output.table(result.table())
+
+    return CommandOutput(
+        result, draw=partial(seen.plot, operating=line.operation), table=result.data,
+        content=lambda: _misfire_json(result), text=lambda: result.headline, more=more,
+    )  # fmt: skip
+
+
+@Command("torque over speed")
 def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> CommandOutput:
     """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""
     result = tn.speed_sweep(line, speeds, progress=progress).in_unit(unit)
@@ -229,6 +248,18 @@ def _span(words: Words, speed: Array) -> dict[str, Any]:
     return {
         "speed_unit": words.unit,
         "speeds": {"low": speed.min() * words.factor, "high": speed.max() * words.factor, "points": len(speed)},
+    }
+
+
+def _misfire_json(result: Misfire) -> dict[str, Any]:
+    """The worst cylinder, and the largest vibratory torque [N m] of every spring with it out of work."""
+    return {
+        **_span(result.words, result.response.speed),
+        **output.record(result, "cut_out"),
+        "worst": result.names[result.cylinders.index(result.worst)],
+        "cylinders": list(result.names),
+        "springs": result.table(),
+        "findings": output.findings_json(result.response.findings),
     }
 
 

@@ -13,7 +13,7 @@ from rich.markup import escape
 from typer.core import TyperGroup
 
 from trunnion._version import __version__
-from trunnion.cli import describe, output
+from trunnion.cli import describe, orders, output
 from trunnion.cli.app import app as serve_app
 from trunnion.cli.ending import EndedBy
 from trunnion.cli.failures import Interrupted, answer
@@ -126,6 +126,7 @@ def _root(
 COMMANDS: tuple[Callable[..., Any], ...] = (
     analyze,
     *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
+    callback("misfire", "Every cylinder out of work in turn: the worst, and the torques with it.", orders.misfire),
     reproduce,
     serve_app,
     warm_up,

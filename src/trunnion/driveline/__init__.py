@@ -6,19 +6,23 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import dump, dumps, load, loads
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.schedules import Schedule
@@ -42,17 +46,24 @@ __all__ = [
     "DualMassFlywheel",
     "Duty",
     "Element",
+    "Engine",
     "Excitation",
+    "Fan",
     "GearPair",
+    "Generator",
     "HookeJoint",
     "IdealJoint",
     "Limit",
     "LoadCase",
+    "Motor",
     "Operation",
     "Coupling",
     "SpeedPassage",
     "PiecewiseShaft",
     "Planetary",
+    "PressureCurve",
+    "Propeller",
+    "Pump",
     "Ratio",
     "SNCurve",
     "Schedule",
@@ -61,6 +72,7 @@ __all__ = [
     "SwitchedOff",
     "TitleBlock",
     "Tolerance",
+    "TorquePoint",
     "TransmissionError",
     "Belt",
     "Clutch",

@@ -9,6 +9,7 @@ from typing import Any
 
 from pydantic import SerializeAsAny
 
+from trunnion.driveline.composite import StatedChain, default_names, expanded, stated
 from trunnion.driveline.elements import ConstantSpeed, Element
 from trunnion.driveline.parts import Dragged, Jointed, Sprung
 from trunnion.driveline.quantities import Dimensionless, Frequency
@@ -33,13 +34,9 @@ class ElementChain(Record):
 
     @cached_property
     def default_names(self) -> tuple[str, ...]:
-        """Names that elements have when the user gives none: the kind and its ordinal among all of that kind."""
-        seen: Counter[str] = Counter()
-        names = []
-        for element in self.elements:
-            seen[element.kind] += 1
-            names.append(f"{element.kind} {seen[element.kind]}")
-        return tuple(names)
+        """Names that elements have when the user gives none: the kind and its ordinal among all of that kind. What is
+        part of an engine has its own."""
+        return default_names(self.elements)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -74,6 +71,11 @@ class ElementChain(Record):
         """Name and element, in order."""
         return tuple(zip(self.names, self.elements, strict=True))
 
+    @cached_property
+    def as_stated(self) -> StatedChain:
+        """Elements, names and parents as they are written: an engine instead of its throws."""
+        return stated(self.elements, self.names, self.parents)
+
 
 def refuse_too_many(elements: int) -> None:
     """Refuse what would fill the memory and the day before it is looked at.
@@ -94,7 +96,7 @@ def refuse_too_many(elements: int) -> None:
 
 
 def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
-    """The elements of a line.
+    """The elements of a line, an engine as its throws.
 
     Raises
     ------
@@ -114,7 +116,9 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     ]
     if wrong:
         raise InputError.together(wrong)
-    return found
+    whole = expanded(found)
+    refuse_too_many(len(whole))
+    return whole
 
 
 def wrong_places(line: ElementChain) -> Iterator[InputError]:

@@ -11,6 +11,7 @@ from pydantic import field_validator, model_validator
 
 from trunnion.driveline.addressed import wrong_addresses
 from trunnion.driveline.chain import ElementChain, checked, wrong_places
+from trunnion.driveline.composite import Composite
 from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
@@ -19,6 +20,7 @@ from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
 from trunnion.driveline.sn_curves import SNCurve, SNCurves, curves_of
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
@@ -33,7 +35,8 @@ class Driveline(ElementChain):
 
     Parameters
     ----------
-    elements : from the input to the output.
+    elements : from the input to the output. An ``Engine`` becomes its throws, "engine.throw 1" and so on, which
+        analyses, parameters and limits name; ``as_stated`` has it as it was given, ``within`` its throws alone.
     name, description : for titles and reports.
     damping_ratio : one damping ratio for the whole line instead of damping in the shafts.
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
@@ -134,9 +137,40 @@ class Driveline(ElementChain):
         return tolerances_of(self.tolerances, self.parts)
 
     def with_load(self, case: str) -> Driveline:
-        """The same line under the torques of one of its load cases; disks not named there keep theirs."""
-        loads = (self.operation or Operation()).load_case(case).loads
-        return self.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in self.parts])
+        """The same line under the torques of one of its load cases; disks not named there keep theirs.
+
+        Or with one cylinder out of work: "engine cylinder 3 misfiring", "engine cylinder 3 cut out", also after the
+        name of a load case and a comma.
+        """
+        loads, silent = self.loads_of(case), self._silent_in(case)
+        line = self.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in self.parts])
+        return line.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else line
+
+    def loads_of(self, case: str) -> dict[str, float]:
+        """Load torques [N m] by disk of one of its load cases; none of one that only puts a cylinder out of work."""
+        known, operation = self._silent, self.operation or Operation()
+        if case in known and case not in [one.name for one in operation.load_cases]:
+            return {}
+        base = next((case.removesuffix(f", {one}") for one in known if case.endswith(f", {one}")), case)
+        return {name: float(torque) for name, torque in operation.load_case(base).loads.items()}  # type: ignore[arg-type]
+
+    @property
+    def cases(self) -> tuple[str, ...]:
+        """What ``assess`` judges beside the line as stated: its load cases, and where the description asks for it every
+        cylinder out of work in turn, without and under each of them."""
+        operation = self.operation or Operation()
+        named = tuple(one.name for one in operation.load_cases)
+        asked = [name for name, (_, key) in self._silent.items() if getattr(operation, key)]
+        return (*named, *(f"{base}, {one}" if base else one for base in ("", *named) for one in asked))
+
+    @cached_property
+    def _silent(self) -> dict[str, tuple[Cylinder, str]]:
+        return silent_cases(self.as_stated.parts)
+
+    def _silent_in(self, case: str) -> tuple[Cylinder, str] | None:
+        if case in [one.name for one in (self.operation or Operation()).load_cases]:
+            return None
+        return next((one for name, one in self._silent.items() if case == name or case.endswith(f", {name}")), None)
 
     def at_schedule(self, name: str, value: float) -> Driveline:
         """The same line with the angles and loads of one of its schedules at a travel [m] or a speed [rad/s]."""
@@ -154,19 +188,43 @@ class Driveline(ElementChain):
 
         Nothing is checked until all are changed.
         """
+        composites = {name: one for name, one in self.as_stated.parts if isinstance(one, Composite)}
+        if own_changes := {name: fields for name, fields in changes.items() if name in composites}:
+            whole = [_changed(one, name, own_changes.get(name, {})) for name, one in self.as_stated.parts]
+            rest = {name: fields for name, fields in changes.items() if name not in composites}
+            changed = self.but(elements=whole, **({} if rest else own))
+            return changed.replace_all(rest, **own) if rest else changed
         elements = list(self.elements)
         for name, fields in changes.items():
             place = self.index(name)
-            try:
-                elements[place] = elements[place].but(**fields)
-            except InputError as error:
-                raise about(error, name) from None
+            elements[place] = _changed(elements[place], name, fields)
         return self.but(elements=elements, **own)
+
+    def within(self, name: str) -> Driveline:
+        """What the engine called ``name`` is made of, as a line by itself: its throws and the shafts between them.
+
+        ``natural_frequencies(line.within("engine"))``
+        """
+        found = [one for one in self.elements if one.part_of is not None and one.part_of[0] == name]
+        if not found:
+            known = [n for n, one in self.as_stated.parts if isinstance(one, Composite)]
+            remedy = nearest(name, known) if known else "only an Engine is made of several elements"
+            raise InputError("is made of no other elements", key=str(name), remedy=remedy)
+        alone = [type(one)(**{**one.stated, "after": None}) for one in found[:1]]
+        return Driveline([*alone, *(type(one)(**one.stated) for one in found[1:])], name=name)
 
     def __repr__(self) -> str:
         return summary(self)
 
     __str__ = __repr__
+
+
+def _changed(element: Element, name: str, fields: Mapping[str, Any]) -> Element:
+    """An element with ``fields`` changed; complaints say its ``name``."""
+    try:
+        return element.but(**fields) if fields else element
+    except InputError as error:
+        raise about(error, name) from None
 
 
 _SPRINGS = (SpringElement, PiecewiseShaft, GearPair)
@@ -247,13 +305,15 @@ def _wrong_drives(line: Driveline) -> Iterator[InputError]:
     if not any(isinstance(element, ConstantSpeed) for element in line.elements):
         return
     for name, element in line.parts:
-        if isinstance(element, Loaded) and element.drive_share:
+        if getattr(element, "drive_share", 0.0):
             yield InputError(
                 "shares the drive of a line that a ConstantSpeed drives",
                 element=name,
                 key="drive_share",
-                value=element.drive_share,
-                remedy="leave out the ConstantSpeed, or write what this disk drives with as a negative load_torque",
+                value=getattr(element, "drive_share", None),
+                remedy="leave out the ConstantSpeed, or write what this disk drives with as a negative load_torque"
+                if isinstance(element, Loaded)
+                else "leave out the ConstantSpeed, or drive_share",
             )
 
 

@@ -29,14 +29,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
+from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import Disk, Element
-from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pressure import read_pressure
 from trunnion.driveline.quantities import SPEED, QuantityKind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
@@ -174,7 +175,7 @@ def dumps(line: Driveline) -> str:
     blocks += [_block("[[sn_curve]]", _table(curve)) for curve in line.sn_curves]
     for tolerance in line.tolerances:
         blocks += _tolerance_blocks(tolerance)
-    for element in line.elements:
+    for element in line.as_stated.elements:
         blocks += _element_blocks(element)
     return "\n".join(blocks)
 
@@ -359,8 +360,9 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
-            if place_of is not None and isinstance(named := data.get("excitation"), str):
-                data["excitation"] = _table_of(named, place_of)
+            for key in _TABLES:
+                if place_of is not None and isinstance(named := data.get(key), str):
+                    data[key] = _table_of(key, named, place_of)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
@@ -370,14 +372,24 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
     return element
 
 
-def _table_of(named: str, place_of: Place) -> tuple[Excitation, ...]:
+_TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
+    "excitation": read_excitation,
+    "gas_torque": read_excitation,
+    "pressure": read_pressure,
+    "compression": read_pressure,
+    "curve": read_curve,
+}
+"""What reads the table that a key of an element may name."""
+
+
+def _table_of(key: str, named: str, place_of: Place) -> tuple[Record, ...]:
     """What the table holds that an element names; complaints say the place in the table, about that element."""
     try:
-        return read_excitation(place_of(named))
+        return _TABLES[key](place_of(named))
     except InputError as error:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"
-        raise error.but(element="", key="excitation", value=None, problem=problem) from None
+        raise error.but(element="", key=key, value=None, problem=problem) from None
 
 
 def _limit_elsewhere(error: InputError, name: str | None) -> InputError:

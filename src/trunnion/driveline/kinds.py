@@ -8,9 +8,11 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -28,6 +30,12 @@ KINDS: dict[str, type[Element]] = {
         SlipClutch,
         DualMassFlywheel,
         Disk,
+        Engine,
+        Motor,
+        Generator,
+        Fan,
+        Pump,
+        Propeller,
         ViscousDamper,
         TunedDamper,
         HookeJoint,

@@ -25,6 +25,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.quantities import (
     RATIO,
     Acceleration,
@@ -59,14 +60,15 @@ SPRING_KINDS: tuple[type[Element], ...] = (
     Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt, Tyre
 )  # fmt: skip
 """Elements that carry a torque, meshes aside."""
+_TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*SPRING_KINDS, GearPair),
     "vibratory_torque": (*SPRING_KINDS, GearPair),
     "transient_vibratory_torque": (*SPRING_KINDS, GearPair),
     "max_stress": (Shaft,),
     "max_twist": SPRING_KINDS,
-    "max_speed_fluctuation": (Disk, Vehicle),
-    "max_acceleration": (Disk, Vehicle),
+    "max_speed_fluctuation": _TURNING,
+    "max_acceleration": _TURNING,
     "temperature_factor": (Coupling,),
     "starting_factor": (Coupling,),
     "ship_shaft": (Shaft,),

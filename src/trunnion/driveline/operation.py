@@ -100,6 +100,8 @@ class Operation(Record):
     application : what the line is, "road", "steering", "pto", "mill", "ship" or "industrial": says which guidelines
         of ``assess`` decide; without it they are shown only.
     switched_off : rules that are not to judge this line, each with its reason.
+    misfiring, cut_out : whether ``assess`` also puts every cylinder out of work in turn, so that its gas is compressed
+        and expands again or so that nothing is left of it, as stated and under each load case.
     load_cases : named sets of load torques.
     schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
     life : operating time [s] that the line is to last.
@@ -130,6 +132,8 @@ class Operation(Record):
     switched_off: SwitchedOffRules = optional(
         default=(), description="rules that are not to judge this line, each with its reason"
     )
+    misfiring: bool = Field(default=False, description="judge every cylinder misfiring in turn, too")
+    cut_out: bool = Field(default=False, description="judge every cylinder cut out in turn, too")
     load_cases: tuple[LoadCase, ...] = optional(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = optional(default=(), description="angles over travel and torques over speed")
     life: Maybe[Time] = optional(default=None, description="operating time that the line is to last")

@@ -390,6 +390,9 @@ if TYPE_CHECKING:
     class Several(Stated[tuple[float, ...], Iterable[float | str]], Generic[Of]):
         """Quantities in a row."""
 
+    class OneOrSeveral(Stated[tuple[float, ...], float | str | Iterable[float | str]], Generic[Of]):
+        """Quantities in a row, or one for all."""
+
     class MaybeRange(Stated[tuple[float, float] | None, Sequence[float | str] | None], Generic[Of]):
         """The lower and the upper end, or None."""
 
@@ -427,7 +430,7 @@ else:
             return tuple[member, ...]
 
     Maybe = MaybeRange = Optional
-    Several = TableList = _Row
+    Several = OneOrSeveral = TableList = _Row
 
 
 def deg(angle: Number) -> Number:

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import Disk, Element, Loaded
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.quantities import INERTIA, LENGTH, STIFFNESS, shown
 from trunnion.driveline.shafts import Shaft
 
 
 def summary(line: ElementChain) -> str:
     """Title line, then name and numbers of each element."""
-    width = max(len(name) for name in line.names)
-    title = f"Driveline{f' {line.name!r}' if line.name else ''} of {len(line.elements)} elements"
+    chain = line.as_stated
+    width = max(len(name) for name in chain.names)
+    title = f"Driveline{f' {line.name!r}' if line.name else ''} of {len(chain.elements)} elements"
     if line.damping_ratio is not None:
         title += f", damping ratio {line.damping_ratio:g}"
     rows = []
-    for i, (element, name) in enumerate(zip(line.elements, line.names, strict=True)):
+    for i, (name, element) in enumerate(chain.parts):
         parts = [] if name.startswith(element.kind) else [element.kind]
-        if line.parents[i] != (i - 1 if i else None):
+        if chain.parents[i] != (i - 1 if i else None):
             parts.append(f"after {element.after}")
         rows.append(f"  {name:<{width}}  {', '.join([*parts, *_numbers(element)])}".rstrip())
     return "\n".join([title, *rows])
@@ -37,19 +39,22 @@ def _numbers(element: Element) -> list[str]:
     elif isinstance(element, Disk) and element.inertia is None:
         drawn = ("outer_diameter", "inner_diameter", "thickness", "density")
         parts += [_size("disk", element, "thickness"), shown(element.moment_of_inertia, INERTIA, digits=4)]
+    if isinstance(element, Engine):
+        drawn = ("firing_order",)
+        parts.append(firing(element))
     for key, value in element.stated.items():
         kind = element.quantity_of(key)
         if key in drawn or key in ("name", "after"):
             continue
-        if key == "excitation":
-            parts.append(f"excitation of {len(value)} harmonics" if len(value) > 1 else "excitation of one harmonic")
+        if key in _LISTS:
+            count = len(value) if len(value) > 1 or key != "excitation" else "one"
+            parts.append(f"{key.replace('_', ' ')} of {count} {_LISTS[key]}{'s' if len(value) > 1 else ''}")
             continue
-        if key in ("transmission_error", "stiffness_variation", "ripple", "friction"):
-            what = "slider" if key == "friction" else "harmonic"
-            parts.append(f"{key.replace('_', ' ')} of {len(value)} {what}{'s' if len(value) > 1 else ''}")
+        if key == "curve":
+            parts.append(f"curve of {len(value)} points")
             continue
         if isinstance(value, tuple):
-            parts.append(f"{key} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
+            parts.append(f"{key.replace('_', ' ')} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
             continue
         number = shown(value, kind) if kind else value
         if key == "loss_factor_frequency":
@@ -57,6 +62,21 @@ def _numbers(element: Element) -> list[str]:
         else:
             parts.append(f"{key.replace('_', ' ')} {number}")
     return parts
+
+
+_LISTS = {
+    **dict.fromkeys(("excitation", "transmission_error", "stiffness_variation", "ripple", "gas_torque"), "harmonic"),
+    "friction": "slider",
+    **dict.fromkeys(("pressure", "compression"), "curve"),
+}
+"""Lists of tables, and what one of them is."""
+
+
+def firing(engine: Engine) -> str:
+    """How many cylinders there are and how they fire: "6 cylinders, firing 1-5-3-6-2-4"."""
+    order = engine.firing_order
+    count = f"{len(order)} cylinders" if len(order) > 1 else "one cylinder"
+    return f"{count}, firing {'-'.join(map(str, order))}" if len(order) > 1 else count
 
 
 def _size(what: str, element: Element, along: str) -> str:

@@ -17,10 +17,12 @@ from matplotlib.patches import Ellipse, Polygon
 
 from trunnion.arrays import Array
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.composite import StatedChain
 from trunnion.driveline.dampers import Damper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Loaded, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio, Rotor
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import DEGREE
@@ -40,9 +42,11 @@ LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
-    "SlipClutch": 0.7,
+    "SlipClutch": 0.7, "Motor": 0.95, "Generator": 0.95, "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
+THROW = 0.5
+"""Length of an engine for each of its throws."""
 SHAFTS = (SpringElement, PiecewiseShaft)
 GEARS = (Ratio, GearPair, Planetary, Belt, Differential)
 TUBE, SOLID = "#cfe3f2", "#e9e9e9"
@@ -101,12 +105,12 @@ def draw(line: Driveline) -> Figure:
     for number, place in enumerate(places, start=1):
         _DRAW.get(place.element.kind, _joint)(axes, place, disks)
         _name(axes, place, number, size, floor[place.row])
-        _numbers(axes, place, size, _between_joints(line, number - 1))
-    for place, parent in zip(places, line.parents, strict=True):
+        _numbers(axes, place, size, _between_joints(line.as_stated, number - 1))
+    for place, parent in zip(places, line.as_stated.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
         if (to := getattr(place.element, "to", None)) is not None:
-            closed = places[line.index(to)]
+            closed = places[line.as_stated.index(to)]
             _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
 
@@ -116,7 +120,8 @@ def _places(line: Driveline, letter: float = 0.0) -> list[_ElementPlace]:
     places: list[_ElementPlace] = []
     down: dict[int, float] = {}
     rows = 0
-    for i, (element, name, parent) in enumerate(zip(line.elements, line.names, line.parents, strict=True)):
+    chain = line.as_stated
+    for i, (element, name, parent) in enumerate(zip(chain.elements, chain.names, chain.parents, strict=True)):
         if parent is None:
             start, direction, row = np.zeros(2), 0.0, 0
         elif parent == i - 1:
@@ -139,10 +144,17 @@ def _places(line: Driveline, letter: float = 0.0) -> list[_ElementPlace]:
             down[row] = -down.get(row, 1.0)
             side = -np.sign(direction) if direction else down[row]  # a sloping line back towards the horizontal
             behind = direction + side * min(angle, STEEPEST)
-        half = LENGTH.get(element.kind, JOINT_LENGTH) / 2
+        half = _length(element) / 2
         end = start + half * _along(direction) + half * _along(behind)
         places.append(_ElementPlace(element, name, start, end, direction, behind, row))
     return places
+
+
+def _length(element: Element) -> float:
+    """Along the line, on the page."""
+    if isinstance(element, Engine):
+        return THROW * element.throws + 0.3
+    return LENGTH.get(element.kind, JOINT_LENGTH)
 
 
 def _along(direction: float) -> Array:
@@ -214,6 +226,58 @@ def _disk(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     share = np.log(disk.moment_of_inertia / low) / np.log(high / low) if high > low * 1.001 else 0.5
     _bar(axes, place.start, place.end)
     _box(axes, place.part(-0.16, 0.16), 0.4 + 0.5 * float(share), fc="#9db7c9")
+
+
+def _engine(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """A crank with its throws, and over each a piston in its cylinder, or two of a V engine."""
+    engine = place.element
+    assert isinstance(engine, Engine)
+    along, across = _along(place.direction), _across(place.direction)
+    banks = (0.0,) if engine.bank_angle is None else (-0.12, 0.12)
+    crank = [place.start]
+    for j, cylinders in enumerate(engine.on_throws):
+        middle = place.start + (0.15 + THROW * (j + 0.5)) * along
+        rise = 0.22 * float(np.cos(engine.firing_angles[cylinders[0] - 1]))  # where its pin stands as cylinder 1 fires
+        pin = middle + rise * across
+        ends = [middle + side * 0.13 * along for side in (-1, 1)]
+        crank += [ends[0], ends[0] + rise * across, ends[1] + rise * across, ends[1]]
+        for cylinder, lean in zip(cylinders, banks, strict=True):
+            top = middle + lean * along + 0.62 * across
+            _bar(axes, pin, top + rise * across, lw=1.2, zorder=4)
+            piston = replace(place, start=top - 0.1 * along + rise * across, end=top + 0.1 * along + rise * across)
+            liner = replace(place, start=top - 0.13 * along, end=top + 0.13 * along)
+            _box(axes, liner, 0.42, fc="white", zorder=1, ec=FAINT)
+            silent = cylinder in (engine.misfiring, engine.cut_out)
+            _box(axes, piston, 0.1, fc="white" if silent else "#9db7c9", hatch="xxx" if silent else None)
+    _bar(axes, *crank, place.end, zorder=5)
+
+
+def _electric(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """The circle of an electric machine with its letter."""
+    _bar(axes, place.start, place.end)
+    axes.add_patch(Ellipse(tuple(place.middle), 0.86, 0.86, fc="#f6d9c9", ec=INK, lw=1.2, zorder=3))
+    x, y = place.middle
+    axes.text(x, y, place.element.kind[0], fontsize=SMALL + 1, color=INK, ha="center", va="center", zorder=4)
+
+
+def _blades(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """Blades above and below a hub."""
+    _bar(axes, place.start, place.end)
+    tilt = np.rad2deg(place.direction)
+    for side in (1, -1):
+        tip = place.middle + side * 0.48 * _across(place.direction)
+        look: dict[str, Any] = {"angle": tilt - side * 14, "fc": "#cfe8dc", "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(tip), 0.3, 0.86, **look))
+    _box(axes, place.part(-0.17, 0.17), 0.2, fc="#8fa9b8", zorder=4)
+
+
+def _pump(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """The circle of a pump with its triangle."""
+    _bar(axes, place.start, place.end)
+    axes.add_patch(Ellipse(tuple(place.middle), 0.86, 0.86, fc="#cfe8dc", ec=INK, lw=1.2, zorder=3))
+    along, across = _along(place.direction), _across(place.direction)
+    corners = [place.middle + 0.4 * along, place.middle - 0.2 * along + 0.36 * across]
+    _bar(axes, *corners, place.middle - 0.2 * along - 0.36 * across, corners[0], lw=1.2, zorder=4)
 
 
 def _damper(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
@@ -341,6 +405,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "Shaft": _shaft,
     "Coupling": _coupling,
     "Disk": _disk,
+    "Engine": _engine,
     "Ratio": _ratio,
     "GearPair": _ratio,
     "ViscousDamper": _damper,
@@ -354,6 +419,11 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "PiecewiseShaft": _stages,
     "Clutch": _stages,
     "SlipClutch": _slip_clutch,
+    "Motor": _electric,
+    "Generator": _electric,
+    "Fan": _blades,
+    "Propeller": _blades,
+    "Pump": _pump,
 }
 
 
@@ -370,12 +440,12 @@ def _name(axes: Axes, place: _ElementPlace, number: int, size: float, floor: flo
         middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
         fontsize=size, color=INK, ha="left", va="center",
     )  # fmt: skip
-    below = 0.95 if isinstance(place.element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
+    below = 0.95 if isinstance(place.element, Rotor) else 0.55 + 0.9 * abs(np.sin(place.direction))
     if middle[1] - below > floor + 0.1:
         axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)
 
 
-def _between_joints(line: Driveline, place: int) -> bool:
+def _between_joints(line: StatedChain, place: int) -> bool:
     """Whether a shaft has a joint on both sides of it along its chain, so that its fork offset matters."""
 
     def bends(i: int | None) -> bool:
@@ -402,15 +472,18 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
     elif isinstance(element, GEARS):
         text = f"i {element.speed_ratio:.4g}"
-    elif isinstance(element, Loaded) and element.load_torque:
-        text = f"load\n{element.load_torque:.4g} N·m"
+    elif load := getattr(element, "load_torque", 0.0):
+        text = f"load\n{load:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
+    elif isinstance(element, Engine) and len(element.firing_order) > 1:
+        text = "-".join(map(str, element.firing_order))
     if isinstance(element, GEARS):  # beside the upper wheel
         at = place.end + np.array([0.05, 0.75])
         axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:
-        height = 1.0 if isinstance(element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
+        tall = 1.0 if isinstance(element, Rotor) else 1.2 if isinstance(element, Engine) else None
+        height = tall or 0.55 + 0.9 * abs(np.sin(place.direction))
         colour = ACCENT if hasattr(element, "angle") else INK
         axes.text(
             place.middle[0], place.middle[1] + height, text, fontsize=size, color=colour, ha="center", va="bottom"

@@ -13,7 +13,8 @@ import numpy as np
 
 from trunnion.design.assessment.assessment_input import LoadCaseResponse, with_torques
 from trunnion.design.assessment.measures import torque_measures
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.operation import Operation
+from trunnion.driveline.silent_cylinders import cylinders
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.modes.mass_elastic import HolzerTable, holzer
@@ -189,16 +190,17 @@ def _misfiring(
     seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
 ) -> Iterator[Malfunction]:
     """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds."""
-    disks = [(name, one) for name, one in seen.line.parts if isinstance(one, Disk)]
-    cylinders = [(name, number, one) for name, one in disks for number in range(1, len(one.firing_angles) + 1)]
-    for done, (name, number, disk) in enumerate(cylinders if cases else (), start=1):
-        called = f"cylinder {number} of {name}" if len(disk.firing_angles) > 1 else name
-        failing = tuple(_with_misfire(case, name, number) for case in cases)
+    every = tuple(cylinders(seen.line.as_stated.parts))
+    loads = {"", *(one.name for one in (seen.line.operation or Operation()).load_cases)}
+    firing = [case for case in cases if case.name in loads]  # not those that the description puts out of work itself
+    for done, one in enumerate(every if firing else (), start=1):
+        called = one.owner if one.alone else f"cylinder {one.number} of {one.owner}"
+        failing = tuple(_with_misfire(case, one.owner, one.number) for case in firing)
         springs = range(len(cases[0].answered.springs))
         found = tuple(_largest(failing, "vibratory", s) for s in springs)
         yield Malfunction(called, found, "; ".join({why: None for case in failing for why in case.ended_by}))
         if progress is not None:
-            progress(done / len(cylinders))
+            progress(done / len(every))
 
 
 def _with_misfire(case: LoadCaseResponse, name: str, number: int) -> LoadCaseResponse:

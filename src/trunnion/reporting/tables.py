@@ -10,10 +10,14 @@ import numpy as np
 
 from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element, Loaded
+from trunnion.driveline.engine import Engine
+from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
 from trunnion.results.units import figures, signs
@@ -64,7 +68,7 @@ def four(value: float) -> str:
 def elements(line: Driveline) -> Table:
     """Every element with what it is and its numbers."""
     rows = []
-    for i, (name, element) in enumerate(zip(line.names, line.elements, strict=True), start=1):
+    for i, (name, element) in enumerate(line.as_stated.parts, start=1):
         after = f"after {element.after}; " if element.after else ""
         rows.append({"no.": i, "name": name, "element": element.kind, "numbers": after + "; ".join(_numbers(element))})
     return Table.of(rows)
@@ -72,9 +76,9 @@ def elements(line: Driveline) -> Table:
 
 def _numbers(element: Element) -> list[str]:
     """Stated numbers with units, and what follows from a geometry."""
-    parts = []
+    parts = [firing(element)] if isinstance(element, Engine) else []
     for key, value in element.stated.items():
-        if key in ("name", "after"):
+        if key in ("name", "after", "firing_order"):
             continue
         kind = element.quantity_of(key)
         if isinstance(value, tuple):
@@ -95,7 +99,11 @@ def _numbers(element: Element) -> list[str]:
 
 
 def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
-    """Quantities one after the other, or how many harmonics there are."""
+    """Quantities one after the other, or how many harmonics, curves or points there are."""
+    if isinstance(values[0], PressureCurve):
+        return f"of {len(values)} curve{'s' if len(values) > 1 else ''}"
+    if isinstance(values[0], TorquePoint):
+        return f"of {len(values)} points"
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
     return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))
@@ -308,6 +316,6 @@ def operation(contents: Contents, unit: str) -> Table:
         first, last = (np.rad2deg(a) for a in seen.angle_range)
         rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
     for name, element in zip(seen.line.names, seen.line.elements, strict=True):
-        if isinstance(element, Loaded) and element.load_torque:
-            rows.append((f"load torque on {name}", f"{four(element.load_torque)} N·m"))
+        if torque := getattr(element, "load_torque", 0.0):
+            rows.append((f"load torque on {name}", f"{four(torque)} N·m"))
     return Table(("", ""), tuple(rows))

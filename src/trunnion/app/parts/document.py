@@ -107,6 +107,8 @@ class Document:
             owner: Any = data
             for key, following in zip(path, path[1:], strict=False):
                 if isinstance(key, str) and key not in owner:
+                    if not text.strip():
+                        return  # what is not there need not be taken away
                     owner[key] = [] if isinstance(following, int) else {}
                 owner = owner[key]
             value = text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,)) else _read(text)
@@ -330,6 +332,22 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Clutch": {"stiffnesses": ["800 N*m/rad"], "friction": [{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}]},
     "SlipClutch": {"torque": "1200 N*m"},
     "Disk": {"inertia": "0.4 kg*m^2"},
+    "Engine": {
+        "firing_order": "1-3-4-2",
+        "throw_inertia": "0.02 kg*m^2",
+        "throw_stiffness": "0.6 MN*m/rad",
+        "gas_torque": [{"order": 2, "amplitude": "90 N*m"}],
+    },
+    "Motor": {
+        "inertia": "0.4 kg*m^2",
+        "breakdown_torque": "500 N*m",
+        "breakdown_slip": 0.2,
+        "synchronous_speed": "1500 rpm",
+    },
+    "Generator": {"inertia": "0.4 kg*m^2", "power": "30 kW"},
+    "Fan": {"inertia": "3 kg*m^2", "rated_power": "30 kW", "rated_speed": "1480 rpm"},
+    "Pump": {"inertia": "0.3 kg*m^2", "rated_power": "30 kW", "rated_speed": "1480 rpm"},
+    "Propeller": {"inertia": "60 kg*m^2", "rated_power": "900 kW", "rated_speed": "300 rpm"},
     "HookeJoint": {"angle": "12 deg"},
     "IdealJoint": {"angle": "12 deg"},
     "TripodJoint": {"angle": "8 deg", "radius": "30 mm", "length": "0.5 m"},
@@ -358,7 +376,7 @@ def _texts_kept(data: dict[str, Any], before: dict[str, Any], line: Driveline) -
     for key, value in before.items():
         if key not in data and key in Driveline.model_fields and getattr(line, key) == value:
             data[key] = value
-    tables = zip(data.get("element", []), before.get("element", []), line.elements, strict=False)
+    tables = zip(data.get("element", []), before.get("element", []), line.as_stated.elements, strict=False)
     for place, (new, old, element) in enumerate(tables):
         model = KINDS.get(str(new.get("type", "")))
         if model is None or old.get("type") != new.get("type"):

@@ -434,11 +434,10 @@ def lossy(assembly: Assembly) -> bool:
 def cases_of(
     line: Driveline, low: float, high: float, effort: SearchEffort = WHOLE, *, partly: bool = False
 ) -> tuple[LoadCaseResponse, ...]:
-    """The line as stated and under each of its load cases."""
-    named = [case.name for case in line.operation.load_cases] if line.operation else []
+    """The line as stated and under each of its load cases, where it asks for it with every cylinder out of work."""
     return tuple(
         LoadCaseResponse(name, assemble(line.with_load(name) if name else line), low, high, effort, partly=partly)
-        for name in ("", *named)
+        for name in ("", *line.cases)
     )
 
 

@@ -207,10 +207,10 @@ def _growth(case: LoadCaseResponse, speed: float, directions: Sequence[Direction
 
 def _under_load(case: LoadCaseResponse, one: Direction) -> Direction:
     """A direction that leaves alone what the load case itself states."""
-    operation, labels = case.assembly.line.operation, case.assembly.packed.labels
-    if not case.name or operation is None:
+    line, labels = case.assembly.line, case.assembly.packed.labels
+    if not case.name:
         return one
-    stated = {f"{disk}.load_torque" for disk in operation.load_case(case.name).loads}
+    stated = {f"{disk}.load_torque" for disk in line.loads_of(case.name)}
     return one.but(column for column, label in enumerate(labels) if label in stated)
 
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.silent_cylinders import cylinders
 from trunnion.errors import InputError
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
@@ -21,7 +21,7 @@ from trunnion.results.result import Result
 class Misfire(Result):
     """Linear response with every cylinder in turn out of work."""
 
-    cylinders: tuple[tuple[str, int], ...] = internal("disk and number of each")
+    cylinders: tuple[tuple[str, int], ...] = internal("engine or disk, and number of each")
     springs: tuple[str, ...] = coordinate("spring")
     vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak over the speeds")
     speed: Array = variable("cylinder spring", "rad/s", "input speed where it is largest")
@@ -29,11 +29,12 @@ class Misfire(Result):
     line: Driveline = internal("with the worst cylinder out of work")
     response: OrderResponse = internal("of that line")
     unit: str = internal("of speeds in print")
+    cut_out: bool = attribute("whether nothing is left of its gas torque", default=False)
 
     @property
     @computed(coordinate("cylinder"), after="springs")
     def names(self) -> list[str]:
-        """Disk and number of every cylinder."""
+        """Engine or disk and number of every cylinder."""
         return [f"{name} {number}" for name, number in self.cylinders]
 
     @property
@@ -51,10 +52,30 @@ class Misfire(Result):
         several = sum(one == name for one, _ in self.cylinders) > 1
         return f"cylinder {number} of {name}" if several else name
 
-    def _lines(self) -> Iterator[str]:
-        name, number = self.worst
+    @property
+    def _done(self) -> str:
+        return "cut-out" if self.cut_out else "misfire"
+
+    @property
+    def headline(self) -> str:
+        """The worst cylinder in one line."""
+        return f"{self._done}: {self._called(*self.worst)} is the worst of {len(self.cylinders)}"
+
+    def table(self) -> list[dict[str, object]]:
+        """Largest vibratory torque [N m] of every spring with the worst cylinder out of work, and with all firing."""
         row = self.cylinders.index(self.worst)
-        yield f"misfire: {self._called(name, number)} is the worst of {len(self.cylinders)}"
+        return [
+            {
+                "spring": spring, "vibratory torque [N m]": float(self.vibratory_torque[row, s]),
+                f"at [{self.words.unit}]": float(self.speed[row, s]) * self.words.factor,
+                "all firing [N m]": float(self.normal[s]),
+            }
+            for s, spring in enumerate(self.springs)
+        ]  # fmt: skip
+
+    def _lines(self) -> Iterator[str]:
+        row = self.cylinders.index(self.worst)
+        yield self.headline
         for s, spring in enumerate(self.springs):
             yield (
                 f"  {spring}: vibratory torque up to {self.vibratory_torque[row, s]:.4g} N m at "
@@ -62,21 +83,24 @@ class Misfire(Result):
             )
 
 
-def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None) -> Misfire:
+def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *, cut_out: bool = False) -> Misfire:
     """Put every cylinder of ``line`` out of work in turn and find the worst.
 
-    Cylinders are the ``firing_angles`` of disks. One that misfires adds only the inertia torque of its masses
-    (``quadratic_amplitude``); ``misfire(...).line`` is the line with the worst one, for ``assess`` and all else.
+    Cylinders are those of an ``Engine`` and the ``firing_angles`` of disks. The gas in one of an engine that misfires
+    is still compressed, see ``Engine``; of one that is ``cut_out``, and of one of a disk, the inertia torque of its
+    masses (``quadratic_amplitude``) is all that is left. ``misfire(...).line`` is the line with the worst one, for
+    ``assess`` and all else.
 
     Parameters
     ----------
     line : with cylinders.
     speeds : (speed,) input speeds [rad/s].
     load_case : name of one of the line's load cases; by default the loads of its disks.
+    cut_out : nothing is left of the gas torque, instead of what compression does.
 
     Raises
     ------
-    InputError : no disk has cylinders; as of ``order_response``.
+    InputError : no engine and no disk has cylinders; as of ``order_response``.
 
     Examples
     --------
@@ -89,25 +113,23 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None) ->
     """
     if load_case is not None:
         line = line.with_load(load_case)
-    cylinders = tuple(
-        (name, number)
-        for name, disk in zip(line.names, line.elements, strict=True)
-        if isinstance(disk, Disk)
-        for number in range(1, len(disk.firing_angles) + 1)
-    )
-    if not cylinders:
-        remedy = 'list the excitation of one cylinder and firing_angles = ["0 deg", "180 deg"], say'
-        raise InputError("has no cylinders that could misfire", element="driveline", key="firing_angles", remedy=remedy)
+    key = "cut_out" if cut_out else "misfiring"
+    found_here = tuple(cylinders(line.as_stated.parts, key))
+    if not found_here:
+        remedy = 'add an Engine, or list the excitation of one cylinder and firing_angles = ["0 deg", "180 deg"], say'
+        where = {"element": "driveline", "key": "firing_angles"}
+        raise InputError("has no cylinders that could misfire", **where, remedy=remedy)
     normal = order_response(line, speeds).vibratory_torque
-    lines = [line.replace(name, misfiring=number) for name, number in cylinders]
+    lines = [line.replace(one.owner, **{key: one.number}) for one in found_here]
     found = [order_response(one, speeds) for one in lines]
     torque = np.stack([one.vibratory_torque for one in found])
     at = np.nan_to_num(torque).argmax(axis=1)
     largest, usual = np.nanmax(torque, axis=1), np.nanmax(normal, axis=0)
     worst = _worst(largest, usual)
     return Misfire(
-        cylinders=cylinders, springs=found[0].springs, vibratory_torque=largest, speed=found[0].speed[at], normal=usual,
-        line=lines[worst], response=found[worst], unit=found[worst].unit,
+        cylinders=tuple((one.owner, one.number) for one in found_here), springs=found[0].springs,
+        vibratory_torque=largest, speed=found[0].speed[at], normal=usual, line=lines[worst], response=found[worst],
+        unit=found[worst].unit, cut_out=cut_out,
     )  # fmt: skip
 
 

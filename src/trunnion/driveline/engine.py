@@ -1,0 +1,532 @@
+"""A reciprocating engine: throws of a crank, cylinders on them that fire in order, gas and inertia torques."""
+
+from __future__ import annotations
+
+import re
+from cmath import phase
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import lru_cache
+from itertools import pairwise
+from math import isclose, pi
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from trunnion.driveline.composite import Composite
+from trunnion.driveline.cylinders import MOST_ORDERS, reciprocating_mass
+from trunnion.driveline.elements import Disk, Doubt, Element, not_negative, positive
+from trunnion.driveline.excitation import Excitation, Excitations
+from trunnion.driveline.pressure import PressureCurve, PressureCurves
+from trunnion.driveline.quantities import (
+    DEGREE,
+    INERTIA,
+    LENGTH,
+    STIFFNESS,
+    Angle,
+    Damping,
+    Dimensionless,
+    Frequency,
+    Inertia,
+    Length,
+    Mass,
+    Maybe,
+    OneOrSeveral,
+    Pressure,
+    Stiffness,
+    optional,
+    shown,
+)
+from trunnion.driveline.record import as_tuple, one_of
+from trunnion.driveline.shafts import Shaft
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.driveline.quantities import Stated
+
+MOST_CYLINDERS = 48
+HIGHEST_ORDER = 24
+SAME_ANGLE = 0.01 * DEGREE
+"""To which firing angles and ends of a curve have to agree."""
+CLOSED = 0.02
+"""Share of its highest pressure by which the two ends of a curve may differ."""
+LOWEST_PEAK, HIGHEST_PEAK = 1e5, 1e8
+"""Pressures [Pa] between which that of a running cylinder reaches; beyond them the unit is doubted."""
+STEP = 0.25 * DEGREE
+"""Between the points of a curve that follows from volumes."""
+ROUNDING = 1e-12
+"""Share of the largest below which a harmonic is rounding."""
+DISTINCT = 1e-6
+"""Share of the largest mean torque by which those of two curves have to differ."""
+_ORDER = 'write firing_order = "1-5-3-6-2-4", say'
+
+
+def _one_or_each(example: str) -> Callable[[object], object]:
+    several = as_tuple("quantities", f'write "{example}" for all, or a list with one for each')
+
+    def read(value: object) -> object:
+        return (value,) if isinstance(value, str | int | float) and not isinstance(value, bool) else several(value)
+
+    return read
+
+
+def _firing_order(value: object) -> object:
+    if isinstance(value, str):
+        value = re.split(r"[-–,\s]+", value.strip())
+    if not isinstance(value, Iterable) or isinstance(value, dict):
+        raise InputError("is no order of cylinders", value=value, remedy=_ORDER)
+    try:
+        numbers = tuple(value)
+        if any(isinstance(one, bool | float) for one in numbers):
+            raise ValueError
+        return tuple(int(one) for one in numbers)
+    except (ValueError, TypeError):
+        raise InputError("is no order of cylinders", value=value, remedy=_ORDER) from None
+
+
+def _also_one(schema: dict[str, Any]) -> None:
+    """A list in the schema of a file, or one for all."""
+    member = schema.pop("items")
+    several = {"type": schema.pop("type"), "items": {key: one for key, one in member.items() if key != "unit"}}
+    schema.update({"anyOf": [*member["anyOf"], several], "unit": member["unit"]})
+
+
+def _also_text(schema: dict[str, Any]) -> None:
+    schema.update({"anyOf": [{"type": schema.pop("type"), "items": schema.pop("items")}, {"type": "string"}]})
+
+
+if TYPE_CHECKING:
+    FiringOrder = Stated[tuple[int, ...], str | Iterable[int]]
+else:
+    FiringOrder = Annotated[tuple[int, ...], BeforeValidator(_firing_order)]
+
+
+class Engine(Composite):
+    """A reciprocating engine or compressor: becomes the throws of its crank, Disks "engine.throw 1" and so on from its
+    front, and the Shafts between them, "engine.crank 1-2"; or one Disk, "engine.crankshaft".
+
+    Shafts at its front and to its flywheel are elements of their own. Zero rotation is the top dead centre of the
+    cylinder that fires first. Cylinder c, which fires at the crank angle α_c, turns order k of its torque by −k α_c.
+
+    Parameters
+    ----------
+    firing_order : numbers of the cylinders in the order in which they fire, "1-5-3-6-2-4"; throw 1 is in front.
+    firing_intervals : crank angle from each firing to the next [rad], as many as cylinders; even by default.
+    strokes : 4 or 2.
+    bank_angle : of a V engine [rad]: throw j bears cylinder j and, of n, cylinder j + n/2.
+    throw_inertia : of a throw with the rotating part of its rods [kg m²], one for all or one for each; without
+        reciprocating masses, whose mean is added where they are stated.
+    throw_stiffness : of the crank from one throw to the next [N m/rad], one for all or one for each.
+    damping, loss_factor, loss_factor_frequency : of these shafts, as of a ``Shaft``.
+    rigid : all throws as one inertia.
+    bore, stroke, rod_length : of a cylinder, and of its rod between the centres [m].
+    reciprocating_mass : of a cylinder: piston, pin and the oscillating part of the rod [kg].
+    gas_torque : harmonics of one cylinder's gas torque on the crank, as the excitation of a Disk; tables over torque
+        are by the mean torque of one cylinder. In a file also the name of a CSV table.
+    pressure : or else its absolute pressure over the crank angle, a ``PressureCurve`` for each load, see
+        ``read_pressure``. Mean torque and harmonics follow from the exact slider crank; between the loads harmonics are
+        linear in the mean torque that a cylinder drives with, and refused beyond them. One curve holds at all loads.
+    crankcase_pressure : behind the piston [Pa].
+    orders : highest order of gas torques from curves, and of inertia torques.
+    drive_share : of the engine, as of a Disk; its throws share it evenly.
+    misfiring : number of a cylinder that does not fire, and whose gas is compressed and expands again.
+    cut_out : number of a cylinder without any gas torque.
+    compression : pressure in a cylinder that does not fire; or else
+    compression_ratio, charge_pressure, polytropic_exponent : ε, absolute pressure [Pa] at the bottom dead centre and n
+        of p Vⁿ = const from there on. Without either, a misfire leaves no gas torque at all.
+
+    A misfire or cut-out leaves the mean torque as it is, and what the other cylinders do.
+
+    >>> engine = Engine(
+    ...     firing_order="1-3-4-2", throw_inertia="0.02 kg*m^2", throw_stiffness="0.6 MN*m/rad",
+    ...     gas_torque=[{"order": 2, "amplitude": "90 N*m"}],
+    ... )
+    >>> [round(angle / DEGREE) for angle in engine.firing_angles]
+    [0, 540, 180, 360]
+    """
+
+    example: ClassVar[str] = (
+        'firing_order = "1-3-4-2", throw_inertia = "0.02 kg*m^2" and throw_stiffness = "0.6 MN*m/rad"'
+    )
+
+    firing_order: FiringOrder = Field(
+        description="numbers of the cylinders as they fire, 1-5-3-6-2-4", json_schema_extra=_also_text
+    )
+    firing_intervals: Annotated[OneOrSeveral[Angle], BeforeValidator(_one_or_each("120 deg"))] = optional(
+        default=(), description="crank angle from each firing to the next; even by default", json_schema_extra=_also_one
+    )
+    strokes: Annotated[int, BeforeValidator(one_of((2, 4), "is neither 2 nor 4", "write strokes = 4"))] = Field(
+        default=4, json_schema_extra={"enum": [2, 4]}, description="per cycle: 4 or 2"
+    )
+    bank_angle: Maybe[Angle] = optional(default=None, description="of a V engine, two cylinders on a throw")
+    throw_inertia: Annotated[OneOrSeveral[Inertia], BeforeValidator(_one_or_each("0.02 kg*m^2"))] = optional(
+        default=(), description="of a throw without reciprocating masses; one for all, or one for each",
+        json_schema_extra=_also_one,
+    )  # fmt: skip
+    throw_stiffness: Annotated[OneOrSeveral[Stiffness], BeforeValidator(_one_or_each("0.6 MN*m/rad"))] = optional(
+        default=(), description="from one throw to the next; one for all, or one for each", json_schema_extra=_also_one
+    )
+    damping: Damping = optional(default=0.0, description="of the crank between two throws")
+    loss_factor: Maybe[Dimensionless] = optional(default=None, description="of the crank, instead of damping")
+    loss_factor_frequency: Maybe[Frequency] = optional(
+        default=None, description="at which the loss factor holds; by default at all"
+    )
+    rigid: bool = Field(default=False, description="all throws as one inertia")
+    bore: Maybe[Length] = optional(default=None, description="of a cylinder")
+    stroke: Maybe[Length] = optional(default=None, description="of its piston, twice the crank radius")
+    rod_length: Maybe[Length] = optional(default=None, description="of its rod, between the centres")
+    reciprocating_mass: Maybe[Mass] = optional(default=None, description="of piston, pin and part of the rod")
+    gas_torque: Excitations = optional(default=(), description="harmonics of the gas torque of one cylinder")
+    pressure: PressureCurves = optional(default=(), description="of one cylinder, a curve for each load")
+    crankcase_pressure: Pressure = optional(default=101325.0, description="absolute, behind the piston")
+    orders: Dimensionless = optional(default=12.0, description="highest order of gas torques and inertia torques")
+    drive_share: Dimensionless = optional(
+        default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
+    )
+    misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire")
+    cut_out: int | None = Field(default=None, description="number of the cylinder without gas torque")
+    compression: PressureCurves = optional(default=(), description="pressure in a cylinder that does not fire")
+    compression_ratio: Maybe[Dimensionless] = optional(default=None, description="instead, of its volumes")
+    charge_pressure: Maybe[Pressure] = optional(default=None, description="absolute, where compression begins")
+    polytropic_exponent: Maybe[Dimensionless] = optional(default=None, description="of compression and expansion")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        self._check_order()
+        self._check_crank()
+        self._check_cylinder()
+        self._check_not_firing()
+        # Also the parts say what is wrong with what they are given: phases in time, damping stated twice.
+        _gas(self)
+        return self
+
+    def _check_order(self) -> None:
+        order, count = self.firing_order, len(self.firing_order)
+        if not 1 <= count <= MOST_CYLINDERS:
+            raise InputError(f"must have 1 to {MOST_CYLINDERS} cylinders", key="firing_order", value=list(order))
+        if sorted(order) != list(range(1, count + 1)):
+            missing = sorted(set(range(1, count + 1)) - set(order))
+            problem = f"must have every cylinder from 1 to {count} once, and has no {missing[0]}"
+            raise InputError(problem, key="firing_order", value="-".join(map(str, order)), remedy=_ORDER)
+        if self.bank_angle is not None and count % 2:
+            problem = f"has two cylinders on every throw, and firing_order {count}"
+            remedy = "leave it out, or check the order"
+            raise InputError(problem, key="bank_angle", value=self.bank_angle, remedy=remedy)
+        intervals = self.firing_intervals
+        if not intervals:
+            return
+        if len(intervals) == 1 < count:
+            intervals *= count
+        if len(intervals) != count:
+            problem = f"must be {count} angles, one after each firing, the last back to the first"
+            raise InputError(problem, key="firing_intervals", value=len(intervals), remedy="leave them out where even")
+        if min(intervals) < 0 or abs(sum(intervals) - self.cycle) > SAME_ANGLE * count:
+            problem = f"make {sum(intervals) / DEGREE:.6g} deg together, and a cycle has {self.cycle / DEGREE:g}"
+            remedy = "check them, and strokes"
+            raise InputError(problem, key="firing_intervals", value=len(intervals), remedy=remedy)
+
+    def _check_crank(self) -> None:
+        if not self.throw_inertia:
+            raise InputError("is missing", key="throw_inertia", remedy='write throw_inertia = "0.02 kg*m^2", say')
+        if not self.throw_stiffness and not self.rigid and self.throws > 1:
+            remedy = 'write throw_stiffness = "0.6 MN*m/rad", say, or rigid = true'
+            raise InputError("is missing", key="throw_stiffness", remedy=remedy)
+        for key, kind, count in (
+            ("throw_inertia", INERTIA, self.throws), ("throw_stiffness", STIFFNESS, self.throws - 1)
+        ):  # fmt: skip
+            values = getattr(self, key)
+            if any(not one > 0 for one in values):
+                raise InputError("must be positive", key=key, value=min(values), remedy=f'write "{kind.example}", say')
+            if len(values) > 1 and len(values) != count:
+                what = "throw" if key == "throw_inertia" else "shaft between two throws"
+                problem = f"must be one for all or {count}, one for each {what}"
+                raise InputError(problem, key=key, value=len(values))
+        positive(self, "loss_factor_frequency")
+        not_negative(self, "damping", "loss_factor", "drive_share")
+        if self.loss_factor is not None and self.damping:
+            raise InputError(
+                "stands beside loss_factor", key="damping", value=self.damping, remedy="leave one of the two out"
+            )
+        if self.loss_factor is None and self.loss_factor_frequency is not None:
+            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
+
+    def _check_cylinder(self) -> None:
+        positive(self, "bore", "stroke", "rod_length", "reciprocating_mass", "crankcase_pressure")
+        if self.stroke is not None and self.rod_length is not None and not self.rod_length > self.stroke / 2:
+            remedy = f"longer than half the stroke, {shown(self.stroke / 2, LENGTH)}; check the units"
+            raise InputError("is no longer than the crank", key="rod_length", value=self.rod_length, remedy=remedy)
+        self._needs("reciprocating_mass", "stroke", "rod_length")
+        self._needs("pressure", "bore", "stroke", "rod_length")
+        if not 1 <= self.orders <= HIGHEST_ORDER:
+            raise InputError(f"must be from 1 to {HIGHEST_ORDER}", key="orders", value=self.orders, remedy="12, say")
+        if self.gas_torque and self.pressure:
+            remedy = "leave one of the two out"
+            raise InputError("stands beside gas_torque", key="pressure", remedy=remedy)
+        if any(one.frequency is not None for one in self.gas_torque):
+            raise InputError("repeats orders, not a frequency", key="gas_torque", remedy="write orders")
+        for key in ("pressure", "compression"):
+            for curve in getattr(self, key):
+                self._check_curve(key, curve)
+
+    def _check_curve(self, key: str, curve: PressureCurve) -> None:
+        at = "" if curve.load is None else f" at load {curve.load:g}"
+        angles, pressures = curve.angles, curve.pressures
+        span, step = angles[-1] - angles[0], max(b - a for a, b in pairwise(angles))
+        cycle = f"{self.cycle / DEGREE:g} deg"
+        if span < self.cycle - 1.5 * step or span > self.cycle + SAME_ANGLE:
+            problem = f"covers {span / DEGREE:.6g} deg{at}, and a cycle of {self.strokes} strokes has {cycle}"
+            remedy = f"give one whole cycle, or strokes = {6 - self.strokes}"
+            raise InputError(problem, key=key, remedy=remedy)
+        gap = abs(pressures[-1] - pressures[0])
+        if self.closes(curve) and gap > CLOSED * max(pressures):
+            ends = f"{pressures[0] / 1e5:.4g} bar at its beginning and {pressures[-1] / 1e5:.4g} bar a cycle later"
+            problem = f"does not close{at}: {ends}"
+            raise InputError(problem, key=key, remedy="give one cycle of steady running")
+
+    def closes(self, curve: PressureCurve) -> bool:
+        """Whether the last point of a curve is the first one again."""
+        return abs(curve.angles[-1] - curve.angles[0] - self.cycle) <= SAME_ANGLE
+
+    def _check_not_firing(self) -> None:
+        for key in ("misfiring", "cut_out"):
+            value = getattr(self, key)
+            if value is not None and value not in self.firing_order:
+                remedy = f"write a number from 1 to {len(self.firing_order)}"
+                raise InputError("is the number of no cylinder", key=key, value=value, remedy=remedy)
+        if self.misfiring is not None and self.misfiring == self.cut_out:
+            raise InputError("is cut out", key="misfiring", value=self.misfiring, remedy="leave one of the two out")
+        if len(self.compression) > 1:
+            raise InputError("must be one curve", key="compression", value=len(self.compression))
+        numbers = ("compression_ratio", "charge_pressure", "polytropic_exponent")
+        given = [key for key in numbers if getattr(self, key) is not None]
+        if given and self.compression:
+            remedy = "leave one of the two out"
+            raise InputError("stands beside compression", key=given[0], value=getattr(self, given[0]), remedy=remedy)
+        if given and len(given) < 3:
+            missing = next(key for key in numbers if key not in given)
+            raise InputError(f"is missing beside {given[0]}", key=missing, remedy=f"write {', '.join(numbers)}")
+        self._needs("compression_ratio", "bore", "stroke", "rod_length")
+        self._needs("compression", "bore", "stroke", "rod_length")
+        if self.compression_ratio is not None and not self.compression_ratio > 1:
+            problem = "leaves no clearance volume, which is that of the stroke over compression_ratio - 1"
+            remedy = "write compression_ratio = 14, say"
+            raise InputError(problem, key="compression_ratio", value=self.compression_ratio, remedy=remedy)
+        positive(self, "charge_pressure", "polytropic_exponent")
+
+    def _needs(self, key: str, *needed: str) -> None:
+        """Refuse what is stated without what it needs."""
+        missing = next((one for one in needed if getattr(self, one) is None), None)
+        if getattr(self, key) not in (None, ()) and missing is not None:
+            raise InputError(f"is missing beside {key}", key=missing, remedy=f"write {', '.join(needed)}")
+
+    def doubts(self) -> Iterator[Doubt]:
+        peaks = [max(curve.pressures) for key in ("pressure", "compression") for curve in getattr(self, key)]
+        if peaks and max(peaks) < LOWEST_PEAK:
+            problem = f"reaches {max(peaks):.4g} Pa, less than the pressure of the air"
+            yield ("pressure", problem, "check its unit: bar read as Pa, say")
+        if peaks and max(peaks) > HIGHEST_PEAK:
+            yield ("pressure", f"reaches {max(peaks) / 1e5:.4g} bar", "check its unit: Pa read as bar, say")
+        if self.bank_angle is None:
+            return
+        for a, b in self.on_throws:
+            apart = self.firing_angles[b - 1] - self.firing_angles[a - 1]
+            off = min(abs((apart - side * self.bank_angle + pi) % (2 * pi) - pi) for side in (1, -1))
+            if off > SAME_ANGLE:
+                problem = f"does not fit the firing order: cylinders {a} and {b} share a throw and fire"
+                problem += f" {apart % (2 * pi) / DEGREE:.6g} deg apart"
+                yield ("bank_angle", problem, "check the order, unless their pins are split")
+                return
+
+    @property
+    def cycle(self) -> float:
+        """Crank angle [rad] after which all repeats."""
+        return self.strokes * pi
+
+    @property
+    def firing_angles(self) -> tuple[float, ...]:
+        """Crank angle [rad] at which every cylinder fires, by number; the first in the order at 0."""
+        count = len(self.firing_order)
+        intervals = self.firing_intervals or (self.cycle / count,)
+        if len(intervals) == 1:
+            intervals *= count
+        at = {cylinder: sum(intervals[:place]) for place, cylinder in enumerate(self.firing_order)}
+        return tuple(at[number] for number in range(1, count + 1))
+
+    @property
+    def throws(self) -> int:
+        """How many the crank has."""
+        return len(self.firing_order) if self.bank_angle is None else len(self.firing_order) // 2
+
+    @property
+    def on_throws(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the cylinders on every throw."""
+        banks = 1 if self.bank_angle is None else 2
+        return tuple(tuple(j + 1 + bank * self.throws for bank in range(banks)) for j in range(self.throws))
+
+    @property
+    def mean_reciprocating_inertia(self) -> float:
+        """Mean inertia [kg m²] that the reciprocating mass of one cylinder adds to its throw."""
+        return _masses(self)[1]
+
+    def throw_of(self, cylinder: int) -> int:
+        """Number of the throw, or 1 of a rigid engine, that bears a cylinder."""
+        return 1 if self.rigid else next(j for j, there in enumerate(self.on_throws, start=1) if cylinder in there)
+
+    def made_of(self, name: str) -> tuple[Element, ...]:
+        """Disks and the Shafts between them."""
+        inertias = self._each(self.throw_inertia, self.throws)
+        if self.rigid:
+            every = tuple(range(1, len(self.firing_order) + 1))
+            return (self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, self.after),)
+        found: list[Element] = []
+        share, stiffnesses = self.drive_share / self.throws, self._each(self.throw_stiffness, self.throws - 1)
+        for j, (inertia, cylinders) in enumerate(zip(inertias, self.on_throws, strict=True), start=1):
+            if j > 1:
+                found.append(
+                    Shaft(
+                        stiffness=stiffnesses[j - 2], damping=self.damping, loss_factor=self.loss_factor,
+                        loss_factor_frequency=self.loss_factor_frequency, name=f"{name}.crank {j - 1}-{j}",
+                    )
+                )  # fmt: skip
+            after = self.after if j == 1 else None
+            found.append(self._throw(f"{name}.throw {j}", inertia, cylinders, share, after))
+        return tuple(found)
+
+    def refitted(self, name: str, elements: Sequence[Element]) -> Self | None:
+        """With the inertias and stiffnesses of the elements, where nothing else of them has changed."""
+        inertias = self._each(self.throw_inertia, self.throws)
+        own = [one for one in self.made_of(name) if isinstance(one, Disk)]
+        disks = [one for one in elements if isinstance(one, Disk)]
+        if self.rigid or any(one.inertia is None for one in disks):
+            return None
+        moved = [
+            was if new.inertia == old.inertia else was + float(new.inertia or 0) - float(old.inertia or 0)
+            for was, new, old in zip(inertias, disks, own, strict=True)
+        ]
+        stiffnesses = [float(one.stiffness or 0) for one in elements if isinstance(one, Shaft)]
+        try:
+            found = self.but(throw_inertia=_short(moved), throw_stiffness=_short(stiffnesses))
+        except InputError:
+            return None
+        alike = zip(elements, found.made_of(name), strict=True)
+        return found if all(_but_rounding(new, made) for new, made in alike) else None
+
+    def _each(self, values: Sequence[float], count: int) -> tuple[float, ...]:
+        return tuple(values) * count if len(values) == 1 else tuple(values)
+
+    def _throw(self, name: str, inertia: float, cylinders: Sequence[int], share: float, after: str | None) -> Disk:
+        masses, mean = _masses(self)
+        silent = {self.misfiring, self.cut_out} & set(cylinders)
+        gas, angles = _gas(self), [self.firing_angles[c - 1] for c in cylinders]
+        many = len(cylinders)
+        firing = tuple(_for_several(one, many) for one in gas)
+        every = (*firing, *masses)
+        shakes: dict[str, Any] = {"excitation": every, "firing_angles": angles} if every else {}
+        if silent:
+            found: list[Excitation] = []
+            for cylinder, angle in zip(cylinders, angles, strict=True):
+                own = (*firing, *masses)
+                if cylinder == self.misfiring:
+                    own = (*_compression(self), *masses)
+                elif cylinder == self.cut_out:
+                    own = masses
+                found += [one.but(phase=one.phase - float(one.order or 0) * angle) for one in own]
+            shakes = {"excitation": tuple(found)}
+        return Disk(
+            name=name, after=after, inertia=inertia + many * mean, drive_share=share,
+            **{key: value for key, value in shakes.items() if value},
+        )  # fmt: skip
+
+
+def _short(values: Sequence[float]) -> Sequence[float]:
+    """One for all where they are alike."""
+    return values[:1] if len(set(values)) == 1 else values
+
+
+def _but_rounding(new: Element, made: Element) -> bool:
+    """Whether two elements state the same, but for the rounding of an inertia."""
+    if not isinstance(new, Disk) or not isinstance(made, Disk):
+        return new.stated == made.stated
+    alike = isclose(float(new.inertia or 0), float(made.inertia or 0), rel_tol=1e-12)
+    return alike and {**new.stated, "inertia": made.inertia} == made.stated
+
+
+def _for_several(law: Excitation, cylinders: int) -> Excitation:
+    """The harmonic of one cylinder on a disk that bears several, by the mean torque of that disk."""
+    return law.but(torques=tuple(cylinders * one for one in law.torques)) if law.torques else law
+
+
+@lru_cache(maxsize=64)
+def _masses(engine: Engine) -> tuple[tuple[Excitation, ...], float]:
+    """Inertia torques of one cylinder, and the mean inertia of its masses."""
+    if engine.reciprocating_mass is None or engine.stroke is None or engine.rod_length is None:
+        return (), 0.0
+    orders = min(int(engine.orders), MOST_ORDERS)
+    found, mean = reciprocating_mass(engine.reciprocating_mass, engine.stroke / 2, engine.rod_length, orders)
+    largest = max(one.largest for one in found)
+    return tuple(one for one in found if abs(one.largest) > ROUNDING * largest), mean
+
+
+@lru_cache(maxsize=64)
+def _gas(engine: Engine) -> tuple[Excitation, ...]:
+    """Gas torques of one cylinder by its own mean torque."""
+    if not engine.pressure:
+        return engine.gas_torque
+    found = sorted((_torque(engine, one) for one in engine.pressure), key=lambda one: one[0])
+    means = [mean for mean, _ in found]
+    if any(b - a <= DISTINCT * max(map(abs, means)) for a, b in pairwise(means)):
+        remedy = "leave one of them out; what tells loads apart is their mean torque"
+        raise InputError("has two curves of the same mean torque", key="pressure", remedy=remedy)
+    orders = _orders(engine)
+    if len(found) == 1:
+        return _harmonics(orders, found[0][1])
+    table = [[harmonics[i] for _, harmonics in found] for i in range(len(orders))]
+    return tuple(
+        Excitation(order=k, torques=means, amplitudes=[abs(c) for c in row], phases=[phase(c) for c in row])
+        for k, row in zip(orders, table, strict=True)
+    )
+
+
+@lru_cache(maxsize=64)
+def _compression(engine: Engine) -> tuple[Excitation, ...]:
+    """Gas torques of a cylinder that does not fire."""
+    if engine.compression:
+        return _harmonics(_orders(engine), _torque(engine, engine.compression[0])[1])
+    ratio, charge, exponent = engine.compression_ratio, engine.charge_pressure, engine.polytropic_exponent
+    if ratio is None or charge is None or exponent is None or engine.stroke is None or engine.rod_length is None:
+        return ()
+    import numpy as np
+
+    from trunnion.laws.gas_torque import polytropic_pressure
+
+    angles = np.linspace(-engine.cycle / 2, engine.cycle / 2, round(engine.cycle / STEP) + 1)
+    found = polytropic_pressure(angles, engine.stroke / 2 / engine.rod_length, ratio, charge, exponent)
+    pressures = np.where(np.abs(angles) <= pi, found, charge)
+    return _harmonics(_orders(engine), _torque(engine, PressureCurve(angles=angles, pressures=pressures))[1])
+
+
+def _orders(engine: Engine) -> tuple[float, ...]:
+    """Orders per turn of what repeats with the cycle."""
+    step = 2 / engine.strokes
+    return tuple(step * n for n in range(1, int(engine.orders / step + 1e-9) + 1))
+
+
+def _harmonics(orders: Sequence[float], found: Sequence[complex]) -> tuple[Excitation, ...]:
+    pairs = zip(orders, found, strict=True)
+    return tuple(Excitation(order=k, amplitude=abs(c), phase=phase(c)) for k, c in pairs)
+
+
+def _torque(engine: Engine, curve: PressureCurve) -> tuple[float, tuple[complex, ...]]:
+    """Mean torque [N m] of one cylinder under a curve, and its harmonics."""
+    import numpy as np
+
+    from trunnion.laws.gas_torque import gas_harmonics
+
+    assert engine.bore is not None and engine.stroke is not None and engine.rod_length is not None
+    angles, pressures = np.array(curve.angles), np.array(curve.pressures) - engine.crankcase_pressure
+    if engine.closes(curve):
+        angles[-1], pressures[[0, -1]] = angles[0] + engine.cycle, (pressures[0] + pressures[-1]) / 2
+    else:
+        angles, pressures = np.append(angles, angles[0] + engine.cycle), np.append(pressures, pressures[0])
+    share, lever = engine.stroke / 2 / engine.rod_length, pi / 4 * engine.bore**2 * engine.stroke / 2
+    mean, harmonics = gas_harmonics(angles, pressures, share, np.array(_orders(engine)))
+    return lever * mean, tuple(complex(lever * c) for c in harmonics)
