@@ -342,6 +342,7 @@ NOT_FEATURES = {
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.sn_curves": "how many cycles elements bear, which fatigue and assess go by",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    "Driveline.scenarios": "what happens to the line when, which transient follows",
     **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     **dict.fromkeys((f"SNCurve.{key}" for key in SNCurve.model_fields), "an S–N curve, which fatigue goes by"),

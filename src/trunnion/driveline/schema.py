@@ -20,6 +20,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
@@ -147,6 +148,11 @@ def json_schema() -> dict[str, Any]:
                 "items": {"$ref": "#/$defs/Tolerance"},
                 "description": "how far numbers scatter, for tolerance_study",
             },
+            "scenario": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/Scenario"},
+                "description": "what happens to the line when, for transient",
+            },
             "element": {
                 "type": "array",
                 "minItems": 1,
@@ -172,6 +178,10 @@ def json_schema() -> dict[str, Any]:
             "Limit": _model(Limit),
             "SNCurve": _model(SNCurve),
             "Tolerance": _tolerance(),
+            "Scenario": _model(Scenario),
+            "AppliedTorque": _applied_torque(),
+            "FrictionTorque": _model(FrictionTorque),
+            "LevelCrossing": _model(LevelCrossing),
             "Excitation": _model(Excitation),
             "PressureCurve": _model(PressureCurve),
             "TransmissionError": _model(TransmissionError),
@@ -181,6 +191,12 @@ def json_schema() -> dict[str, Any]:
             "TorquePoint": _model(TorquePoint),
         },
     }
+
+
+def _applied_torque() -> dict[str, Any]:
+    schema = _model(AppliedTorque)
+    schema["properties"]["file"] = {"type": "string", "description": "CSV table beside the file, instead of its points"}
+    return schema
 
 
 def _tolerance() -> dict[str, Any]:
