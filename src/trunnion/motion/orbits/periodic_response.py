@@ -319,7 +319,7 @@ def periodic_response(
         return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
     description = line.line if isinstance(line, Assembly) else line
     refuse_slip_clutches(description)
-    prepared = line_system(line, operating_speed(description, speed))
+    prepared = line_system(line, operating_speed(description, speed), swing=True)
     refuse_dragged(prepared.assembly)
     if prepared.assembly.topology.free:
         return _free(prepared, start, tolerance, settle)

@@ -25,6 +25,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import drive_torques, given_shares, static_torque
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
@@ -280,6 +281,7 @@ def run_up(
     if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
         raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)
     refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
+    refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     require_share(prepared.assembly)
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)

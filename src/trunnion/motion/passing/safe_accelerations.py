@@ -17,6 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
@@ -202,6 +203,7 @@ def safe_accelerations(
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
     refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
+    refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     limits = _limits(limit, prepared.shafts)
     low, high = accelerations
