@@ -240,6 +240,7 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("phase_forks", "centrifugal pendulum"): (same, damped_by(pendulum())),
     ("assembly_sensitivity", "centrifugal pendulum"): (same, damped_by(pendulum())),
     ("optimise", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
+    ("fatigue", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
     ("optimise", "closed loop"): (excited(unbent), excited(looped)),
     ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
 }
