@@ -3,6 +3,8 @@
 from trunnion.design.assessment.assess import assess as assess
 from trunnion.design.comparison.compare import compare as compare
 from trunnion.design.envelope import envelope as envelope
+from trunnion.design.fatigue.fatigue import fatigue as fatigue
+from trunnion.design.fatigue.load_history import LoadHistory as LoadHistory
 from trunnion.design.limits.stable_limit import stable_limit as stable_limit
 from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
@@ -19,6 +21,7 @@ from trunnion.driveline import Disk as Disk
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
+from trunnion.driveline import Duty as Duty
 from trunnion.driveline import Engine as Engine
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import Fan as Fan
@@ -45,6 +48,8 @@ from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
 from trunnion.driveline import SlipClutch as SlipClutch
+from trunnion.driveline import SNCurve as SNCurve
+from trunnion.driveline import SpeedPassage as SpeedPassage
 from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
@@ -113,6 +118,7 @@ from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.passing import passing as passing
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
+from trunnion.motion.passing.torque_amplification import torque_amplification as torque_amplification
 from trunnion.motion.perturbation.averaging import averaging as averaging
 from trunnion.motion.perturbation.describing_function import DescribingFunction as DescribingFunction
 from trunnion.motion.perturbation.multiple_scales import multiple_scales as multiple_scales

@@ -252,6 +252,16 @@ ANALYSES = (
         view="motion",
     ),
     Analysis(
+        "fatigue",
+        "Cycles, damage and life of every element with an S–N curve, over duty, starts and barred ranges passed.",
+        features="linear motion",
+        pictures={
+            "FatigueLife.plot": "trunnion.pictures.fatigue:fatigue",
+            "FatigueLife.plot_damage": "trunnion.pictures.fatigue:damage",
+        },
+        command="trunnion.cli.fatigue:fatigue",
+    ),
+    Analysis(
         "passing",
         "Whether the line comes from one speed to another under its motor's torque, or is captured by a resonance.",
         pictures={"Passing.plot": "trunnion.pictures.transients:passing"},

@@ -249,6 +249,7 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("phase_forks", "centrifugal pendulum"): (same, damped_by(pendulum())),
     ("assembly_sensitivity", "centrifugal pendulum"): (same, damped_by(pendulum())),
     ("optimise", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
+    ("fatigue", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
     ("optimise", "closed loop"): (excited(unbent), excited(looped)),
     ("resonance_speeds", "elastic teeth of planets"): (behind("hub", planetary()), behind("hub", YIELDING, PINION)),
     ("optimise", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),

@@ -48,6 +48,12 @@ def limited(line: tn.Driveline) -> tn.Driveline:
     return line.model_copy(update={"limits": limits})
 
 
+def with_duty(line: tn.Driveline) -> tn.Driveline:
+    """With an S–N curve of all shafts, which counts means, and a duty."""
+    curve = tn.SNCurve(of="Shaft *", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
+    return line.but(sn_curves=[curve], operation=tn.Operation(duty=[tn.Duty(share=1.0, speed=SPEED)]))
+
+
 def scheduled(line: tn.Driveline) -> tn.Driveline:
     """With a schedule of the angle of a joint that all lines have."""
     schedule = tn.Schedule(name="travel", travel=[0.0, 0.1], angles={"joint 2": [0.1, 0.4]})
@@ -72,6 +78,19 @@ def in_rpm(end: bool = False) -> tn.Driveline:
         load_cases=[tn.LoadCase(name="pull", loads={"load": 20.0})],
     )  # fmt: skip
     return tn.Driveline(elements, operation=operation)
+
+
+def in_rpm_for_life() -> tn.Driveline:
+    """With an S–N curve, two speeds and a start."""
+    stated = in_rpm()
+    assert stated.operation is not None
+    operation = stated.operation.but(
+        duty=[tn.Duty(share=0.5, speed="1500 rpm"), tn.Duty(share=0.5, speed="1600 rpm", load_case="pull")],
+        passages=[tn.SpeedPassage(name="start", first=LOW, last=HIGH, acceleration=200.0, per_hour=2)],
+        life="10000 h",
+    )
+    curve = tn.SNCurve(of="tube", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e3)
+    return stated.but(sn_curves=[curve], operation=operation)
 
 
 @cache
@@ -218,6 +237,10 @@ QUESTIONS = {
         lambda line: tn.run_up(line, 100, 110, acceleration=200, steady=2),
         lambda: tn.run_up(in_rpm(), LOW, MIDDLE, acceleration=200, steady=0),
         quick=("load torque",),
+    ),
+    "fatigue": Question(
+        lambda line: tn.fatigue(with_duty(line)),
+        lambda: tn.fatigue(in_rpm_for_life()),
     ),
     "safe_accelerations": Question(
         lambda line: tn.safe_accelerations(line, 100, 110, limit=1000.0, accelerations=(100, 200), points=2),

@@ -155,10 +155,132 @@ def unbalanced():
     return Driveline([engine, Shaft(stiffness=900.0, damping=0.5), Disk(inertia=0.5, load_torque=9.0, name="pump")])
 
 
+BEARS = {"torque_amplitude": 100.0, "cycles": 1e6, "slope": 5}
+RUNS = {"first": 10.0, "last": 90.0, "acceleration": 5.0, "per_hour": 1}
+
+
+def lasting(*curves, **operation):
+    """A line with S–N curves, one that does by default."""
+    curves = [tn.SNCurve(of="Shaft 1", **BEARS)] if not curves else [tn.SNCurve(**one) for one in curves]
+    return line(sn_curves=curves, operation=Operation(**operation))
+
+
+def history(values, **rest):
+    return tn.LoadHistory({"Shaft 1": values}, **rest)
+
+
 AXLE = Schedule(name="axle", travel=[0, 1], angles={"joint": [0, 1]})
+
+FATIGUE = [
+    (lambda: tn.SNCurve(of="a", torque_amplitude=1, slope=5), "S-N curve of a.cycles: is missing", "slope = 5"),
+    (lambda: tn.SNCurve(of="a", torque_amplitude=1, cycles=1e6), "S-N curve of a.slope: is missing", "slope = 5"),
+    (lambda: tn.SNCurve(of="a", **BEARS | {"slope": 0}), "S-N curve of a.slope = 0: must be positive", "slope = 5"),
+    (lambda: tn.SNCurve(of="a", **BEARS | {"cycles": -1}), "S-N curve of a.cycles = -1: must be positive", "2e6"),
+    (
+        lambda: tn.SNCurve(of="a", **BEARS | {"slope": float("nan")}),
+        "S-N curve of a.slope = nan: must be finite",
+        "0.02",
+    ),
+    (lambda: tn.SNCurve(of="a", cycles=1, slope=1), "S-N curve of a.stress_amplitude: is missing", "one of the two"),
+    (
+        lambda: tn.SNCurve(of="a", stress_amplitude=1e6, **BEARS),
+        "S-N curve of a.stress_amplitude = 1e+06: stands beside torque_amplitude",
+        "one of the two",
+    ),
+    (
+        lambda: tn.SNCurve(of="a", ultimate_stress=1e6, **BEARS),
+        "S-N curve of a.ultimate_stress = 1e+06: stands beside torque_amplitude",
+        "ultimate_torque",
+    ),
+    (
+        lambda: tn.SNCurve(of="a", ultimate_torque=1e6, mean_sensitivity=0.2, **BEARS),
+        "S-N curve of a.mean_sensitivity = 0.2: stands beside ultimate_torque",
+        "leave one",
+    ),
+    (
+        lambda: tn.SNCurve(of="a", ultimate_torque=90.0, **BEARS),
+        "S-N curve of a.ultimate_torque = 90: does not lie above torque_amplitude",
+        "breaks at once",
+    ),
+    (lambda: tn.SNCurve(of="a", mean_sensitivity=2, **BEARS), "S-N curve of a.mean_sensitivity = 2: must not", "0.2"),
+    (lambda: tn.SNCurve(of="a", miner="haibach", **BEARS), "S-N curve of a.miner = 'haibach': is no form", "known"),
+    (
+        lambda: line(sn_curves=[tn.SNCurve(of="Shaft 1", stress_amplitude=1e8, cycles=1, slope=1)]),
+        "S-N curve of Shaft 1.stress_amplitude = '0.1 GPa': needs the outer_diameter of the Shaft",
+        "torque_amplitude",
+    ),
+    (
+        lambda: line(sn_curves=[tn.SNCurve(of="Disk 1", **BEARS)]),
+        "S-N curve of Disk 1.torque_amplitude = '100 N*m': does not belong to a Disk",
+        "name a shaft",
+    ),
+    (lambda: line(sn_curves=[tn.SNCurve(of="Shft 1", **BEARS)]), "S-N curve.of = 'Shft 1': is not an", "Shaft 1"),
+    (lambda: line(sn_curves=[3]), "driveline.S-N curve 1 = 3: is not a stress-life curve", "torque_amplitude"),
+    (lambda: tn.Duty(share=0, speed=1), "duty.share = 0: must lie above 0", "60 %"),
+    (lambda: tn.Duty(share=1, speed=0), "duty.speed = 0: must be positive", "1500 rpm"),
+    (lambda: tn.Duty(speed=1), "duty.share: is missing", "60 %"),
+    (
+        lambda: Operation(duty=[tn.Duty(share=0.5, speed=1), tn.Duty(share=0.4, speed=2)]),
+        "operation.duty: has shares that add up to 0.9, not to 1",
+        "those at rest left out",
+    ),
+    (
+        lambda: Operation(duty=[tn.Duty(share=1, speed=1, load_case="full")]),
+        "duty 1.load_case = 'full': is no load case",
+        "there are none",
+    ),
+    (lambda: Operation(life="-1 h"), "operation.life = '-1 h': must be positive", "20000 h"),
+    (lambda: Operation(life="20000"), "operation.life = '20000': has no unit", "0.3 s"),
+    (
+        lambda: tn.SpeedPassage(name="up", **RUNS | {"per_hour": 0}),
+        "passage up.per_hour = 0: must be positive",
+        "start",
+    ),
+    (lambda: tn.SpeedPassage(name="up", **RUNS | {"last": 10.0}), "passage up.last = 10: is the speed", "raise it"),
+    (
+        lambda: Operation(passages=[tn.SpeedPassage(name="up", **RUNS)] * 2),
+        "operation.passage = 'up': names two passages",
+        "rename one",
+    ),
+    (lambda: tn.fatigue(line()), "driveline.sn_curve: is stated of no element", "[[sn_curve]]"),
+    (lambda: tn.fatigue(lasting()), "operation.duty: is missing", "[[operation.passage]]"),
+    (lambda: tn.fatigue(lasting(), []), "histories: is empty", "LoadHistory"),
+    (lambda: tn.fatigue(lasting(), [history([0, 1, 0], per_hour=1)], life=0), "life = 0: must be positive", "20000 h"),
+    (
+        lambda: tn.fatigue(lasting(), [history([0, 1, 0], share=0.4, duration=1.0)]),
+        "histories: have shares that add up to 0.4, not to 1",
+        "those at rest",
+    ),
+    (
+        lambda: tn.fatigue(lasting(), [tn.LoadHistory({"Shft 1": [0, 1, 0]}, per_hour=1)]),
+        "history history 1.Shaft 1: has no torque of this element",
+        "Shft 1",
+    ),
+    (lambda: history([0, 1], per_hour=1), "history.Shaft 1: is too short: 2 values", "comes back"),
+    (lambda: history([0, float("nan"), 1], per_hour=1), "history.Shaft 1: is not finite at value 2", "fill it in"),
+    (lambda: history([[0, 1, 0]], per_hour=1), "history.Shaft 1: is no row of torques", "comes back"),
+    (lambda: history([0, 1, 0]), "history.per_hour: is missing", "give one"),
+    (lambda: history([0, 1, 0], per_hour=1, share=1), "history.per_hour = 1: stands beside share", "give one"),
+    (lambda: history([0, 1, 0], share=1), "history.duration: is missing beside share", "seconds"),
+    (lambda: history([0, 1, 0], share=2, duration=1.0), "history.share = 2: is more than the whole", "0.6"),
+    (lambda: history([0, 1, 0], per_hour=-1, name="jam"), "history jam.per_hour = -1: must be positive", "0.5"),
+    (lambda: tn.LoadHistory(3, per_hour=1), "history.source: is a int, and no history", "run_up"),
+    (
+        lambda: tn.fatigue(lasting(), [tn.LoadHistory(tn.order_response(lasting(), [50.0]), share=1, speed=60.0)]),
+        "speed = 60: is no speed of the response",
+        "there are",
+    ),
+    (
+        lambda: tn.fatigue(lasting(passages=[tn.SpeedPassage(name="up", **RUNS | {"acceleration": 1e-9})])),
+        "passage up",
+        "acceleration",
+    ),
+]
+"""What fatigue refuses."""
 
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
+    *FATIGUE,
     # excitations
     (lambda: Disk(inertia=1, excitation=[{"order": 2}]), "Disk.excitation 1 amplitude: is missing", "40 N*m"),
     (
@@ -1667,6 +1789,19 @@ FILES = [
         HEAD + "[operation.schedule]\n" + DISK,
         "bad.toml: operation.schedule: is a single table",
         "double brackets",
+    ),
+    (
+        HEAD + '[[operation.duty]]\nshare = "90 %"\nspeed = "900 rpm"\n' + DISK,
+        "bad.toml: operation.duty: has shares that add up to 0.9, not to 1",
+        "rest",
+    ),
+    (HEAD + '[[operation.duty]]\nshare = "90 %"\n' + DISK, "bad.toml: duty 1.speed: is missing", "1500 rpm"),
+    (HEAD + "[operation.passage]\n" + DISK, "bad.toml: operation.passage: is a single table", "double brackets"),
+    (HEAD + "[operation]\npassages = []\n" + DISK, "bad.toml: operation.passages: unknown key", 'mean "passage"'),
+    (
+        HEAD + '[[sn_curve]]\nof = "Disk 1"\ncycles = 1e6\n' + DISK,
+        "bad.toml: S-N curve of Disk 1.slope: is missing",
+        "2e6",
     ),
     (HEAD + "[operation]\nschedule = [1]\n" + DISK, "bad.toml: schedule 1 = 1: is not a table", "schedule]]"),
     (

@@ -122,6 +122,14 @@ def envelope(shaken: Shaken) -> Iterator[Pair]:
     yield check.value, shaken.swing(SPEED) + STIFFNESS * shaken.ahead
 
 
+def fatigue(shaken: Shaken) -> Iterator[Pair]:
+    curve = tn.SNCurve(of="shaft", torque_amplitude=LIMIT, cycles=1e6, slope=3)
+    duty = tn.Operation(duty=[tn.Duty(share=1.0, speed=SPEED)])
+    found = tn.fatigue(shaken.line(sn_curves=[curve], operation=duty))
+    yield found.spectra[0].amplitude.max(), shaken.swing(SPEED)
+    yield found.damage_rate[0, 0], (shaken.swing(SPEED) / LIMIT) ** 3 / 1e6 / period(shaken)
+
+
 def compare(shaken: Shaken) -> Iterator[Pair]:
     other = replace(shaken, inertia=1.1 * shaken.inertia)
     found = tn.compare(limited(shaken), limited(other), (SPEED, SPEED)).data
@@ -306,7 +314,7 @@ def sweep(shaken: Shaken) -> Iterator[Pair]:
 
 LINEAR = (
     order_response, speed_sweep, stability, campbell_diagram, assess, envelope, compare, sensitivity, optimise,
-    simulate,
+    fatigue, simulate,
 )  # fmt: skip
 """Those that take every structure and every law of the amplitude."""
 DRIVEN = (

@@ -144,6 +144,7 @@ def test_every_field_belongs_to_a_feature() -> None:
     models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation, tn.Ripple, tn.Slider]
     models += [tn.PressureCurve, tn.TorquePoint]
     models += [tn.Driveline, tn.Limit, Operation, LoadCase, tn.Schedule, tn.SwitchedOff, tn.TitleBlock]
+    models += [tn.SNCurve, tn.Duty, tn.SpeedPassage]
     common = set(Element.model_fields)
     fields = {
         f"{model.__name__}.{key}"

@@ -42,6 +42,7 @@ LAYERS = (
     {"motion/passing", "motion/chaos"},
     {"motion/linearity"},
     # Judging and changing lines takes everything below. ``design`` itself holds the envelope of all load cases.
+    {"design/fatigue"},
     {"design/assessment"},
     {"design/limits"},
     {"design", "design/sensitivity", "design/comparison", "design/optimisation", "design/tolerance"},

@@ -10,6 +10,7 @@ from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
@@ -30,6 +31,7 @@ from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
@@ -50,6 +52,7 @@ __all__ = [
     "DoubleCardanJoint",
     "Driveline",
     "DualMassFlywheel",
+    "Duty",
     "Element",
     "Engine",
     "Excitation",
@@ -63,12 +66,14 @@ __all__ = [
     "Motor",
     "Operation",
     "Coupling",
+    "SpeedPassage",
     "PiecewiseShaft",
     "Planetary",
     "PressureCurve",
     "Propeller",
     "Pump",
     "Ratio",
+    "SNCurve",
     "Schedule",
     "Shaft",
     "StiffnessVariation",

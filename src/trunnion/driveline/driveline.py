@@ -22,6 +22,7 @@ from trunnion.driveline.remarks import remarks
 from trunnion.driveline.scenarios import Scenario, Scenarios, wrong_scenarios
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
+from trunnion.driveline.sn_curves import SNCurve, SNCurves, curves_of
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.summary import summary
 from trunnion.driveline.title_block import TitleBlock
@@ -42,6 +43,7 @@ class Driveline(ElementChain):
     damping_ratio_frequency : frequency at which that ratio holds [rad/s]; by default the lowest elastic mode.
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
+    sn_curves : how many cycles they bear, for ``fatigue`` and ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
     scenarios : what happens to it when, for ``transient``.
     document : title block of the report that is handed in.
@@ -61,6 +63,7 @@ class Driveline(ElementChain):
 
     operation: Operation | None = None
     limits: Limits = ()
+    sn_curves: SNCurves = ()
     tolerances: Tolerances = ()
     scenarios: Scenarios = ()
     document: TitleBlock | None = None
@@ -76,6 +79,7 @@ class Driveline(ElementChain):
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
+        sn_curves: Iterable[SNCurve] = (),
         scenarios: Iterable[Scenario] = (),
         document: TitleBlock | None = None,
     ) -> None:
@@ -88,6 +92,7 @@ class Driveline(ElementChain):
             "operation": operation,
             "limits": limits,
             "tolerances": tolerances,
+            "sn_curves": sn_curves,
             "scenarios": scenarios,
             "document": document,
         }
@@ -116,7 +121,7 @@ class Driveline(ElementChain):
     def _consistent(self) -> Self:
         wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
         wrong += _wrong_wheels(self)
-        wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.tolerances), self.parts)]
+        wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.sn_curves, *self.tolerances), self.parts)]
         wrong += wrong_scenarios(self.scenarios, self.parts)
         if wrong:
             raise InputError.together(wrong)
@@ -126,6 +131,11 @@ class Driveline(ElementChain):
     def limits_by_element(self) -> tuple[OneLimit, ...]:
         """Every limit that holds; that of a named element overrides its kind's."""
         return limits_of(self.limits, self.parts)
+
+    @cached_property
+    def sn_curves_by_element(self) -> dict[str, SNCurve]:
+        """The S–N curve of every element that has one; that of a named element stands instead of its kind's."""
+        return curves_of(self.sn_curves, self.parts)
 
     @cached_property
     def tolerances_by_path(self) -> dict[str, tuple[object, ...]]:

@@ -14,6 +14,7 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Element, Rotor
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
@@ -28,6 +29,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.vehicle import Tyre, Vehicle
@@ -351,10 +353,20 @@ NOT_FEATURES = {
     "Driveline.operation": "where the line runs: the question an analysis is asked by default",
     "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
+    "Driveline.sn_curves": "how many cycles elements bear, which fatigue and assess go by",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
     "Driveline.scenarios": "what happens to the line when, which transient follows",
     **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
+    **dict.fromkeys((f"SNCurve.{key}" for key in SNCurve.model_fields), "an S–N curve, which fatigue goes by"),
+    **dict.fromkeys(
+        ("Operation.life", "Operation.duty", "Operation.passages"),
+        "what the line does in its life, which fatigue goes by",
+    ),
+    **dict.fromkeys(
+        (f"{kind.__name__}.{key}" for kind in (Duty, SpeedPassage) for key in kind.model_fields),
+        "fatigue asks for the motion at that speed or on that passage",
+    ),
     "Operation.speed": "the default of every speed asked for",
     "Operation.speed_range": "the default range of reports",
     "Operation.angle_range": "the default range of charts in reports",

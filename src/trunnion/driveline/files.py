@@ -31,6 +31,7 @@ from typing import Any, TypeVar
 from trunnion.driveline.chain import refuse_too_many
 from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
@@ -43,6 +44,7 @@ from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.scenarios import Scenario
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.driveline.torque_file import with_torque_files
@@ -79,6 +81,7 @@ TOP_KEYS = (
     "document",
     "operation",
     "limit",
+    "sn_curve",
     "tolerance",
     "scenario",
     "element",
@@ -172,6 +175,7 @@ def dumps(line: Driveline) -> str:
     if line.operation is not None:
         blocks += _operation_blocks(line.operation)
     blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
+    blocks += [_block("[[sn_curve]]", _table(curve)) for curve in line.sn_curves]
     for tolerance in line.tolerances:
         blocks += _tolerance_blocks(tolerance)
     for scenario in line.scenarios:
@@ -307,6 +311,8 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
         read("operation", table["operation"], _operation)
     if "limit" in table:
         read("limits", table["limit"], lambda value: _each(value, "limit", Limit))
+    if "sn_curve" in table:
+        read("sn_curves", table["sn_curve"], lambda value: _each(value, "sn_curve", SNCurve))
     if "tolerance" in table:
         read("tolerances", table["tolerance"], lambda value: _each(value, "tolerance", Tolerance))
     if "scenario" in table:
@@ -423,6 +429,8 @@ def _operation(table: Any) -> Operation:
         "load_case": (LoadCase, "load_cases"),
         "schedule": (Schedule, "schedules"),
         "switched_off": (SwitchedOff, "switched_off"),
+        "duty": (Duty, "duty"),
+        "passage": (SpeedPassage, "passages"),
     }
     for key, (kind, many) in kinds.items():
         if many != key and many in data:  # the name in Python; a file repeats [[operation.load_case]]
@@ -505,12 +513,14 @@ def _written(value: Any, kind: QuantityKind | None, speed_unit: str | None = Non
 
 def _operation_blocks(operation: Operation) -> list[str]:
     unit = operation.speed_unit
-    table = _table(operation, "load_cases", "schedules", "switched_off", speed_unit=unit)
+    table = _table(operation, "load_cases", "schedules", "switched_off", "duty", "passages", speed_unit=unit)
     blocks = [_block("[operation]", table)]
     blocks += [_block("[[operation.switched_off]]", _table(one)) for one in operation.switched_off]
     for case in operation.load_cases:
         blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
         blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
+    blocks += [_block("[[operation.duty]]", _table(one, speed_unit=unit)) for one in operation.duty]
+    blocks += [_block("[[operation.passage]]", _table(one, speed_unit=unit)) for one in operation.passages]
     for one in operation.schedules:
         points = _written(one.points, OVER[one.over], unit)
         blocks.append(_block("[[operation.schedule]]", {"name": one.name, one.over: points}))

@@ -57,16 +57,17 @@ SHIP_SHAFTS = {
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
-_SPRING: tuple[type[Element], ...] = (
+SPRING_KINDS: tuple[type[Element], ...] = (
     Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, CentrifugalPendulum, Belt, Tyre,
 )  # fmt: skip
+"""Elements that carry a torque, meshes aside."""
 _TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
-    "max_torque": (*_SPRING, GearPair),
-    "vibratory_torque": (*_SPRING, GearPair),
-    "transient_vibratory_torque": (*_SPRING, GearPair),
+    "max_torque": (*SPRING_KINDS, GearPair),
+    "vibratory_torque": (*SPRING_KINDS, GearPair),
+    "transient_vibratory_torque": (*SPRING_KINDS, GearPair),
     "max_stress": (Shaft,),
-    "max_twist": _SPRING,
+    "max_twist": SPRING_KINDS,
     "max_speed_fluctuation": _TURNING,
     "max_acceleration": _TURNING,
     "temperature_factor": (Coupling,),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from functools import partial
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, field_validator, model_validator
 
+from trunnion.driveline.duty import ROUNDING, Duty, SpeedPassage
 from trunnion.driveline.quantities import (
     ANGLE,
     DEGREE,
@@ -18,12 +20,14 @@ from trunnion.driveline.quantities import (
     MaybeRange,
     QuantityKind,
     Speed,
+    TableList,
+    Time,
     Torque,
     json_schema_of,
     optional,
     parse,
 )
-from trunnion.driveline.record import Name, Named, Record, by_name, one_of
+from trunnion.driveline.record import Name, Named, Record, by_name, listed, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.rules import APPLICATIONS, Application, SwitchedOffRules
 from trunnion.driveline.schedules import Schedule
@@ -57,6 +61,9 @@ AngleRange = Annotated[tuple[Angle, Angle], _READ_ANGLES, _ANGLES_SCHEMA]
 
 
 _TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }')
+
+
+Duties = Annotated[TableList[Duty], BeforeValidator(listed(Duty, "duty"))]
 
 
 class LoadCase(Named):
@@ -97,6 +104,9 @@ class Operation(Record):
         and expands again or so that nothing is left of it, as stated and under each load case.
     load_cases : named sets of load torques.
     schedules : joint angles over suspension travel, load torques over speed, for ``envelope``.
+    life : operating time [s] that the line is to last.
+    duty : shares of that time at constant speeds, for ``fatigue``.
+    passages : runs from one speed to another, so many an hour, for ``fatigue``.
 
     >>> running = Operation(speed="1500 rpm", speed_range=("600 rpm", "2400 rpm"), speed_unit="rpm")
     >>> round(running.speed, 2)
@@ -126,6 +136,11 @@ class Operation(Record):
     cut_out: bool = Field(default=False, description="judge every cylinder cut out in turn, too")
     load_cases: tuple[LoadCase, ...] = optional(default=(), description="named sets of load torques")
     schedules: tuple[Schedule, ...] = optional(default=(), description="angles over travel and torques over speed")
+    life: Maybe[Time] = optional(default=None, description="operating time that the line is to last")
+    duty: Duties = optional(default=(), description="shares of the operating time at constant speeds")
+    passages: tuple[SpeedPassage, ...] = optional(
+        default=(), description="runs from one speed to another, so many an hour"
+    )
 
     @field_validator("speed")
     @classmethod
@@ -145,15 +160,34 @@ class Operation(Record):
         for key, what, names, remedy in (
             ("load_case", "load cases", [one.name for one in self.load_cases], "rename one of them"),
             ("schedule", "schedules", [one.name for one in self.schedules], "rename one of them"),
+            ("passage", "passages", [one.name for one in self.passages], "rename one of them"),
             ("switched_off", "reasons", [one.rule for one in self.switched_off], "keep one of them"),
         ):
             for name, count in Counter(names).items():
                 if count > 1:
                     problem = f"names two {what}" if count == 2 else f"names {count} {what}"
                     wrong.append(InputError(problem, element=self.what, key=key, value=name, remedy=remedy))
+        wrong += self._wrong_duty()
         if wrong:
             raise InputError.together(wrong)
         return self
+
+    def _wrong_duty(self) -> Iterator[InputError]:
+        if self.life is not None and not self.life > 0:
+            yield InputError("must be positive", key="life", value=self.life, remedy='write "20000 h", say')
+        whole = sum(one.share for one in self.duty)
+        if self.duty and abs(whole - 1) > ROUNDING:
+            remedy = "let the shares of all [[operation.duty]] add up to 1, those at rest left out"
+            yield InputError(
+                f"has shares that add up to {whole:.6g}, not to 1", element=self.what, key="duty", remedy=remedy
+            )
+        known = [one.name for one in self.load_cases]
+        every: list[tuple[str, str | None]] = [(f"duty {i}", one.load_case) for i, one in enumerate(self.duty, start=1)]
+        every += [(f"passage {one.name}", one.load_case) for one in self.passages]
+        for what, name in every:
+            if name is not None and name not in known:
+                problem, remedy = "is no load case of this description", nearest(name, known)
+                yield InputError(problem, element=what, key="load_case", value=name, remedy=remedy)
 
     def load_case(self, name: str) -> LoadCase:
         """The load case called `name`; InputError with the nearest name where there is none."""

@@ -88,7 +88,7 @@ FORCE = QuantityKind("force", "N", "60 kN", (("kN", 1e3, 1e4), ("N", 1.0, 0.0)))
 VELOCITY = QuantityKind("velocity", "m/s", "80 km/h", (("km/h", 1 / 3.6, 0.0),))
 POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
 ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
-TIME = QuantityKind("time", "s", "0.3 s")
+TIME = QuantityKind("time", "s", "0.3 s", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0)))
 RATIO = QuantityKind("ratio", "1", "0.02")
 KINDS = (
     ANGLE,
@@ -141,7 +141,7 @@ USUAL: dict[str, dict[str, float]] = {
     "N": {"N": 1.0, "kN": 1e3},
     "m/s": {"m/s": 1.0, "km/h": 1000 / 3600},
     "W": {"W": 1.0, "kW": 1e3},
-    "s": {"s": 1.0, "ms": 1e-3},
+    "s": {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     "1": {"percent": 0.01},
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""

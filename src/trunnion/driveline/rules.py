@@ -95,6 +95,12 @@ RULES = {
             "Floquet",
             kept="a motion that grows breaks the line whatever a guideline allows: change the line or its speed_range",
         ),
+        NamedRule(
+            "fatigue",
+            "Miner's sum of every element with a `[[sn_curve]]`, over life, duty and passages",
+            "the file; ASTM E1049-85, Palmgren and Miner",
+            kept="the curves are yours: change or remove the [[sn_curve]]",
+        ),
         NamedRule("gear-hammer", "the teeth of a mesh stay in contact", "mechanics"),
         NamedRule("din-740", "ratings that a `Coupling` states", "DIN 740-2 in form"),
         NamedRule("damper-heat", "the heat that a damper states as its rating", "the maker's sheet"),

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
 from trunnion.driveline.curve_points import TorquePoint
+from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
@@ -21,6 +22,7 @@ from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_s
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
 
@@ -106,7 +108,7 @@ def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of a driveline file read as TOML; quantities carry "unit", their SI unit."""
     definitions = {name: _element(name) for name in KINDS}
     operation = _model(Operation)
-    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule")):
+    for many, name in (("load_cases", "LoadCase"), ("schedules", "Schedule"), ("passages", "SpeedPassage")):
         stated = operation["properties"].pop(many)
         operation["properties"][many[:-1]] = {
             "type": "array",
@@ -136,6 +138,11 @@ def json_schema() -> dict[str, Any]:
                 "type": "array",
                 "items": {"$ref": "#/$defs/Limit"},
                 "description": "what elements may bear, for assess",
+            },
+            "sn_curve": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/SNCurve"},
+                "description": "how many cycles elements bear, for fatigue",
             },
             "tolerance": {
                 "type": "array",
@@ -167,7 +174,10 @@ def json_schema() -> dict[str, Any]:
             "LoadCase": _model(LoadCase),
             "Schedule": _model(Schedule),
             "SwitchedOff": _model(SwitchedOff),
+            "Duty": _model(Duty),
+            "SpeedPassage": _model(SpeedPassage),
             "Limit": _model(Limit),
+            "SNCurve": _model(SNCurve),
             "Tolerance": _tolerance(),
             "Scenario": _model(Scenario),
             "AppliedTorque": _applied_torque(),

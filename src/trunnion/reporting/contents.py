@@ -9,6 +9,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from trunnion.design.fatigue.result import FatigueLife
 from trunnion.design.limits.result import LimitKind, StableLimit
 from trunnion.design.limits.stable_limit import limit_of_chart
 from trunnion.design.remedies.remedies import remedies_of
@@ -46,6 +47,7 @@ class Contents:
     loaded: tuple[LoadedMotion, ...]
     campbell: CampbellDiagram | None
     helped: Remedies | None
+    life: FatigueLife | None
     findings: tuple[Finding, ...]
     left_out: tuple[str, ...]
 
@@ -93,6 +95,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         loaded=loaded,
         campbell=campbell,
         helped=helped,
+        life=_life(seen, left_out),
         findings=by_gravity([*seen.findings, *more]),
         left_out=tuple(left_out),
     )
@@ -111,6 +114,17 @@ def with_chart(contents: Contents, seen: Overview) -> Contents:
     new = [finding for finding in more if finding.sentence not in before]
     findings = by_gravity([*contents.findings, *new])
     return replace(contents, overview=seen, limit=limit, findings=findings, left_out=left_out)
+
+
+def _life(seen: Overview, left_out: list[str]) -> FatigueLife | None:
+    """What the check of fatigue rests on, where an element has an S–N curve."""
+    if not seen.line.sn_curves_by_element:
+        return None
+    found = seen.subject.fatigue
+    if isinstance(found, str):
+        left_out.append(f"Fatigue: {found}")
+        return None
+    return found
 
 
 def _helped(seen: Overview) -> Remedies | None:

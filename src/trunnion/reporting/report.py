@@ -123,6 +123,8 @@ def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path |
         "joints": tables.joints(seen.line),
         "irregularity": tables.irregularity(contents),
         "torques": tables.torques(contents, unit),
+        "life": tables.fatigue(contents),
+        "life_findings": contents.life.findings_in(unit) if contents.life else (),
         "load_cases": bool(seen.line.operation and seen.line.operation.load_cases),
         "under_load": tables.under_load(contents),
         "contacts": tables.contacts(contents),
@@ -144,6 +146,7 @@ def _verdict(seen: Overview) -> str:
 def pictures(contents: Contents) -> dict[str, ReportPicture]:
     """The figures of a report by name."""
     from trunnion.pictures import driveline_sketch
+    from trunnion.pictures import fatigue as fatigues
     from trunnion.pictures import motion as motions
     from trunnion.pictures.campbell_diagram import campbell_diagram
     from trunnion.pictures.draw_matplotlib import draw
@@ -169,6 +172,11 @@ def pictures(contents: Contents) -> dict[str, ReportPicture]:
     if contents.sweep is not None:
         swept = speed_sweep(contents.sweep, unit=unit, operating=operating)
         shown["torque"] = picture(draw(swept), "Torque amplitude of every shaft over speed")
+    if contents.life is not None:
+        cycles = fatigues.fatigue(contents.life)
+        shown["cycles"] = picture(draw(cycles), "Cycles over amplitude, and the S–N curve")
+        if len(contents.life.histories) > 1:
+            shown["damage"] = picture(draw(fatigues.damage(contents.life)), "Damage by element and history")
     if contents.loaded:
         motion = heaviest(contents.loaded)
         period, orders = motions.period(motion.response, unit=unit), motions.orders(motion.response)

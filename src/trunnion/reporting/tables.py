@@ -142,6 +142,15 @@ def joints(line: Driveline) -> Table:
     return Table.of(rows)
 
 
+def fatigue(contents: Contents) -> Table | None:
+    """Damage and life of every element with an S–N curve."""
+    if contents.life is None:
+        return None
+    return Table.of(
+        {key: _signs(v) if isinstance(v, str) else v for key, v in row.items()} for row in contents.life.table()
+    )
+
+
 def irregularity(contents: Contents) -> Table | None:
     """What each shaft does in the assembly, and the output."""
     turn = contents.turn

@@ -11,6 +11,7 @@ from trunnion.design.assessment.check import Check, in_order, worst
 from trunnion.design.assessment.compared import uncovered
 from trunnion.design.assessment.couplings import coupling_ratings
 from trunnion.design.assessment.deciding import weighed
+from trunnion.design.assessment.fatigue_life import fatigue_life
 from trunnion.design.assessment.gear_hammer import gear_hammer
 from trunnion.design.assessment.joint_angles import joint_angles, uniformity
 from trunnion.design.assessment.parametric import parametric_stability
@@ -107,7 +108,7 @@ def checks_of(subject: AssessmentInput, *, geometry: bool = True) -> tuple[Check
     prepare(subject.cases)
     found = list(worst(check for case in subject.cases for check in by_case(subject, case)))
     if geometry:
-        found += of_line(subject)
+        found += [*of_line(subject), *fatigue_life(subject)]
     return in_order(weighed(found, subject.line.operation))
 
 
@@ -142,7 +143,7 @@ def of_response(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Ch
 
 
 def of_line(subject: AssessmentInput) -> Iterator[Check]:
-    """The checks that no load case changes."""
+    """The checks of geometry, which no load case changes."""
     assembly, turn = subject.cases[0].assembly, _turn(subject)
     yield from joint_angles(subject, assembly, turn)
     yield from uniformity(subject, turn)

@@ -13,6 +13,8 @@ import numpy as np
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.measures import Measure, measures, torque_measures, torque_name
+from trunnion.design.fatigue.fatigue import fatigue
+from trunnion.design.fatigue.result import FatigueLife
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
@@ -84,6 +86,18 @@ class AssessmentInput:
         """ "300 rpm to 400 rpm and 500 rpm"."""
         words = [(self.shown(a), self.shown(b)) for a, b in ends]
         return " and ".join(f"{a} to {b}" if a != b else a for a, b in words)
+
+    @cached_property
+    def fatigue(self) -> FatigueLife | str:
+        """Damage and life over what the description says that the line does, or why there is none."""
+        try:
+            return fatigue(self.line)
+        except (InputError, ComputationError) as error:
+            return str(error).splitlines()[0]
+        except OutOfTime as error:
+            if not self.cases[0].partly:
+                raise
+            return f"not counted: {error.why}"
 
     def required(self, element: str) -> float:
         """Largest margin that the description requires of an element."""

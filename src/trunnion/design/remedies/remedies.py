@@ -11,6 +11,7 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assess import checks_of, judgement, subject_of
 from trunnion.design.assessment.assessment_input import AssessmentInput
 from trunnion.design.assessment.check import Check, Status, percent
+from trunnion.design.assessment.fatigue_life import NAME as FATIGUE
 from trunnion.design.assessment.result import verdict_of
 from trunnion.design.remedies.result import Remedies, Remedy
 from trunnion.design.remedies.search import CandidateChange, Changes, RemedySearch, goals_of
@@ -58,7 +59,8 @@ def remedies(
     Parameters
     ----------
     line, speeds, load_case, unit : as of ``assess``.
-    checks : names of the checks to help; default all that decide and are exceeded or have less than ``near`` to spare.
+    checks : names of the checks to help; default all that decide and are exceeded or have less than ``near`` to spare,
+        but for fatigue, which takes long.
     near : spare margin that a nearly binding check is to reach.
     most : changes to find for each check.
     within : seconds that it may take; what was found until then is given, and ``ended`` says so.
@@ -147,8 +149,8 @@ def _sensitivities(subject: AssessmentInput, design: Design, checks: Sequence[Ch
 def _goals(base: tuple[Check, ...], asked: Iterable[str] | None, near: float) -> dict[str, float]:
     if not 0 <= one_number(near, "near", "near=0.1, say") < 1:
         raise InputError("must be at least 0 and below 1", key="near", value=near, remedy="near=0.1, say")
-    if asked is None:
-        return goals_of(base, near)
+    if asked is None:  # a life takes a passage or more for each trial
+        return goals_of(tuple(check for check in base if check.rule.name != FATIGUE), near)
     known = goals_of(base, np.inf, shown=True)
     found = {}
     for name in asked:

@@ -22,6 +22,8 @@ from trunnion.design.assessment.assessment_input import (
 )
 from trunnion.design.assessment.check import Check, Status, in_order, worst
 from trunnion.design.assessment.deciding import weighed
+from trunnion.design.assessment.fatigue_life import NAME as FATIGUE
+from trunnion.design.assessment.fatigue_life import fatigue_life
 from trunnion.design.assessment.parametric import NAME as GROWTH
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.result import verdict_of
@@ -43,8 +45,8 @@ def _by_case(rule: Callable[[AssessmentInput, LoadCaseResponse], Iterable[Check]
     return lambda subject: worst(check for case in subject.cases for check in rule(subject, case))
 
 
-GROUPS: tuple[Group, ...] = (of_line, *map(_by_case, (*OF_RESPONSE, separation, parametric_stability)))
-"""Checks that are judged together, growth last."""
+GROUPS: tuple[Group, ...] = (of_line, *map(_by_case, (*OF_RESPONSE, separation, parametric_stability)), fatigue_life)
+"""Checks that are judged together, what takes longest last: growth, then fatigue, which may run through passages."""
 
 
 class TrialLine:
@@ -97,7 +99,8 @@ class TrialLines:
         asked = [check for check in targets if not (self.costly and check.name in of_line)]
         self.cases = {check.load_case for check in asked}
         growth = any(check.name == GROWTH for check in targets)
-        self.groups = (len(GROUPS) - (not growth)) if asked else 1
+        life = any(check.rule.name == FATIGUE for check in targets)
+        self.groups = (len(GROUPS) - (not life) - (not (life or growth))) if asked else 1
         self._quick: Known = {}
         self._whole: Known = {}
         unchanged = self._looked_at(subject.line)

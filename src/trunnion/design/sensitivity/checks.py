@@ -19,6 +19,8 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assess import OF_RESPONSE, of_line, of_response
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse, cases_of
 from trunnion.design.assessment.check import Check
+from trunnion.design.assessment.fatigue_life import NAME as FATIGUE
+from trunnion.design.assessment.fatigue_life import fatigue_life
 from trunnion.design.assessment.parametric import NAME as GROWTH
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.separation import separation
@@ -100,7 +102,8 @@ class _Values:
             case.name: np.unique([s for s, one in zip(speeds, cases, strict=True) if one is case and np.isfinite(s)])
             for case in cases
         }
-        self.of_line = {check.name for check in of_line(subject)}
+        whole = [of_line, *([fatigue_life] if any(check.rule.name == FATIGUE for check in checks) else [])]
+        self.whole = {check.name: rule for rule in whole for check in rule(subject)}
         self.of_response = {
             case.name: set() if case.costly else {check.name for check in of_response(subject, case)}
             for case in subject.cases
@@ -154,12 +157,12 @@ class _Values:
         self, case: LoadCaseResponse, speed: float, check: Check, moved: tuple[str, float], line: Driveline
     ) -> Array:
         """Of a ``line`` that is ``moved`` along a direction by a share of its size."""
-        whole = check.name in self.of_line
+        whole = self.whole.get(check.name)
         key = ("", 0.0, *moved) if whole else (case.name, speed, *moved)
         if check.name not in self._seen[key]:
             subject, own = _of(self.subject, case, line)
             if whole:
-                self._seen[key] |= _read(of_line(subject))
+                self._seen[key] |= _read(whole(subject))
             elif check.name == GROWTH and np.isfinite(speed):
                 one = at_speed(subject, own, speed)
                 self._seen[key] |= _read(parametric_stability(one, one.cases[0]))
