@@ -10,6 +10,7 @@ from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
 from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
+from trunnion.driveline import CentrifugalPendulum as CentrifugalPendulum
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
@@ -69,6 +70,7 @@ from trunnion.driveline.cylinders import reciprocating_mass as reciprocating_mas
 from trunnion.driveline.excitation_file import read_excitation as read_excitation
 from trunnion.driveline.layout import combined_angle as combined_angle
 from trunnion.driveline.layout import layout as layout
+from trunnion.driveline.mean_balance import mean_speeds as mean_speeds
 from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack
@@ -108,6 +110,7 @@ from trunnion.motion.orbits.periodic_branch import piecewise_branch as piecewise
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
 from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
+from trunnion.motion.passing.passing import passing as passing
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations
 from trunnion.motion.perturbation.averaging import averaging as averaging

@@ -15,10 +15,12 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import CURVE, FEATURES, UNEVEN, feature
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import rounded_speed
 
 
 class Treatment(Enum):
@@ -65,6 +67,15 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     )
 
 
+def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
+    """What is said of pendulums where no speed is asked of: they are held as at the operating speed."""
+    if line.operation is None or line.operation.speed is None:
+        return ()
+    at = rounded_speed(line.operation.speed, speed_unit(line))
+    says = f"is held as at {at}, where the line operates; campbell_diagram has every speed"
+    return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
+
+
 _LIKE = {
     "rolling resistance": "load torque",
     "air drag": "quadratic load",
@@ -77,7 +88,8 @@ DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Words] = {
     LAG: (
-        "the torque is taken to follow the speed at once, which holds well below the corner frequency",
+        "forced responses of straight lines have it; elsewhere the torque follows the speed at once, which holds well "
+        "below the corner frequency",
         "quasi-static",
     )
 }
@@ -114,6 +126,10 @@ _EVEN = {
 }
 _STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
 _NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
+PENDULUM = "centrifugal pendulum"
+_NO_SPEED = {PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated"}
+_OTHER_SPEEDS = {PENDULUM: "the square of the speed holds it, and equations here are of one speed"}
+_NO_PATH = {PENDULUM: "it swings along a path, which is not followed"}
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -171,7 +187,7 @@ _UNPROVABLE = {
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", CURVE, LAG, SERIES, "slip clutch",
+            "quadratic load", CURVE, LAG, SERIES, "slip clutch", PENDULUM,
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -213,6 +229,7 @@ _ONE_DRIVE = {
 _ANYWHERE = {DRAGGED: "what it drags may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NO_PATH,
     **_NOT_SLIPPED,
     **_NOT_FOLLOWED,
     **_ANYWHERE,
@@ -226,6 +243,7 @@ _PASSING = {
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_NO_PATH,
     **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
     **_NOT_SLIPPED,
     **_ANYWHERE,
@@ -239,7 +257,8 @@ _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no pha
 _RIGID = dict.fromkeys(
     (
         "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
-        "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "tyre", "vehicle", "angle of an ideal joint",
+        "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "tyre", "vehicle",
+        "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
         "damping in contact only", "load torque", "viscous load", "quadratic load", CURVE, LAG, "excitation by order",
@@ -256,9 +275,9 @@ _STEADY = "torques are those of steady running; ask periodic_response() or simul
 _UNDAMPED_TURN = ("the turn is quasi-static", "damping left out")
 
 ROWS: dict[str, Row] = {
-    "modes": _row(refused=_DRY_FRICTION, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
+    "modes": _row(refused={**_DRY_FRICTION, **_NO_SPEED}, said=_MODES_SAID, inert=_MODES_INERT, set_aside=(DRAGGED,)),
     "resonances": _row(
-        refused=_DRY_FRICTION,
+        refused={**_DRY_FRICTION, **_NO_SPEED},
         said={
             **dict.fromkeys(
                 ("viscous load", "quadratic load", CURVE), "resonance speeds are those of the line without it"
@@ -275,7 +294,7 @@ ROWS: dict[str, Row] = {
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
     "multipliers": _row(
-        refused=_BASE,
+        refused={**_BASE, **_OTHER_SPEEDS},
         said={**_SERIES, **QUASI_STATIC},
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
         set_aside=(DRAGGED,),
@@ -301,7 +320,7 @@ ROWS: dict[str, Row] = {
         },
         inert=_EVEN,
     ),
-    "derivatives": _row(refused=_DRY_FRICTION, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
+    "derivatives": _row(refused={**_DRY_FRICTION, **_OTHER_SPEEDS}, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
     "proof": _row(refused=_UNPROVABLE, inert={**_EVEN, **_EXCITED}),
     "whirl": _row(
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
@@ -309,6 +328,7 @@ ROWS: dict[str, Row] = {
     "turn": _row(
         refused={
             **_TREES,
+            PENDULUM: "it swings with the orders of the rotation, and a turn is quasi-static",
             "prescribed far end": "the output follows from the input",
         },
         said={
@@ -340,11 +360,12 @@ ROWS: dict[str, Row] = {
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
-    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_IN_ROWS, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED, **_NO_PATH}, said=_IN_ROWS, inert=_PASSIVE),
     "transients": _row(
         refused={
             **_ONE_DRIVE,
             **_AT_ONE_SPEED,
+            **_NO_PATH,
             "excitation that varies with speed or load": "its amplitude would change on the way",
         },
         said=_IN_ROWS,
@@ -352,7 +373,7 @@ ROWS: dict[str, Row] = {
     ),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(
-        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
+        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_NO_PATH, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
     ),
     "stages": _row(refused=_NOT_EXACT, said=_IN_ROWS, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_IN_ROWS, inert=_UNBENT),
@@ -363,6 +384,7 @@ TABLE: dict[str, Row] = {one.name: ROWS[one.features] for one in ANALYSES if one
 
 NOT_ANALYSES = {
     "damper_optimum": "closed forms for one mode of natural_frequencies, which says what is left out",
+    "passing": "transient of a free–free line until it has a speed, which counts, refuses and says the same",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
     "report": "shows the analyses above, with what each of them says",

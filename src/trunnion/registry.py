@@ -80,6 +80,12 @@ ANALYSES = (
         view="driveline",
     ),
     Analysis(
+        "damper_optimum",
+        "The best damping, and stiffness, of a torsional vibration damper for one mode.",
+        command="trunnion.cli.damper_optimum:damper_optimum",
+        view="driveline",
+    ),
+    Analysis(
         "resonance_speeds",
         "Named parametric resonance speeds in the operating range, and which of them can open.",
         features="resonances",
@@ -244,6 +250,12 @@ ANALYSES = (
         pictures={"RunUp.plot": "trunnion.pictures.motion:run_up"},
         command="trunnion.cli.motion:run_up",
         view="motion",
+    ),
+    Analysis(
+        "passing",
+        "Whether the line comes from one speed to another under its motor's torque, or is captured by a resonance.",
+        pictures={"Passing.plot": "trunnion.pictures.transients:passing"},
+        command="trunnion.cli.transients:passing",
     ),
     Analysis(
         "safe_accelerations",

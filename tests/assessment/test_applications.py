@@ -33,6 +33,7 @@ EXPECTED = {
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
     "damper-heat": ALWAYS,
+    "pendulum-travel": ALWAYS,
     "slip-clutch": ALWAYS,
     "m68": ALWAYS,
     "spicer-angles": VEHICLES,
@@ -172,6 +173,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     shaft = tn.Shaft(name="shaft", stiffness=4e4, damping=20.0)
     soft = tn.Coupling(name="shaft", stiffness=4e4, damping=20.0, vibratory_torque=20.0)
     hot = tn.ViscousDamper(name="hot", ring_inertia=0.2, damping=20.0, heat_rating=0.1)
+    swings = tn.CentrifugalPendulum(name="swings", mass=1.0, radius=0.1, order=3.1, largest_travel=1e-4, damping=0.1)
     tube = tn.Shaft(
         name="shaft", outer_diameter="60 mm", length="1 m", material="steel", tensile_strength="600 MPa", damping=20.0
     )
@@ -187,6 +189,9 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(
             [engine, shaft, tn.Disk(inertia=0.1), teeth, idle], limits=[*wide, tn.Limit(of="gears", max_torque=1e6)]
+        ),
+        "pendulum-travel": tn.Driveline(
+            [engine, swings, shaft, load], limits=[*wide, tn.Limit(of="swings", max_torque=1e6)]
         ),
         "slip-clutch": tn.Driveline(
             [engine, shaft, tn.Disk(inertia=0.1), tn.SlipClutch(name="clutch", torque=205.0), load], limits=wide

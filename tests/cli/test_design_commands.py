@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+import trunnion as tn
+
 
 def test_sensitivity(run, here):
     call = ("sensitivity", "two-shaft-cardan", "-s", "1.2", "-p", "HookeJoint 1.angle", "-p", "Shaft 1.stiffness")
@@ -69,3 +71,20 @@ def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
     assert result.stdout == "" and words in result.stderr
     assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
     assert not (here / "trunnion-out").exists()
+
+
+def test_damper_optimum_names_the_damper_or_asks_for_it(run) -> None:
+    """As the function; by itself with the only damper, refused with none or several."""
+    ring = {"ring_inertia": 0.05, "damping": 1.0}
+    parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.5, name="disk")]
+    one = tn.Driveline([*parts, tn.ViscousDamper(name="front", **ring)])
+    two = tn.Driveline([*one.elements, tn.TunedDamper(name="rear", stiffness=9.0, after="disk", **ring)])
+    for name, line in (("one", one), ("two", two), ("none", tn.Driveline(parts))):
+        tn.dump(line, f"{name}.toml")
+    best = tn.damper_optimum(one, "front")
+    result = run("damper-optimum", "one.toml")
+    assert result.exit_code == 0 and str(best).splitlines()[0][:60] in result.stdout
+    data = json.loads(run("damper-optimum", "two.toml", "--damper", "rear", "--json").stdout)
+    assert data["damper"] == "rear" and data["stiffness"] == tn.damper_optimum(two, "rear").stiffness
+    assert "--damper: is missing; name one of front, rear" in run("damper-optimum", "two.toml").stderr
+    assert "driveline: has no damper; add a ViscousDamper" in run("damper-optimum", "none.toml").stderr

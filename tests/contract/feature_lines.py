@@ -199,6 +199,11 @@ def damped_by(damper: object) -> Change:
     return behind("hub", damper)
 
 
+def pendulum() -> tn.CentrifugalPendulum:
+    """One that counts beside the hub."""
+    return tn.CentrifugalPendulum(mass=2.0, radius=0.1, order=2.0, damping=0.05, name="pendulum")
+
+
 def machine(one: object) -> Change:
     """On the hub."""
     return behind("hub", one)
@@ -241,6 +246,9 @@ def excited(change: Change) -> Change:
 OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("resonance_speeds", "shafts tied to two others"): (same, lambda line: tied(line, straight=False)),
     ("resonance_speeds", "closed loop"): (same, lambda line: looped(line, straight=False)),
+    ("phase_forks", "centrifugal pendulum"): (same, damped_by(pendulum())),
+    ("assembly_sensitivity", "centrifugal pendulum"): (same, damped_by(pendulum())),
+    ("optimise", "centrifugal pendulum"): (excited(unbent), excited(lambda line: damped_by(pendulum())(unbent(line)))),
     ("optimise", "closed loop"): (excited(unbent), excited(looped)),
     ("resonance_speeds", "elastic teeth of planets"): (behind("hub", planetary()), behind("hub", YIELDING, PINION)),
     ("optimise", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
@@ -253,6 +261,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "viscous damper": (same, damped_by(tn.ViscousDamper(ring_inertia=0.03, damping=4.0, stiffness=900.0))),
     "damper without a spring": (same, damped_by(tn.ViscousDamper(inertia=0.02, ring_inertia=0.03, damping=4.0))),
     "tuned damper": (same, damped_by(tn.TunedDamper(ring_inertia=0.03, stiffness=2e3, damping=1.0))),
+    "centrifugal pendulum": (unbent, lambda line: damped_by(pendulum())(unbent(line))),
     "tube inertia": (tube(), lambda line: tube()(line).replace("front", density=7850.0)),
     "bending stiffness": (tube(), tube(young_modulus=1e11)),
     "damping": (same, put("front", damping=9.0)),

@@ -17,6 +17,7 @@ from trunnion import (
 )
 from trunnion.driveline import (
     Belt,
+    CentrifugalPendulum,
     ConstantSpeed,
     Coupling,
     Differential,
@@ -107,6 +108,11 @@ def dual_mass(**changes):
     return DualMassFlywheel(**{"primary_inertia": 0.1, "secondary_inertia": 0.05, "stiffnesses": [1e3]} | changes)
 
 
+def pendulum(**changes: object) -> CentrifugalPendulum:
+    stated = {"mass": 1.0, "radius": 0.1, "order": 2.0} | changes
+    return CentrifugalPendulum(**{key: value for key, value in stated.items() if value is not None})
+
+
 def belt(**changes):
     return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
 
@@ -134,6 +140,9 @@ def free(**engine):
 
 
 OF_A_MOTOR = {"breakdown_torque": 9.0, "breakdown_slip": 0.2, "synchronous_speed": 100.0}
+
+
+PUMP = Disk(inertia=1, name="pump")
 
 
 def torque(**given):
@@ -611,6 +620,31 @@ PYTHON = [
         "give pump a torque too",
     ),
     (
+        lambda: tn.passing(free(), (9.0, 5.0), torque=[torque(**KLOSS)]),
+        "speeds = [9.0, 5.0]: must be two rising speeds",
+        "0 rpm",
+    ),
+    (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
+    (
+        lambda: tn.passing(
+            line(ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1, name="pump")),
+            (5.0, 9.0),
+            torque=[torque(**KLOSS)],
+        ),
+        "driveline.ConstantSpeed: prescribes the speed, so that nothing can capture",
+        "leave it out",
+    ),
+    (
+        lambda: tn.transient(
+            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
+            1.0,
+            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
+            speed=9.0,
+        ),
+        "friction.on = 'pump': is not followed in a line with a slip clutch",
+        "describe the brake as a torque over time",
+    ),
+    (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
         "points = 1: must be a whole number from 2",
         "13, say",
@@ -910,6 +944,22 @@ PYTHON = [
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),
+    (lambda: pendulum(order=None), "CentrifugalPendulum.order: is missing", "order = 2, or length"),
+    (lambda: pendulum(length=0.02), "CentrifugalPendulum.length = 0.02: stands beside order", "leave out either"),
+    (lambda: pendulum(mass=0), "CentrifugalPendulum.mass = 0: must be positive", '"1800 kg"'),
+    (lambda: pendulum(radius=-1), "CentrifugalPendulum.radius = -1: must be positive", '"76 mm"'),
+    (lambda: pendulum(damping=-1), "CentrifugalPendulum.damping = -1: must not be negative", '"3 N*m*s/rad"'),
+    (lambda: pendulum(path="line"), "CentrifugalPendulum.path = 'line': is not a path", 'write "circle"'),
+    (
+        lambda: pendulum(order=None, length=0.2),
+        "CentrifugalPendulum.length = 0.2: is longer than the radius of 0.1 m that it hangs on",
+        "check which is which",
+    ),
+    (
+        lambda: pendulum(largest_travel=1, path="epicycloid"),
+        "CentrifugalPendulum.largest_travel = 1: is more than the 0.02795 m that its path has",
+        "check the unit",
+    ),
     (lambda: SlipClutch(), "SlipClutch.torque: is missing", 'torque = "1200 N*m"'),
     (lambda: SlipClutch(torque=0), "SlipClutch.torque = 0: must be positive", '"250 N*m"'),
     (lambda: SlipClutch(torque=9, sliding_torque=-1, stribeck_speed=1), "SlipClutch.sliding_torque = -1: must", "250"),

@@ -11,6 +11,7 @@ import pytest
 import trunnion as tn
 from trunnion.driveline import (
     Belt,
+    CentrifugalPendulum,
     Clutch,
     ConstantSpeed,
     Coupling,
@@ -81,6 +82,8 @@ COMPONENTS = [
     ),
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
+    CentrifugalPendulum(mass="1.2 kg", radius="80 mm", length="20 mm", path="epicycloid", largest_travel="15 mm"),
+    CentrifugalPendulum(mass=1.2, radius=0.08, order=1.95, damping=0.1),
     Engine(
         firing_order="1-3-4-2",
         throw_inertia=[0.02, 0.02, 0.02, 0.03],

@@ -38,10 +38,7 @@ def subclasses(base: type) -> set[type]:
     return {s for c in base.__subclasses__() if c.__module__.startswith("trunnion") for s in (c, *subclasses(c))}
 
 
-RESULTS = sorted(
-    (kind for kind in subclasses(Result) if not kind.__module__.startswith("trunnion.results.described")),
-    key=lambda kind: kind.__name__,
-)
+RESULTS = sorted(subclasses(Result), key=lambda kind: kind.__name__)
 MEMBERS = {label.members for kind in RESULTS for label in labels(kind).values() if label.members}
 
 

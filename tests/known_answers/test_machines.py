@@ -198,3 +198,73 @@ def test_a_table_beside_the_file(tmp_path: Path) -> None:
         with pytest.raises(tn.InputError) as caught:
             tn.load(tmp_path / "line.toml")
         assert words in str(caught.value) and "curve" in str(caught.value)
+
+
+@pytest.mark.parametrize("geared", [False, True], ids=["tree", "differential"])
+def test_a_lag_in_closed_form(geared: bool) -> None:
+    """Two inertias and a shaft, the slope k of the motor k/(1 + iν/ν_c): solved by hand at every order and speed.
+
+    The same behind a differential whose other leg is a brake of its own, against a dense solution with k in its place.
+    """
+    corner, gain = 260.0, 35.0
+    shaken = [{"order": n, "amplitude": 12.0, "phase": 0.2 * n} for n in (1, 3, 8)]
+    motor = tn.Motor(inertia=MOTOR, gain=gain, drive_share=1, corner_frequency=corner, excitation=shaken, name="motor")
+    shaft, load = tn.Shaft(stiffness=STIFFNESS, damping=DAMPING, name="shaft"), tn.Disk(inertia=LOAD, load_torque=80)
+    speeds = np.linspace(20.0, 150.0, 14)
+    nu = np.array([1.0, 3.0, 8.0])[:, None] * speeds
+    k = gain / (1 + 1j * nu / corner)
+    force = 12.0 * np.exp(0.2j * np.array([1, 3, 8]))[:, None]
+    spring = STIFFNESS + 1j * nu * DAMPING
+    if not geared:
+        found = tn.order_response(tn.Driveline([motor, shaft, load]), speeds)
+        far = LOAD
+    else:
+        legs = [tn.Differential(ratio=1, inertia=1e-9, name="d"), tn.Disk(inertia=1.5, load_torque=40, name="left"),
+                tn.Disk(inertia=1.5, load_torque=40, name="right", after="d.right")]  # fmt: skip
+        found = tn.order_response(tn.Driveline([motor, shaft, tn.Disk(inertia=1e-9), *legs]), speeds)
+        far = 3.0 + 2e-9  # equal legs turn as one
+    near = -(nu**2) * MOTOR + 1j * nu * k + spring
+    end = -(nu**2) * far + spring
+    twist = force * (end - spring) / (near * end - spring**2)
+    wanted = -spring * twist
+    order = {o: i for i, o in enumerate(np.round(found.order, 9).tolist())}
+    got = np.stack([found.torque[:, order[float(n)], 0] for n in (1, 3, 8)])
+    np.testing.assert_allclose(got, wanted, rtol=2e-8)
+    quasi = tn.order_response(tn.Driveline([motor.but(corner_frequency=None), shaft, load]), speeds)
+    assert np.abs(quasi.torque - found.torque).max() > 0.02 * np.abs(wanted).max() or geared
+
+
+def test_the_lag_of_an_asynchronous_machine() -> None:
+    """First order with the breakdown slip times the angular frequency of the supply, as its torque in time has it."""
+    motor = tn.Motor(inertia=MOTOR, **MOTOR_OF_KLOSS, pole_pairs=2)
+    assert motor.lag_frequency == pytest.approx(0.2 * 2 * 157.0)
+    stated = motor.but(pole_pairs=None, corner_frequency=62.8)
+    shaken = FAN.but(excitation=[{"order": 4, "amplitude": 20.0}])
+    one, other = (
+        tn.order_response(line(drive, shaken), [tn.stability(line(drive, shaken)).speed]) for drive in (motor, stated)
+    )
+    np.testing.assert_allclose(one.torque, other.torque, rtol=1e-12)
+
+
+def test_a_lag_behind_gears() -> None:
+    """A motor behind gears of ratio i, turning 1/i times as fast: what it carries counts by 1/i² on the shaft."""
+    far = tn.Disk(inertia=LOAD, load_torque=80, excitation=[{"order": 3, "amplitude": 9.0}])
+    shaft = tn.Shaft(stiffness=STIFFNESS, damping=DAMPING)
+    geared = tn.Motor(inertia=MOTOR * 16, gain=35.0 * 16, drive_share=1, corner_frequency=260.0)
+    beside = tn.Motor(inertia=MOTOR, gain=35.0, drive_share=1, corner_frequency=260.0)
+    speeds = np.linspace(20.0, 150.0, 6)
+    one = tn.order_response(tn.Driveline([far, shaft, tn.Disk(inertia=1e-3), tn.Ratio(ratio=-4), geared]), speeds)
+    other = tn.order_response(tn.Driveline([far, shaft, tn.Disk(inertia=1e-3), beside]), speeds)
+    np.testing.assert_allclose(one.torque, other.torque, rtol=1e-11)
+
+
+def test_a_mean_speed_that_nothing_keeps_is_said() -> None:
+    """Constant power behind a drive of constant torque: the slope −P/ω² at the input, and the drive that keeps it."""
+    generator = tn.Generator(inertia=LOAD, power=20e3, excitation=[{"order": 2, "amplitude": 5.0}], name="generator")
+    found = tn.order_response(line(tn.Disk(inertia=MOTOR, drive_share=1), generator), [100.0, 140.0])
+    (said,) = [str(one) for one in found.findings if "Nothing keeps the mean speed" in str(one)]
+    assert f"at 100 rad/s least: what resists falls with it by {20e3 / 50.0**2 / 4:.4g} N m s/rad" in said
+    assert "(generator). Give the drive a torque that falls more steeply" in said
+    assert not tn.stability(line(tn.Disk(inertia=MOTOR, drive_share=1), generator), 100.0).verdict.name == "STABLE"
+    kept = tn.order_response(line(tn.Motor(inertia=MOTOR, gain=9.0, drive_share=1), generator), [100.0, 140.0])
+    assert not [one for one in kept.findings if "Nothing keeps" in str(one)]

@@ -12,13 +12,15 @@ from oracles.sampling import quick_only
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
-from trunnion.floquet.propagation import tree_modes
+from trunnion.floquet.propagation import tree_mode_motion, tree_modes
+from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.floquet.ranges import exponents
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import exponent_collisions
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.results.verdict import Verdict
 
 SPEED = 150.0
 
@@ -87,7 +89,7 @@ def test_two_modes_that_are_one_count_as_not_found(monkeypatch: pytest.MonkeyPat
     """Their states are not independent, which no count of exponents would tell."""
     line = uniform(20, 0.05, 0.3)
 
-    class Twice(tree_modes._Line):
+    class Twice(tree_modes.HillLine):
         def starts(self) -> Any:
             value, shape = super().starts()
             value[3], shape[3] = value[4], shape[4]
@@ -97,7 +99,7 @@ def test_two_modes_that_are_one_count_as_not_found(monkeypatch: pytest.MonkeyPat
             return np.zeros(len(value), dtype=bool)
 
     assert modes(line, SPEED) is not None
-    monkeypatch.setattr(tree_modes, "_Line", Twice)
+    monkeypatch.setattr(tree_modes, "HillLine", Twice)
     assert modes(line, SPEED) is None
 
 
@@ -107,7 +109,7 @@ def test_what_side_orders_leave_out_is_in_the_error(monkeypatch: pytest.MonkeyPa
     right = np.abs(modes(line, 80.0).multiplier[0])
     monkeypatch.setattr(tree_modes, "DECADES", 1.0)
     monkeypatch.setattr(tree_modes, "WIDER", 0.0)
-    monkeypatch.setattr(tree_modes._Line, "_settled", _narrow(tree_modes._Line._settled))
+    monkeypatch.setattr(tree_modes.HillLine, "_settled", _narrow(tree_modes.HillLine._settled))
     found = modes(line, 80.0)
     assert 1e-12 < abs(np.abs(found.multiplier[0]) - right) < found.error[0]
 
@@ -145,3 +147,44 @@ def test_meetings_of_exponents_along_the_tree_and_by_whole_matrices(monkeypatch:
     monkeypatch.setattr(exponents, "LONG", 10**9)
     whole = exponent_collisions(span, 200.0, 320.0)[0]
     assert len(along) > 3 and along == pytest.approx(whole, rel=1e-7)
+
+
+@pytest.mark.parametrize("speed, name", [(2.0, "sum (ω₁+ω₂)/2"), (3.0, "subharmonic ω₂")])
+def test_names_of_what_grows_as_the_matrices_of_the_period_tell_them(speed: float, name: str) -> None:
+    """From right and left null vectors of Hill's blocks, of a line that needs no propagator any more."""
+    first = 2 * np.sqrt(2e5 / 0.1) * np.sin(np.pi / 66)
+    line = uniform(16, 1e-3, np.deg2rad(25.0))
+    found, other = tn.stability(line, speed * first), by_the_period(line, speed * first)
+    assert str(found.resonance) == str(other.resonance) == name
+    assert found.resonance is not None and other.resonance is not None
+    assert found.resonance.speed == pytest.approx(other.resonance.speed, rel=1e-9)
+
+
+def test_what_grows_in_a_line_of_160_inertias_has_a_name() -> None:
+    """That of two modes whose sum its speed meets."""
+    elements: list[Any] = [tn.ConstantSpeed()]
+    for i in range(160):
+        elements += [tn.Shaft(stiffness=1e5 * (2 + np.sin(1.3 * i * i)), damping=0.02), tn.Disk(inertia=0.1)]
+        if i in (2, 5):
+            elements.append(tn.HookeJoint(angle=0.6))
+    line = tn.Driveline(elements)
+    found, frequency = tn.stability(line, 1000.0), tn.natural_frequencies(line).undamped_frequency
+    assert found.verdict == Verdict.UNSTABLE and found.resonance is not None and found.resonance.kind == "sum"
+    i, j = (m - 1 for m in found.resonance.modes)
+    assert (frequency[i] + frequency[j]) / 2 == pytest.approx(1000.0, rel=0.03)
+
+
+def test_an_adjoint_that_does_not_belong_to_its_mode_names_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """l·r is constant of the true one alone."""
+    line, first = uniform(16, 1e-3, np.deg2rad(25.0)), 2 * np.sqrt(2e5 / 0.1) * np.sin(np.pi / 66)
+    assembly = assemble(line)
+    co, turns = assembly.coefficients(assembly.table(1, 2 * first)), require_period(line, assembly.topology)
+    exponent = complex(modes(line, 2 * first).exponent[0])
+    assert mode_motion(assembly.topology, co, turns, exponent) is not None
+    own = tree_mode_motion._null_vector
+
+    def reversed_in_time(matrix: Any, slope: Any, transposed: bool) -> Any:
+        return own(matrix, slope, transposed)[:, :: -1 if transposed else 1]
+
+    monkeypatch.setattr(tree_mode_motion, "_null_vector", reversed_in_time)
+    assert mode_motion(assembly.topology, co, turns, exponent) is None

@@ -1,4 +1,4 @@
-"""The command ``transient``."""
+"""The commands ``transient`` and ``passing``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from trunnion.cli import output
 from trunnion.cli.command_input import OptionReader
 from trunnion.cli.options import Line, SpeedUnit
 from trunnion.cli.places import CommandOutput
-from trunnion.cli.readers import read_speed
+from trunnion.cli.readers import range_of, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -35,13 +35,41 @@ def transient(
     --scenario  Name of a [[scenario]] of the file; default: its only one.
     --speed  Of the input when it begins, instead of the scenario's.
     """
+    found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance)
+    return CommandOutput(found, content=lambda: _content(found, unit), outcome=found.outcome)
+
+
+def _scenario(line: tn.Driveline, named: str) -> str:
+    """The scenario that is named, or the only one."""
     known = [one.name for one in line.scenarios]
-    if not scenario and len(known) != 1:
+    if not named and len(known) != 1:
         problem = "is missing" if known else "has none to choose from"
         remedy = f"name one of {', '.join(known)}" if known else "write [[scenario]] in the file"
         raise InputError(problem, key="--scenario", remedy=remedy)
-    found = tn.transient(line, scenario or known[0], speed=speed, tolerance=tolerance)
-    return CommandOutput(found, content=lambda: _content(found, unit), outcome=found.outcome)
+    return named or known[0]
+
+
+@Command("passing", within=True)
+def passing(
+    line: Line,
+    *,
+    from_: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[0])],
+    to: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[1])],
+    scenario: str = "",
+    phase: float = 0.0,
+    unit: SpeedUnit,
+) -> CommandOutput:
+    """Example: trunnion passing mill.toml --scenario start --from 0rpm --to 1400rpm -o passing.png
+
+    --from  First speed; default: of the file's range.
+    --to  Last speed; default: of the file's range.
+    --scenario  Whose torques and friction act; default: the only one of the file.
+    --phase RADIANS  Angle of the input when it begins.
+    """
+    acting = line.scenario(_scenario(line, scenario))
+    found = tn.passing(line, (from_, to), torque=acting.torque, friction=acting.friction, phase=phase)
+    content = {"scenario": acting.name, **found.to_dict()}
+    return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
 
 
 def _content(found: Transient, unit: str) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
@@ -38,6 +39,7 @@ from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
+    "CentrifugalPendulum",
     "AppliedTorque",
     "LevelCrossing",
     "FrictionTorque",

@@ -23,6 +23,7 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
@@ -161,6 +162,11 @@ FEATURES = (
     Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
     Feature(DRAGGED, (), _dragged),
     Feature("tuned damper", _of("TunedDamper", *_DAMPER), _kind(TunedDamper)),
+    Feature(
+        "centrifugal pendulum",
+        _of("CentrifugalPendulum", "mass", "radius", "length", "order", "path", "damping"),
+        _kind(CentrifugalPendulum),
+    ),
     Feature("tube inertia", ("Shaft.density",)),
     Feature("bending stiffness", ("Shaft.young_modulus",)),
     Feature("damping", _of_springs("damping")),
@@ -337,6 +343,7 @@ NOT_FEATURES = {
         (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
         "a rating, which checks compare with",
     ),
+    "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
     **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",
     "Driveline.name": "a label",

@@ -13,6 +13,7 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -38,6 +39,7 @@ KINDS: dict[str, type[Element]] = {
         Propeller,
         ViscousDamper,
         TunedDamper,
+        CentrifugalPendulum,
         HookeJoint,
         IdealJoint,
         TripodJoint,

@@ -26,6 +26,7 @@ from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.quantities import (
     RATIO,
     Acceleration,
@@ -56,7 +57,9 @@ SHIP_SHAFTS = {
 }
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
-_SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt, Tyre)
+_SPRING: tuple[type[Element], ...] = (
+    Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, CentrifugalPendulum, Belt, Tyre,
+)  # fmt: skip
 _TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),

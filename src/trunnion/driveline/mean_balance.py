@@ -63,7 +63,29 @@ def geared_curves(line: ElementChain) -> list[tuple[float, TorqueCurve]]:
 
 
 def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:
-    """All input speeds [rad/s] at which the torques of a line that is left free balance, rising."""
+    """All input speeds at which the torques of a free–free line balance, rising, each stable or not.
+
+    Torques are those of disks and machines alone, without what a ``drive_share`` adds.
+
+    Parameters
+    ----------
+    line : the driveline.
+
+    Returns
+    -------
+    For every balance its ``speed`` [rad/s], its ``slope`` [N m s/rad], by which what resists at the input rises there,
+    and whether it is ``stable``.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> motor = tn.Motor(inertia=0.4, breakdown_torque=500.0, breakdown_slip=0.2, synchronous_speed="1500 rpm")
+    >>> mill = tn.Disk(inertia=3.0, load_torque="300 N*m")
+    >>> for one in tn.mean_speeds(tn.Driveline([motor, tn.Shaft(stiffness=2e4), mill])):
+    ...     print(f"{one.speed * 30 / 3.14159265:.1f} rpm", "stable" if one.stable else "unstable")
+    600.0 rpm unstable
+    1400.0 rpm stable
+    """
     return balances(geared_curves(line), LOWEST, HIGHEST)
 
 

@@ -19,20 +19,30 @@ def speed_unit(line: Driveline) -> str:
     return line.operation.speed_unit if line.operation else "rad/s"
 
 
+def runs_by_itself(line: Driveline) -> bool:
+    """Whether a motor drives the line that nothing prescribes or controls, so that it finds its own speed."""
+    return is_left_free(line) and any(isinstance(element, Motor) for element in line.elements)
+
+
+def known_speed(line: Driveline) -> float | None:
+    """The operating speed that the description states [rad/s], or that at which a motor and its loads settle; None of
+    other lines.
+
+    Raises
+    ------
+    InputError : a motor and its loads settle nowhere, or at several speeds.
+    """
+    stated = line.operation.speed if line.operation else None
+    return own_speed(line) if stated is None and runs_by_itself(line) else stated
+
+
 def stated_range(line: Driveline) -> tuple[float, float] | None:
     """Lowest and highest speed that the description states [rad/s], its operating speed alone where it states no range;
-    None where it states neither."""
-    operation = line.operation
-    if operation is None:
-        return None
-    if operation.speed_range:
-        return operation.speed_range
-    return None if operation.speed is None else (operation.speed, operation.speed)
-
-
-def runs_by_itself(line: Driveline) -> bool:
-    """Whether a machine drives the line that nothing prescribes or controls, so that it finds its own speed."""
-    return is_left_free(line) and any(isinstance(element, Motor) for element in line.elements)
+    None where it states neither, and no motor finds its own."""
+    if line.operation and line.operation.speed_range:
+        return line.operation.speed_range
+    speed = known_speed(line)
+    return None if speed is None else (speed, speed)
 
 
 def operating_speed(line: Driveline, speed: float | str | None) -> float:
@@ -41,9 +51,7 @@ def operating_speed(line: Driveline, speed: float | str | None) -> float:
     if isinstance(speed, str):
         speed = quantity(speed, SPEED, "speed")
     if speed is None:
-        speed = line.operation.speed if line.operation else None
-    if speed is None and runs_by_itself(line):
-        return own_speed(line)
+        speed = known_speed(line)
     if speed is None:
         raise InputError(
             "is not given",

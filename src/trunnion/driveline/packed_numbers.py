@@ -22,6 +22,7 @@ UNITS = {
     "fork_offset": "rad",
     "inertia": "kg*m^2",
     "ring_inertia": "kg*m^2",
+    "order": "1",
     "primary_inertia": "kg*m^2",
     "secondary_inertia": "kg*m^2",
     "span_stiffness": "N/m",

@@ -87,8 +87,8 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             corner = shown(element.lag_frequency, FREQUENCY, digits=4)
             yield (
                 LAG,
-                f"{name}: its torque lags above {corner}; its slope is taken as quasi-static, which holds well below "
-                "that; leave pole_pairs and corner_frequency out where it does not matter",
+                f"{name}: its torque lags above {corner}, as forced responses of straight lines have it; elsewhere its "
+                "slope is taken as quasi-static, which holds well below that",
             )
 
 

@@ -59,6 +59,7 @@ _RULES: dict[str, dict[str, Any]] = {
             "clamping_shares": ["clamping_times"],
         }
     },
+    "CentrifugalPendulum": {"oneOf": [{"required": ["order"]}, {"required": ["length"]}]},
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
         "dependentRequired": {

@@ -10,6 +10,7 @@ from trunnion.errors import InputError
 STARTERS = {
     "two-shaft": "drive, shaft, Hooke's joint, shaft, load: the smallest line with a joint",
     "three-shaft": "two Hooke's joints with forks in line, which cancel each other's irregularity",
+    "electric-drive": "a pump on an asynchronous motor, which finds its own speed",
     "ship": "six-cylinder engine with viscous damper, flexible coupling, gear and propeller",
     "truck": "one-piece propeller shaft with final drive, axle shafts and vehicle",
 }

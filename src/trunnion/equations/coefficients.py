@@ -20,6 +20,7 @@ from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.driveline.pendulums import CentrifugalPendulum, Swinging
 from trunnion.driveline.shafts import Elastic, SpringElement
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
@@ -207,7 +208,39 @@ def _link(assembly: Assembly, table: Array, element: int, number: int) -> tuple[
     one, column = assembly.line.elements[element], assembly.packed.column
     assert isinstance(one, Elastic)
     stiffness, damping = one.links(lambda key: table[:, column(element, key)])[number]
+    if isinstance(one, CentrifugalPendulum) and not isinstance(one, Swinging):
+        stiffness = stiffness * _host_speed(assembly, table, element) ** 2
     return np.broadcast_to(stiffness, len(table)), np.broadcast_to(damping, len(table))
+
+
+def _host_speed(assembly: Assembly, table: Array, element: int) -> Array:
+    """Mean speed [rad/s] of what a pendulum hangs on, by the square of which it is held; where no speed is asked of, as
+    the line operates.
+
+    Raises
+    ------
+    InputError : no speed; a host that turns unevenly behind an angled joint.
+    """
+    topo, name, operation = assembly.topology, assembly.line.names[element], assembly.line.operation
+    speeds = table[:, 0]
+    if operation is not None and operation.speed is not None:
+        speeds = np.where(np.isfinite(speeds), speeds, operation.speed)
+    if not np.isfinite(speeds).all():
+        raise InputError(
+            "is held by the square of the speed, which is neither asked of here nor stated", element=name, key="order",
+            remedy='write [operation] speed = "1500 rpm", say, or use tn.campbell_diagram or tn.order_response',
+        )  # fmt: skip
+    host = topo.stations[topo.behind[element, 0]].before
+    nonuniform = {s for s, law in zip(topo.joints, joint_laws(assembly, table), strict=True) if law.nonuniform}
+    at = host
+    while at >= 0 and at not in nonuniform:
+        at = topo.stations[at].before
+    if at >= 0 or (nonuniform and topo.free):
+        raise InputError(
+            "turns unevenly with an angled joint, and is held by the square of a speed that varies then", element=name,
+            key="order", remedy="take the joints at angle 0; tn.simulate and tn.periodic_response follow it",
+        )  # fmt: skip
+    return np.asarray(speeds * topo.mean_speeds[host])
 
 
 def _damping_and_loss(
@@ -302,7 +335,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             own = [twist[:, e]]
         else:
             np.divide(torque[:, e], stiffness[:, e], out=twist[:, e], where=stiffness[:, e] > 0)
-            own = [twist[:, e]] if compliance.drags else [torque[:, e] / k for k in each]
+            own = [twist[:, e]] if len(each) == 1 else [torque[:, e] / k for k in each]
         for i, turned in zip(shafts, own, strict=True):
             forks = column(i, "fork_offset")
             if (i, compliance.number) in topo.behind:
@@ -322,6 +355,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         load=loads.constant,
         viscous=loads.viscous,
         quadratic=loads.quadratic,
+        lags=tuple(loads.lags),
         not_carried=np.zeros_like(mean) if twisted else mean,
         joints=joint_laws(assembly, table),
         shift=shift,

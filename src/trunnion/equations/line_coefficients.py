@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
@@ -25,6 +25,21 @@ class MeshWave:
 
 
 @dataclass(frozen=True)
+class TorqueLag:
+    """A part of the slope of the torque at a ``station`` that follows the speed with a lag: at a frequency ν
+    slope/(1 + iν/corner), ``slope`` (case,) [N m s/rad] and ``corner`` (case,) [rad/s]."""
+
+    station: int
+    slope: Array
+    corner: Array
+
+    def added(self, frequency: Array) -> Complex:
+        """What it adds (…, case) [N m/rad] to iν slope at ``frequency`` (…, case) [rad/s]."""
+        turned = 1j * frequency / self.corner
+        return np.asarray(-1j * frequency * self.slope * turned / (1 + turned))
+
+
+@dataclass(frozen=True)
 class LineCoefficients:
     """What the equations of a line need, one row per case (axes: case, then as named).
 
@@ -36,7 +51,8 @@ class LineCoefficients:
     (case, 1); ``shift`` [rad] per station: what a shaft adds to the angle at its far end (fork offset and static
     twist), and what a joint subtracts from its input angle to measure it from its own plane. ``loss`` [N m/rad] per
     compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
-    ``waves``: meshes whose stiffness varies about the one given here.
+    ``waves``: meshes whose stiffness varies about the one given here. ``lags``: of the slopes in ``viscous``, those
+    that lag; only forced responses of straight lines have them.
     """
 
     speed: Array
@@ -53,6 +69,7 @@ class LineCoefficients:
     shift: Array
     loss: Array
     waves: tuple[MeshWave, ...] = ()
+    lags: tuple[TorqueLag, ...] = ()
 
     @property
     def straight(self) -> LineCoefficients:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from math import prod
 from pathlib import Path
 from types import ModuleType
@@ -33,6 +34,7 @@ from trunnion.systems.user_functions import from_kernel
 MOST_REGIMES = 400
 
 
+@cache
 def line_kernel() -> ModuleType:
     """The compiled right-hand side of lines and what observes their motion."""
     return kernel_file(str(Path(__file__).with_name("line_kernel.py")))
@@ -44,6 +46,7 @@ def guards_kernel() -> ModuleType:
     return kernel_file(str(here.with_name("line_guards_kernel.py")), str(here.with_name("line_kernel.py")))
 
 
+@cache
 def watch_kernel() -> ModuleType:
     """The compiled function of what can be watched along a motion."""
     here = Path(__file__)
@@ -53,9 +56,10 @@ def watch_kernel() -> ModuleType:
     )
 
 
-def slip_kernel() -> ModuleType:
-    """The compiled right-hand side of lines with slip clutches, what switches there, and what observes them."""
-    names = ("slip_kernel.py", "line_kernel.py", "line_guards_kernel.py")
+def released_kernel() -> ModuleType:
+    """The compiled right-hand side of lines with slip clutches and pendulums, what switches there, and what observes
+    them."""
+    names = ("released_kernel.py", "line_kernel.py", "line_guards_kernel.py")
     return kernel_file(*(str(Path(__file__).with_name(name)) for name in names))
 
 
@@ -213,8 +217,8 @@ class LineRegimes(Regimes):
         found = int(self._core.locate(at, x, numbers))
         if not self.clutches:
             return found
-        core = slip_kernel()
-        return int(core.located(core.slipping_line.address, at, x, numbers.copy(), found))
+        core = released_kernel()
+        return int(core.located(core.released_line.address, at, x, numbers.copy(), found))
 
 
 def slider_strides(springs: dict[int, StagedSpring], count: int) -> list[int]:
@@ -256,11 +260,11 @@ def line_regimes(assembly: Assembly) -> LineRegimes | None:
     names = tuple(", ".join(f"{p.name} {p.words[p.stage(r)]}" for p in parts) for r in range(count))
     guards = tuple(f"{p.name} guard {side}" for p in parts for side in range(1, GUARDS + 1))
     slips = placed_clutches(assembly, assembly.table(1)[0])
-    jump = from_kernel(slip_kernel, "slipping_jump") if slips else from_kernel(guards_kernel, "line_jump")
+    jump = from_kernel(released_kernel, "released_jump") if slips else from_kernel(guards_kernel, "line_jump")
     return LineRegimes(
         names,
         guards,
-        from_kernel(slip_kernel, "slipping_guards") if slips else from_kernel(guards_kernel, "line_guards"),
+        from_kernel(released_kernel, "released_guards") if slips else from_kernel(guards_kernel, "line_guards"),
         (),
         lambda t, x, p: 0,
         jump if any(part.along for part in parts) else None,

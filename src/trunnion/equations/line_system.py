@@ -24,10 +24,11 @@ from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonic
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_kernel as kernel
-from trunnion.equations.line_regimes import line_regimes, slider_strides, slip_kernel, staged_springs
+from trunnion.equations.line_regimes import line_regimes, released_kernel, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares, refuse_curves
+from trunnion.equations.released import PlacedPendulum, placed_pendulums, released, released_numbers
 from trunnion.equations.sliders import PlacedSlider, sliders
-from trunnion.equations.slip_clutches import PlacedClutch, clutch_numbers, placed_clutches, slipping
+from trunnion.equations.slip_clutches import PlacedClutch, placed_clutches
 from trunnion.equations.steady_base import require_tree
 from trunnion.errors import InputError, InputRemark
 from trunnion.laws.fourier import FourierLaw
@@ -36,7 +37,7 @@ from trunnion.laws.hooke import CrossLaw
 from trunnion.laws.joint import JointLaw
 from trunnion.portable import Portable
 from trunnion.systems.system import System
-from trunnion.systems.user_functions import from_kernel
+from trunnion.systems.user_functions import CFunction, from_kernel
 
 ANGLE_SCALE = 0.01
 """The deviation [rad] that counts as one in error control."""
@@ -113,6 +114,16 @@ class LineSystem(Portable):
         return placed_clutches(self.assembly, self.assembly.table(1)[0])
 
     @cached_property
+    def pendulums(self) -> tuple[PlacedPendulum, ...]:
+        """Its centrifugal pendulums that swing along their paths."""
+        return placed_pendulums(self.assembly, self.assembly.table(1)[0])
+
+    @property
+    def _rate(self) -> CFunction:
+        released = self.clutches or self.pendulums
+        return from_kernel(released_kernel, "released_line") if released else from_kernel(kernel, "line")
+
+    @cached_property
     def system(self) -> System:
         """The line as a system, its parameters being those of the description."""
         packed = self.assembly.packed
@@ -127,7 +138,7 @@ class LineSystem(Portable):
                 *(f"deflection of {slider.name}" for slider in friction_sliders),
             ),
             units=("rad",) * n + ("rad/s",) * n + ("rad",) * len(friction_sliders),
-            rate=from_kernel(slip_kernel, "slipping_line") if self.clutches else from_kernel(kernel, "line"),
+            rate=self._rate,
             parameters=values,
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
@@ -225,7 +236,8 @@ class LineSystem(Portable):
             begin += behind[-1].size
         if applied is not None:
             behind.append(applied.ravel())
-        behind.append(clutch_numbers(clutches, strides[len(friction_sliders) :]))
+        pendulums = placed_pendulums(self.assembly, row)
+        behind.append(released_numbers(clutches, strides[len(friction_sliders) :], pendulums))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
         head += [0, 0] if applied is None else [len(applied), begin]
@@ -325,10 +337,10 @@ class LineSystem(Portable):
         rotation, speed = np.empty((2, len(t), len(topo.stations)))
         stages, slip = np.zeros(twist.shape, dtype=np.int64), np.empty((len(t), len(self.clutches)))
         kernel().observe(t, states, numbers, twist, torque, rotation, speed, stages)
-        if self.clutches:
-            core, known = slip_kernel(), np.full(len(t), -1) if regime is None else regime
-            rate = core.slipping_line.address
-            core.observe_clutches(rate, t, states, numbers.copy(), known, stages, torque, slip)
+        if self.clutches or self.pendulums:
+            core, known = released_kernel(), np.full(len(t), -1) if regime is None else regime
+            rate = core.released_line.address
+            core.observe_released(rate, t, states, numbers.copy(), known, stages, torque, slip)
         return LineMotion(twist, torque, rotation), slip, speed
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
@@ -380,21 +392,31 @@ def _put_joint(core: ModuleType, law: JointLaw, case: int, out: Array, place: in
     return np.stack([np.array(law.orders, dtype=float), *np.reshape(parts, (2, -1))], axis=1).ravel()
 
 
-def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = False, slips: bool = False) -> LineSystem:
+def line_system(
+    line: Driveline | Assembly,
+    speed: float,
+    *,
+    leaves: bool = False,
+    slips: bool = False,
+    swing: bool = False,
+    linearised: bool = False,
+) -> LineSystem:
     """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
-    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``.
+    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``; its centrifugal pendulums are rings
+    on springs, or swing along their paths where they ``swing``. Unless it is only to be ``linearised`` about its
+    motion, torques that act by their tangents are said.
 
     Raises
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = slipping(assemble(line)) if slips else assemble(line)
+    assembly = released(assemble(line), slips=slips, swing=swing)
     refuse_second_speed(assembly)
     require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     for name, rotor in assembly.topology.rotors:
-        if rotor.tangent:
+        if rotor.tangent and not linearised:
             at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
             remark = f"{name}: equations of motion have its torque over speed by the tangent at {at} of the input"
             warnings.warn(InputRemark(remark), stacklevel=2)

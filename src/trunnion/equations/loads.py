@@ -9,15 +9,16 @@ share of what is left as a constant torque, a motor with the slope that it has w
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.elements import Loaded, Rotor
-from trunnion.driveline.machines import Motor
+from trunnion.driveline.machines import ElectricMachine, Motor
 from trunnion.driveline.parts import Numbers
 from trunnion.driveline.quantities import SPEED, TORQUE, shown
+from trunnion.equations.line_coefficients import TorqueLag
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.laws.torque_curve import PowerCurve
@@ -29,12 +30,13 @@ Column = Callable[[int, str], int]
 class StationLoads:
     """Per case and station: constant [N m], viscous [N m s/rad] and quadratic [N m s²/rad²] torque that resists.
 
-    ``constant`` includes what the drives carry.
+    ``constant`` includes what the drives carry; ``lags``: parts of ``viscous`` that lag.
     """
 
     constant: Array
     viscous: Array
     quadratic: Array
+    lags: list[TorqueLag] = field(default_factory=list)
 
 
 def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
@@ -65,10 +67,16 @@ def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
             if np.isnan(value[known]).any():
                 raise _beyond(name, load.range, turning[known & np.isnan(value)])
             load = PowerCurve(value - slope * np.where(known, turning, 0.0), slope)
+            _note_lag(loads, station, rotor, _numbers(column, table, place), slope)
         loads.constant[:, station] += load.constant
         loads.viscous[:, station] += load.viscous
         loads.quadratic[:, station] += load.quadratic
     return loads
+
+
+def _note_lag(loads: StationLoads, station: int, rotor: Rotor, number: Numbers, slope: Array) -> None:
+    if isinstance(rotor, ElectricMachine) and (corner := rotor.corner(number)) is not None:
+        loads.lags.append(TorqueLag(station, slope, np.broadcast_to(corner, slope.shape)))
 
 
 def _numbers(column: Column, table: Array, place: int) -> Numbers:
@@ -97,6 +105,7 @@ def _put_slopes(topo: Topology, column: Column, table: Array, loads: StationLoad
         if np.isnan(slope).any():
             raise _too_much(name, motor, torque[np.isnan(slope)], table[np.isnan(slope), 0])
         slope = np.where(known, slope, 0.0)
+        _note_lag(loads, station, motor, number, slope)
         loads.viscous[:, station] += slope
         loads.constant[:, station] -= slope * np.where(known, table[:, 0] * abs(topo.mean_speeds[station]), 0.0)
 

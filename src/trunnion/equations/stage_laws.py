@@ -71,7 +71,7 @@ class StageLaw(StageSpring):
         )
 
 
-SLIPS = "raise the torque at which it slips, lower the load, or take it as holding: a Shaft of its inner stiffness"
+SLIPS = "raise the torque at which it slips, lower the load, or write a SlipClutch where no spring stands beside it"
 """What to do about a spring whose outermost stages bear no more torque, such as a slip clutch in series."""
 
 

@@ -30,6 +30,7 @@ from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import imbalance, refuse_dragged, require_tree, torques_in_words
@@ -321,6 +322,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     nonuniform = {line.names[topo.stations[j].element] for j, law in laws if law.nonuniform}
     refuse_dragged(assembly)
     refuse_slip_clutches(line)
+    refuse_pendulums(line)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in nonuniform:

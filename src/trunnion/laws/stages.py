@@ -119,8 +119,8 @@ def slider_stages(stiffness: float, reach: float) -> Stages:
 
 
 def clutch_stages() -> Stages:
-    """The stages of a slip clutch, whose surfaces ``equations.slip_kernel`` knows: it slips beyond its capacity, and
-    where the slip ends it sticks, or slips the other way at once."""
+    """The stages of a slip clutch, whose surfaces ``equations.released_kernel`` knows: it slips beyond its capacity,
+    and where the slip ends it sticks, or slips the other way at once."""
     found = Stages.apart([[0.0, 0.0, 0.0]] * SLIDER_STAGES, [-1, 0, 1])
     for stage, number, direction, behind in (
         (STICKS, 0, -1, SLIPS_BACK), (STICKS, 1, 1, SLIPS_ON), (SLIPS_ON, 2, -1, STICKS), (SLIPS_ON, 0, -1, SLIPS_BACK),

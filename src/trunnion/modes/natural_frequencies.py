@@ -13,7 +13,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import UnitMasses, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.features import left_out
+from trunnion.features import as_it_operates, left_out
 from trunnion.modes.damped_modes import LineModes, line_modes
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
@@ -105,7 +105,7 @@ class NaturalFrequencies(Result):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What of the line is left out."""
-        return left_out("natural_frequencies", self.assembly.line)
+        return left_out("natural_frequencies", self.assembly.line) + as_it_operates(self.assembly.line)
 
     @property
     def hertz(self) -> Array:

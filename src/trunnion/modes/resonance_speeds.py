@@ -27,7 +27,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
-from trunnion.features import left_out
+from trunnion.features import as_it_operates, left_out
 from trunnion.laws.harmonic import common_rate
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.results.fields import attribute, computed, internal, labelled, members, variable
@@ -165,7 +165,7 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     assembly = assemble(line)
     modes = natural_frequencies(assembly).undamped_frequency
     found = [r for source in sources(assembly) for r in _excited(modes, orders, source)]
-    said = left_out("resonance_speeds", assembly.line)
+    said = left_out("resonance_speeds", assembly.line) + as_it_operates(assembly.line)
     return ResonanceSpeeds(tuple(sorted(found, key=lambda r: r.speed)), orders, said, speed_unit(assembly.line))
 
 

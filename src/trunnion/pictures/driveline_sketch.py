@@ -42,7 +42,8 @@ LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
-    "SlipClutch": 0.7, "Motor": 0.95, "Generator": 0.95, "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8,
+    "SlipClutch": 0.7, "CentrifugalPendulum": 0.7, "Motor": 0.95, "Generator": 0.95,
+    "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 THROW = 0.5
@@ -293,6 +294,18 @@ def _damper(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
         _box(axes, middle.part(-0.15, 0.15), 0.16, fc="#8fa9b8")
 
 
+def _pendulum(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """A carrier with a mass that hangs outwards from it on either side."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.09, 0.09), 0.45, fc=SOLID)
+    for side in (1, -1):
+        pivot, mass = (place.middle + side * at * _across(place.direction) for at in (0.38, 0.72))
+        _bar(axes, pivot, mass, lw=1.4, zorder=4)
+        axes.add_patch(
+            Ellipse(tuple(mass), 0.3, 0.24, angle=np.rad2deg(place.direction), fc="#8fa9b8", ec=INK, zorder=5)
+        )
+
+
 def _ratio(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """Two wheels in mesh, sizes by the ratio."""
     element = place.element
@@ -419,6 +432,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "PiecewiseShaft": _stages,
     "Clutch": _stages,
     "SlipClutch": _slip_clutch,
+    "CentrifugalPendulum": _pendulum,
     "Motor": _electric,
     "Generator": _electric,
     "Fan": _blades,

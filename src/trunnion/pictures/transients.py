@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.motion.passing.passing_result import Passing
 from trunnion.motion.simulation.order_map import order_map
 from trunnion.motion.transients.result import Transient
 from trunnion.pictures.looks import curve
@@ -53,3 +54,21 @@ def plane(result: Transient, *, disk: str = "", unit: str = "") -> Picture:
 def orders(result: Transient, *, shaft: str = "", window: int = 8, highest: float = 12.0, unit: str = "") -> Picture:
     """Torque amplitude of one spring over order and speed, by the rotation that the line made."""
     return map_of_orders(order_map(result, window=window, highest=highest), shaft=shaft, unit=unit)
+
+
+def passing(result: Passing, *, shaft: str = "", unit: str = "") -> Picture:
+    """Torque of one spring (the most loaded, or ``shaft``) over the mean speed of the line; where it hung or vibrated
+    most, and the speed asked for."""
+    words, run = Words(unit or result.unit), result.run
+    remedy = f"it has: {', '.join(result.shafts)}"
+    most = int(np.argmax(result.peak_torque))
+    i = place_of(shaft or None, result.shafts, most, "shaft", "is not a spring of this line", remedy)
+    speed = run.whole.speed(run.time) * words.factor
+    hung = result.ending.kind == "captured"
+    items: list[Item] = [
+        Line(speed, run.torque[:, i], curve(0), f"torque of {result.shafts[i]}"),
+        Level(result.ending.speed * words.factor, "hangs", "where it hangs" if hung else "where it shakes most", "x"),
+        Level(result.ending.last * words.factor, "accelerates", "speed asked for", "x"),
+    ]
+    across = Axis("mean speed of the line", words.of_speeds)
+    return single(across, TORQUES, items, height=4.4, title=f"{result.ending.kind}")

@@ -20,7 +20,7 @@ from trunnion.design.assessment.separation import LIMITED
 from trunnion.design.assessment.separation import NEEDS as MODES_NEED
 from trunnion.design.assessment.separation import ONE as ONE_MODE
 from trunnion.driveline.driveline import Driveline, hooke_joints
-from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.operating_speed import known_speed, operating_speed, speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base
@@ -97,7 +97,7 @@ def asked(line: Driveline, *, speed: float | str | None = None, unit: str | None
     """
     unit = unit or speed_unit(line)
     assembly = assemble(line)
-    if speed is not None or (line.operation and line.operation.speed):
+    if speed is not None or known_speed(line) is not None:
         speed = operating_speed(line, speed)
         require_steady_base(assembly, assembly.table(1, speed))
     low, high = speed_range(line)

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline, hooke_joints
+from trunnion.driveline.operating_speed import operating_speed, runs_by_itself
 from trunnion.driveline.operation import Operation
+from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
 
 MODES_IN_RANGE = 4
@@ -13,10 +17,15 @@ MODES_IN_RANGE = 4
 
 
 def speed_range(line: Driveline) -> tuple[float, float]:
-    """The range of the description [rad/s]; else about the operating speed; else about the lowest modes."""
+    """The range of the description [rad/s]; else the one speed at which a motor and its loads settle; else about the
+    operating speed; else about the lowest modes."""
     operation = line.operation or Operation()
     if operation.speed_range:
         return operation.speed_range
+    with suppress(InputError):  # one that settles nowhere is refused by what asks for its motion
+        if runs_by_itself(line):
+            own = operating_speed(line, None)
+            return own, own
     if operation.speed:
         return 0.25 * operation.speed, 2.0 * operation.speed
     elastic = natural_frequencies(line).elastic

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
+from trunnion.driveline.operating_speed import known_speed
 from trunnion.errors import ComputationError, InputError
 from trunnion.motion.orbits.periodic_response import PeriodicResponse, periodic_response
 from trunnion.results.finding import Finding, Gravity
@@ -25,7 +26,7 @@ class LoadedMotion:
 def loaded_motions(line: Driveline, speed: float | None) -> tuple[tuple[LoadedMotion, ...], tuple[str, ...]]:
     """The line as described, if it carries a load, and every load case; and what was left out, in sentences."""
     operation = line.operation
-    speed = speed if speed is not None else operation.speed if operation else None
+    speed = speed if speed is not None else known_speed(line)
     if speed is None:
         return (), ()
     cases = {AS_DESCRIBED: line} if _loaded(line) else {}

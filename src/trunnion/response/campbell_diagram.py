@@ -21,6 +21,7 @@ from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.harmonics import DiskTorque, line_harmonics
 from trunnion.equations.steady_base import has_joint_angles
@@ -235,7 +236,7 @@ def campbell_diagram(
     ratio = -values.real / np.abs(values)
     mode = np.arange(frequency.shape[1]) + 1 + assembly.topology.still
     lines = excitation_lines(assembly, speed)
-    kinetic, potential = _energies(assembly, shapes[len(speed) // 2])
+    kinetic, potential = _energies(assembly, float(speed[len(speed) // 2]), shapes[len(speed) // 2])
     met, jumps = [], []
     for one, m in product(lines, range(len(mode))):
         # Where it turns forward, and where it turns the other way beyond its standstill.
@@ -292,10 +293,10 @@ def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
         return np.nan
 
 
-def _energies(assembly: Assembly, shape: Complex) -> tuple[Array, Array]:
-    """Shares of kinetic (rotation, mode) and elastic energy (spring, mode)."""
-    coefficients = assembly.coefficients(assembly.table(1), any_frequency=True)
-    kinetic = (shape.conj() * (assembly.aligned.inertia[0] @ shape)).real
+def _energies(assembly: Assembly, speed: float, shape: Complex) -> tuple[Array, Array]:
+    """Shares of kinetic (rotation, mode) and elastic energy (spring, mode) at a speed."""
+    coefficients = assembly.coefficients(assembly.table(1, speed), any_frequency=True)
+    kinetic = (shape.conj() * (aligned_matrices(assembly.topology, coefficients).inertia[0] @ shape)).real
     potential = coefficients.stiffness[0][:, None] * np.abs(assembly.topology.elongations @ shape) ** 2
     return kinetic / kinetic.sum(axis=0), potential / potential.sum(axis=0)
 

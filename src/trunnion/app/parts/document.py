@@ -355,6 +355,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "DoubleCardanJoint": {"angle": "20 deg"},
     "ViscousDamper": {"ring_inertia": "0.12 kg*m^2", "damping": "45 N*m*s/rad"},
     "TunedDamper": {"ring_inertia": "0.02 kg*m^2", "stiffness": "1.5 kN*m/rad", "damping": "2 N*m*s/rad"},
+    "CentrifugalPendulum": {"mass": "1.2 kg", "radius": "80 mm", "order": 2},
     "Belt": {"radius_in": "60 mm", "radius_out": "150 mm", "span_stiffness": "4e5 N/m"},
     "DualMassFlywheel": {
         "primary_inertia": "0.14 kg*m^2",

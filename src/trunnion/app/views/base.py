@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Coroutine, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -17,8 +18,9 @@ from trunnion.app.parts.jobs import Job
 from trunnion.app.parts.widgets import Html, ProgrammaticChange, faint, joined, markup, pane, wrapped
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import known_speed, speed_unit
 from trunnion.equations.coefficients import assemble
+from trunnion.errors import InputError
 from trunnion.reporting import ranges
 from trunnion.results.speeds import speed_factor
 from trunnion.steady.orders.forced_response import shaft_names
@@ -429,8 +431,9 @@ def at_speed(line: Driveline, typed: float | None) -> float:
     """The speed [rad/s] typed in the line's unit; None stands for the operating speed, or the middle of the range."""
     if typed:
         return typed / unit_of(line)[1]
-    if line.operation and line.operation.speed:
-        return line.operation.speed
+    with suppress(InputError):  # a motor and loads that settle nowhere are refused by what is asked of them
+        if known := known_speed(line):
+            return known
     low, high = speed_range(line)
     return (low + high) / 2
 

@@ -12,6 +12,7 @@ from trunnion.app.parts.editor import Editor
 from trunnion.app.parts.upload import Upload
 from trunnion.app.parts.widgets import column, pane, picture, pre, wrapped
 from trunnion.app.views.base import VariantPane, View, ViewStep
+from trunnion.driveline.dampers import Damper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
@@ -107,10 +108,22 @@ class DrivelineView(View):
         self.undo.disabled, self.redo.disabled = not document.can_step(-1), not document.can_step(1)
 
     def steps(self, line: Driveline) -> list[ViewStep]:
-        """The sketch, and where the natural frequencies are."""
+        """The sketch, where the natural frequencies are, and what each damper would be best with for the first."""
         return [
             ViewStep("sketch", LINE, "sketch", picture="", files=()),
             ViewStep("modes", Call("tn.natural_frequencies", (LINE,)), "text", title="mode shapes"),
+            *(
+                ViewStep(
+                    f"best {name}",
+                    Call("tn.damper_optimum", (LINE, name)),
+                    "text",
+                    picture="",
+                    soft=True,
+                    title=f"best for mode 1: {name}",
+                )
+                for name, element in line.parts
+                if isinstance(element, Damper)
+            ),
         ]
 
 

@@ -1,4 +1,4 @@
-"""Ratings of elastic couplings, in the form of DIN 740-2, and of the heat of dampers.
+"""Ratings of elastic couplings, in the form of DIN 740-2, of the heat of dampers and of the travel of pendulums.
 
     T_KN ≥ T_N S_t          mean torque, S_t the temperature factor
     T_Kmax ≥ T_peak S_t S_z     largest torque over the cycle, S_z the starting factor
@@ -28,38 +28,43 @@ from trunnion.design.assessment.measures import (
 )
 from trunnion.design.assessment.response_curve import WHOLE, course
 from trunnion.driveline.dampers import Damper
-from trunnion.driveline.quantities import POWER, TORQUE, shown
+from trunnion.driveline.pendulums import CentrifugalPendulum
+from trunnion.driveline.quantities import LENGTH, POWER, TORQUE, shown
 
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 OF_DAMPERS = Rule(
     "P_W ≤ P_KV, the heat of the ring's slip over all orders", "the maker's sheet", "yours", "damper-heat"
 )
+OF_PENDULUMS = Rule("largest travel along the path ≤ its stop", "linear theory", "yours", "pendulum-travel")
 FORMULAS = {
     "nominal_torque": "T_N S_t ≤ T_KN",
     "maximum_torque": "T_peak S_t S_z ≤ T_Kmax",
     "vibratory_torque": "Σ S_f(f) T_f ≤ T_KW/S_t over all orders, S_f = √(f/10 Hz), at least 1",
     "heat_rating": "P_W S_t ≤ P_KV",
+    "largest_travel": OF_PENDULUMS.formula,
 }
 TAKEN = {
     "nominal_torque": "mean, by S_t",
     "maximum_torque": f"{WHOLE}, by S_t S_z",
     "vibratory_torque": "sum of amplitudes, each by its S_f: an upper bound",
     "heat_rating": "mean over the cycle, by S_t",
+    "largest_travel": WHOLE,
 }
 
 
+KINDS = {"heat_rating": POWER, "largest_travel": LENGTH}
 LIMITED = {"vibratory_torque": "T_KW/S_t"}
 """How a picture calls the limit, where it is no rating by itself."""
 
 
 def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
-    """Every rating that a coupling or a damper states."""
+    """Every rating that a coupling, a damper or a pendulum states."""
     for name, element in subject.line.parts:
         for key in element.ratings:
             rating = getattr(element, key)
             title, rule = rating_name(name, key), Rule(FORMULAS[key], SOURCE, "known", "din-740")
-            if isinstance(element, Damper):
-                rule = OF_DAMPERS
+            if isinstance(element, Damper | CentrifugalPendulum):
+                rule = OF_DAMPERS if isinstance(element, Damper) else OF_PENDULUMS
             if rating is None:
                 yield Check(title, Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):
@@ -70,7 +75,7 @@ def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterat
 
 def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str, rating: float, rule: Rule) -> Check:
     measure, response = of_rating(case.assembly, name, key, rating), case.answered
-    found, kind, words = case.largest(measure), POWER if key == "heat_rating" else TORQUE, rating_words(key)
+    found, kind, words = case.largest(measure), KINDS.get(key, TORQUE), rating_words(key)
     allowed = allowed_by(rating, key, service_factors(case.assembly, name)[0])
     by_order = np.abs(measure.parts(response)) ** (2 if measure.squared else 1)
     leads = key != "nominal_torque"
@@ -88,6 +93,8 @@ def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str
 
 def _factors(case: LoadCaseResponse, name: str, key: str, at: int) -> str:
     """Service factors that went in, S_f of the order that leads."""
+    if key == "largest_travel":
+        return ""
     temperature, starting = service_factors(case.assembly, name)
     said = f"S_t = {temperature:g}"
     if key == "maximum_torque":

@@ -16,6 +16,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.limits import SHIP_SHAFTS, OneLimit
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
@@ -193,6 +194,8 @@ def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure
     """Of a rating of a coupling, service factors included: those of the rated torque lower its limit."""
     c = spring_of(assembly, name)
     temperature, starting = service_factors(assembly, name)
+    element = assembly.line.elements[assembly.line.index(name)]
+    arm = element.arm if isinstance(element, CentrifugalPendulum) else 1.0
     reads: dict[str, tuple[Values, Parts]] = {
         "nominal_torque": (lambda r: np.abs(r.mean_torque[:, c]) * temperature, lambda r: 0 * r.torque[:, :, c]),
         "maximum_torque": (
@@ -203,6 +206,7 @@ def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure
             lambda r: r.rated_torque[:, c],
             lambda r: r.torque[:, :, c] * r.frequency_factor,
         ),
+        "largest_travel": (lambda r: r.twist_range.largest[:, c] * arm, lambda r: r.twist[:, :, c] * arm),
         "heat_rating": (lambda r: r.heat[:, c] * temperature, lambda r: r.heat_parts(c) * np.sqrt(temperature)),
     }
     return Measure(

@@ -56,7 +56,8 @@ def unlimited(assembly: Assembly) -> list[str]:
     """Springs whose torque nothing judges: no limit of torque, vibratory torque or stress, no rating."""
     keys = ("max_torque", "vibratory_torque", "max_stress", "ship_shaft")
     limited = {one.element for one in assembly.line.limits_by_element if one.key in keys}
-    rated = {name for name, e in assembly.line.parts if getattr(e, "maximum_torque", None) is not None}
+    rating = ("maximum_torque", "largest_travel")
+    rated = {name for name, e in assembly.line.parts if any(getattr(e, key, None) is not None for key in rating)}
     springs = [assembly.line.names[i] for c in assembly.topology.compliances for i in c.shafts]
     return [name for name in springs if name not in limited | rated]
 

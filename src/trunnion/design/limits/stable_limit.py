@@ -22,6 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.charts.building import family_for, strategy_named
@@ -98,6 +99,7 @@ def stable_limit(
         raise InputError("must be a whole number of steps, 2 or more", key="scan", value=scan)
     require_pixels(len(speed), int(scan) + 1)
     assembly, report_progress = assemble(line), progress or (lambda share: None)
+    refuse_pendulums(assembly.line, NOT_ALIKE)
     ends = float(speed.min()), float(speed.max())
     if ends[0] == ends[1]:
         ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)

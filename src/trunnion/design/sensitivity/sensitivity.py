@@ -31,6 +31,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
@@ -96,6 +97,7 @@ def sensitivity(
     """
     kinds = _kinds(of)
     stated = line if load_case is None else line.with_load(load_case)
+    refuse_pendulums(stated, NOT_ALIKE)
     problem = _SensitivityProblem(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
         load_case=load_case, unit=unit or speed_unit(line),

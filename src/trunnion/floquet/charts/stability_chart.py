@@ -18,6 +18,7 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
@@ -226,6 +227,7 @@ def _line_task(
     up.columns.put(corners, up.values[[0, -1, 0, -1]])
     require_steady_base(assembly, corners)
     require_tree(assembly, "charts do")
+    refuse_pendulums(assembly.line, NOT_ALIKE)
     family = LineFamily(assembly, across, up, base, twisted)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]

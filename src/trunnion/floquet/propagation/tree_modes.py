@@ -70,7 +70,7 @@ def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> Floq
     found."""
     if topo.still:  # the turn of what no spring holds is no mode by itself
         return None
-    line = _Line(topo, co, turns)
+    line = HillLine(topo, co, turns)
     start, shape = line.starts()
     found = line.followed(start, shape)
     if (lost := line.lost(found.value)).any():
@@ -96,7 +96,7 @@ class _Found:
         return _Found(*(np.concatenate([getattr(part, key) for part in parts], axis=-1) for key in keys))
 
 
-class _Line:
+class HillLine:
     """Its equations over a period, in a narrow and a wide set of harmonics."""
 
     def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction) -> None:
@@ -112,6 +112,11 @@ class _Line:
         self.trace = float((damping / mass).mean(axis=1).sum()) * self.time
         self.blocks = TreeHill(topo, matrices, np.zeros((1, len(topo.compliances))), np.array([self.rate]))
         self._mean = [_mean(part, matrices) for part in (matrices.stiffness, matrices.damping)]
+
+    @property
+    def mean_stiffness(self) -> Array:
+        """The symmetric part of K's mean over the period (n, n)."""
+        return self._mean[0]
 
     def starts(self) -> tuple[Complex, Complex]:
         """Exponents (mode,) of the mean matrices, of each pair one, and shapes (mode, n): damping between undamped

@@ -27,6 +27,7 @@ from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
+from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
@@ -48,8 +49,8 @@ if TYPE_CHECKING:
 
 LONG = 16
 """Unknowns from which on modes by Hill's blocks cost less than the propagator of all states."""
-NAMED, LONGEST = 150, 400
-"""Unknowns up to which the resonance of what grows is named, and up to which the propagator of all states is taken."""
+LONGEST = 400
+"""Unknowns up to which the propagator of all states is taken."""
 ROUNDING = 1e-11
 """Error of a propagator, for each unknown, that is rounding whatever tolerance is asked."""
 NEAR = 0.1
@@ -251,9 +252,13 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     if assembly.topology.size >= LONG and not assembly.topology.graph:
         modes = floquet_modes(assembly.topology, coefficients, turns)
-        found = None if modes is None else _of_modes(system, modes, forced, tolerance)
-        if found is not None:
-            return found
+        if modes is not None and (found := _of_modes(system, modes, forced, tolerance)) is not None:
+            if found.verdict not in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+                return found
+            # Only what grows belongs to a resonance.
+            motion = mode_motion(assembly.topology, coefficients, turns, complex(modes.exponent[0]))
+            named = _named(motion, found.verdict, system.rate, frequency, sources(assembly), turns)
+            return replace(found, resonance=named)
         if assembly.topology.size > LONGEST:
             raise ComputationError(
                 f"not all modes of {assembly.topology.size} unknowns are told apart at this speed, and matrices of the "
@@ -364,12 +369,11 @@ def _judge(
 def _of_modes(
     system: PeriodicLinearSystem, modes: FloquetModes, forced: Callable[[], LinearResponse], tolerance: float
 ) -> Stability | None:
-    """Of the modes of a long line; None where they are known less well than asked, or a name is asked of one."""
+    """Of the modes of a long line; None where they are known less well than asked."""
     radius, error = spectral_radius(modes.multiplier, modes.error)
     undamped = abs(modes.trace) < 1e-13 * system.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
-    named = verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and system.size <= NAMED
-    if named or modes.off > max(tolerance, ROUNDING * system.size):
+    if modes.off > max(tolerance, ROUNDING * system.size):
         return None
     return Stability(
         multipliers=modes.multiplier,

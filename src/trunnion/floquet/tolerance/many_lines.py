@@ -14,6 +14,7 @@ from trunnion.arrays import Array, Flags
 from trunnion.equations.chain_batch import chain_batch, chain_program, loaded_by_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import LineRates, fastest_cycles, steps_that_see
+from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
 from trunnion.floquet.charts.chart_families import quantities
@@ -50,6 +51,7 @@ class ManyLines:
         refuse_periodic_base(assembly, "put a ConstantSpeed in front", bends=False)
         require_steady_base(assembly, table)
         require_tree(assembly, "studies of many lines do")
+        refuse_pendulums(assembly.line, NOT_ALIKE)
         return cls(assembly, twisted, threads)
 
     @property

@@ -18,6 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import Parameter, Term
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.floquet.tongues.levels import DAMPING
 from trunnion.floquet.tongues.result import Tongue, Tongues
@@ -174,6 +175,7 @@ def stable_windows(
         raise InputError("must lie between 0 and 0.9", key="margin", value=margin, remedy="0.1 for 10 %")
     asked = rising_range(speeds)
     assembly = assemble(line)
+    refuse_pendulums(assembly.line, NOT_ALIKE)
     span = (asked[0] * (1 - margin), asked[1] * (1 + margin))
     task = task_of(assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues")
     found, columns, ended = searched(
@@ -229,6 +231,7 @@ def minimum_damping(
       ω₂ at 1.61816 rad/s) to 100; confirmed at 20 speeds.'
     """
     assembly = assemble(line)
+    refuse_pendulums(assembly.line, NOT_ALIKE)
     chosen = all_damping(assembly) if damping is None else damping
     if isinstance(chosen, str) and not any(word in chosen for word in DAMPING):
         raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')

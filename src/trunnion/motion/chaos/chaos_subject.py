@@ -57,12 +57,14 @@ def as_system(subject: System | Driveline, speed: float | str | None = None) -> 
     if isinstance(subject, Driveline):
         from trunnion.driveline.operating_speed import operating_speed
         from trunnion.equations.line_system import line_system
+        from trunnion.equations.released import refuse_pendulums
         from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
         from trunnion.equations.slip_clutches import refuse_slip_clutches
         from trunnion.equations.steady_base import refuse_dragged
 
         refuse_friction(subject, NOT_FOLLOWED, STAND_IN)
         refuse_slip_clutches(subject)
+        refuse_pendulums(subject)
         prepared = line_system(subject, operating_speed(subject, speed))
         refuse_dragged(prepared.assembly)
         if prepared.assembly.topology.free:

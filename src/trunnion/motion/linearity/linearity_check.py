@@ -114,6 +114,7 @@ class LinearityCheck(Result):
     stand_ins: tuple[LinearShaft, ...] = internal("shafts that stand for clutches")
     allowed: float = attribute("largest relative difference with which linear theory holds")
     passage: ResonancePassage | None = internal("what ``acceleration`` asked for")
+    unit: str = internal("of speeds in print")
 
     @property
     @computed(coordinate("spring"))
@@ -126,11 +127,6 @@ class LinearityCheck(Result):
     def speed(self) -> float:
         """Input speed [rad/s]."""
         return self.nonlinear.speed
-
-    @property
-    def unit(self) -> str:
-        """Unit that speeds are printed in: that of the line's description."""
-        return self.nonlinear.unit
 
     @property
     @computed(variable("order spring", "N*m"))
@@ -191,12 +187,8 @@ class LinearityCheck(Result):
     @property
     def findings(self) -> tuple[Finding, ...]:
         """What to read first, gravest first."""
-        return self.findings_in(self.unit)
-
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, gravest first, speeds in ``unit``."""
         said = self.linear.remarks if self.linear is not None else ()
-        return by_gravity([*_findings(self, unit), *said])
+        return by_gravity([*_findings(self), *said])
 
     def declared(self) -> Iterator[Variable | Attribute]:
         """What the fields hold, the passage and the ending."""
@@ -214,14 +206,10 @@ class LinearityCheck(Result):
         """Both amplitudes of every order of one spring; see ``pictures.motion.linearity``."""
         return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        rows = [f"linear and nonlinear response at {show_speed(self.speed, unit)}"]
+    def _lines(self) -> Iterator[str]:
+        yield f"linear and nonlinear response at {self.words.speed(self.speed)}"
         if self.nonlinear.outcome.ok:
-            rows += [self._of_spring(s) for s in range(len(self.springs))]
-        rows += [f"  {finding}" for finding in self.findings_in(unit)]
-        return "\n".join(rows)
+            yield from (self._of_spring(s) for s in range(len(self.springs)))
 
     def _of_spring(self, s: int) -> str:
         (linear, true), name = self.vibratory_torque[:, s], self.springs[s]
@@ -234,9 +222,6 @@ class LinearityCheck(Result):
             f"{abs(self.nonlinear_torque[k, s]):.4g} N m, apart by {100 * self.relative_difference[s]:.2g} % of the "
             "largest order"
         )
-
-    def __str__(self) -> str:
-        return self.describe()
 
 
 def _causes(result: LinearityCheck) -> Iterator[str]:
@@ -291,8 +276,8 @@ def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
             )
 
 
-def _findings(result: LinearityCheck, unit: str) -> Iterator[Finding]:
-    at = show_speed(result.speed, unit)
+def _findings(result: LinearityCheck) -> Iterator[Finding]:
+    at = result.words.speed(result.speed)
     if not result.nonlinear.outcome.ok:
         yield Finding(
             Gravity.CAUTION,
@@ -318,7 +303,7 @@ def _findings(result: LinearityCheck, unit: str) -> Iterator[Finding]:
             f"{one.frequency / (2 * np.pi):.4g} Hz.",
         )
     if result.passage is not None:
-        yield _passing(result.passage, unit)
+        yield _passing(result.passage, result.unit)
 
 
 def _sentence(result: LinearityCheck, at: str) -> Finding:
@@ -416,6 +401,7 @@ def linearity_check(
         stand_ins=stand_ins,
         allowed=float(allowed),
         passage=None if acceleration is None else _passed(loaded, linear_line, true.speed, acceleration),
+        unit=true.unit,
     )
 
 

@@ -38,10 +38,10 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse, ResponseCurves, largest_stable
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.curves import at_place, places_at
-from trunnion.results.described import Described
 from trunnion.results.fields import attribute, internal, labelled, variable
 from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.variables import Attribute, Variable
 from trunnion.results.verdict import Verdict
@@ -70,7 +70,7 @@ SWEPT, SAMPLES = 101, 1024
 
 
 @labelled
-class FrequencyResponse(ResponseCurves, Described):
+class FrequencyResponse(ResponseCurves, Result):
     """Half peak-to-peak over frequency by one method."""
 
     method: str = attribute("by which it was found")
@@ -117,9 +117,8 @@ class FrequencyResponse(ResponseCurves, Described):
         yield Variable("mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "mark", "rad/s")
         yield from ending(self.outcome)
 
-    def describe(self, unit: str | None = None) -> str:
-        """In words, its frequencies in ``rad/s``, ``rpm`` or ``Hz``, by default in its own ``unit``."""
-        unit = unit or self.unit
+    def __str__(self) -> str:
+        unit = self.unit
         if not len(self.frequency):
             return f"no frequency response by {self.method}: {self.outcome}"
         at, size = self.peak
@@ -135,7 +134,7 @@ class FrequencyResponse(ResponseCurves, Described):
 
 
 @labelled
-class ResponseComparison(ResponseCurves, Described):
+class ResponseComparison(ResponseCurves, Result):
     """Several methods side by side."""
 
     responses: Mapping[str, FrequencyResponse] = internal("by method, the others measured against the first")
@@ -172,9 +171,12 @@ class ResponseComparison(ResponseCurves, Described):
         for name, unit in (("frequency", "rad/s"), ("half_peak_to_peak", ""), ("stable", "")):
             yield Variable(name, np.concatenate([getattr(r, name) for r in found]), "point", unit)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The table as text."""
-        rows = self.table(unit=unit)
+    def in_unit(self, unit: str | None) -> ResponseComparison:
+        """The same with frequencies in ``unit``: "rpm", "Hz" or "rad/s"; None: as it is."""
+        return replace(self, responses={name: one.in_unit(unit) for name, one in self.responses.items()})
+
+    def __str__(self) -> str:
+        rows = self.table()
         widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
         return "\n".join(
             "  ".join(f"{cell:<{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows

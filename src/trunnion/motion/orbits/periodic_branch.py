@@ -23,6 +23,7 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.sliders import NOT_FOLLOWED, STAND_IN, refuse_friction
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.staged_line import StagedLine, staged_line
@@ -109,6 +110,7 @@ def system_over(
     description = line.line if isinstance(line, Assembly) else line
     refuse_friction(description, NOT_FOLLOWED, STAND_IN)
     refuse_slip_clutches(description)
+    refuse_pendulums(description)
     over_speed = parameter == "speed"
     prepared = line_system(line, first if over_speed and first > 0 else operating_speed(description, speed))
     refuse_dragged(prepared.assembly)

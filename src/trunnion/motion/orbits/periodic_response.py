@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.clutch_capacity import carries_static_torque, refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
@@ -37,13 +38,12 @@ from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contact
 from trunnion.motion.simulation.simulate import simulate_system
 from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier
-from trunnion.results.described import DescribedWithFindings
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
-from trunnion.results.speeds import show_speed
+from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
@@ -122,14 +122,20 @@ def compared(
 
 
 @labelled
-class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
+class PeriodicResponse(Result, OfShafts, IntegratedOrbit):
     """The periodic motion of a line at one speed; stability is that of this motion itself."""
 
     residual: float = internal("of the period, in units of the states' scale")
     line: LineSystem = internal("that moves")
     speed: float = variable("", "rad/s")
+    unit: str = internal("of speeds in print")
     comparison: LinearComparison | None = internal("with the linearisations, None where there is none", default=None)
     no_comparison: str = internal("why there is none", default="not asked for")
+
+    @classmethod
+    def of_line(cls, orbit: IntegratedOrbit, line: LineSystem, speed: float, **more: Any) -> PeriodicResponse:
+        """The orbit of a line as its response."""
+        return cls.of(orbit, line=line, speed=speed, unit=speed_unit(line.assembly.line), **more)
 
     @property
     def orbit(self) -> PeriodicOrbit:
@@ -217,9 +223,10 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         orders, torque = self.order_torque(highest)
         return orders, np.abs(torque)
 
-    def findings_in(self, unit: str) -> tuple[Finding, ...]:
-        """What to read first, speeds in ``unit``."""
-        return by_gravity(_findings(self, unit))
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What to read first, gravest first."""
+        return by_gravity(_findings(self))
 
     def declared(self) -> Iterator[Variable | Attribute]:
         """What the fields hold, the orders of torques and the ending."""
@@ -239,9 +246,8 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         """Torque amplitude of every order; see ``pictures.motion``."""
         return drawing(self, "plot_orders")(self, axes, highest=highest)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        at = show_speed(self.speed, unit or self.unit)
+    def __str__(self) -> str:
+        at = self.words.speed(self.speed)
         if not self.outcome.ok:
             return f"no periodic motion found at {at}: {self.outcome}"
         rows = [
@@ -313,7 +319,7 @@ def periodic_response(
         return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
     description = line.line if isinstance(line, Assembly) else line
     refuse_slip_clutches(description)
-    prepared = line_system(line, operating_speed(description, speed))
+    prepared = line_system(line, operating_speed(description, speed), swing=True)
     refuse_dragged(prepared.assembly)
     if prepared.assembly.topology.free:
         return _free(prepared, start, tolerance, settle)
@@ -324,7 +330,7 @@ def periodic_response(
     if not orbit.outcome.ok and prepared.sliders:
         refuse_overload(prepared.assembly, prepared.speed)
         orbit = replace(orbit, outcome=_slipping_on(prepared, periods) or orbit.outcome)
-    response = PeriodicResponse.of(orbit, line=prepared, speed=prepared.speed)
+    response = PeriodicResponse.of_line(orbit, prepared, prepared.speed)
     if not compare or not orbit.outcome.ok:
         return response
     try:
@@ -366,7 +372,7 @@ def _free(prepared: LineSystem, start: ArrayLike | None, tolerance: float, settl
             "does not apply (the line is free–free; beyond the balance of its loads its drives give "
             f"{orbit.values[-1]:.4g} N m at the input)"
         )
-        return PeriodicResponse.of(orbit, line=prepared, speed=prepared.speed, no_comparison=words)
+        return PeriodicResponse.of_line(orbit, prepared, prepared.speed, no_comparison=words)
     return _torque_driven(prepared, start, tolerance, settle)
 
 
@@ -391,7 +397,7 @@ def _torque_driven(prepared: LineSystem, start: ArrayLike | None, tolerance: flo
         words = f"{orbit.outcome.sentence}; {torques_in_words(prepared.assembly, row[0])}"
         orbit = replace(orbit, outcome=Outcome(False, orbit.outcome.kind, words))
     words = "does not apply (the line is free–free: its speed is a result, not given)"
-    return PeriodicResponse.of(orbit, line=prepared, speed=orbit.values[-1], no_comparison=words)
+    return PeriodicResponse.of_line(orbit, prepared, orbit.values[-1], no_comparison=words)
 
 
 def _continuum(line: LineSystem, orbit: IntegratedOrbit) -> tuple[StuckClutch, ...]:
@@ -450,8 +456,8 @@ def require_forced(line: LineSystem) -> None:
         )
 
 
-def _findings(result: PeriodicResponse, unit: str) -> list[Finding]:
-    at = show_speed(result.speed, unit)
+def _findings(result: PeriodicResponse) -> list[Finding]:
+    at = result.words.speed(result.speed)
     if not result.outcome.ok:
         return [Finding(Gravity.CAUTION, f"No periodic motion was found at {at}: {result.outcome}.")]
     found = []

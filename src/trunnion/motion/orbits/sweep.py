@@ -28,11 +28,11 @@ from trunnion.motion.orbits.periodic_branch import line_over
 from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
-from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
 from trunnion.results.speeds import frequency_unit, speed_factor
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.steady.shooting.shooting_problem import refuse_speed
@@ -61,16 +61,12 @@ class Sweep(ABC):
     periods: Integers = internal("run until then", axes="point")
     state: Array = internal("at phase zero", axes="point state")
     outcome: Outcome = internal("how it ended")
+    unit: str = internal("of speeds or frequencies in print")
 
     @property
     @abstractmethod
     def swings(self) -> Array:
         """Peak-to-peak (points, curves) of what is looked at."""
-
-    @property
-    @abstractmethod
-    def unit(self) -> str:
-        """What its values read in."""
 
     @property
     def up(self) -> bool:
@@ -87,20 +83,26 @@ class Sweep(ABC):
     def _direction(self) -> str:
         return "up" if self.up else "down"
 
-    def _head(self, name: str, what: str, unit: str) -> str:
-        low, high = self.value[[0, -1]] * speed_factor(unit)
+    def _head(self, name: str, what: str) -> str:
+        low, high = self.value[[0, -1]] * self._factor
         return (
-            f"sweep {self._direction} of {name}, {len(self.value)} {what} from {low:.6g} to {high:.6g} {unit}, "
+            f"sweep {self._direction} of {name}, {len(self.value)} {what} from {low:.6g} to {high:.6g} {self.unit}, "
             f"{int((~self.settled).sum())} without a motion of one period"
         )
 
-    def _jumps(self, unit: str) -> str:
-        factor = speed_factor(unit)
-        return f"jumps: {', '.join(f'{a * factor:.6g} → {b * factor:.6g}' for a, b in self.jumps) or 'none'}"
+    @property
+    def _factor(self) -> float:
+        """What values are multiplied with to read in the unit."""
+        return speed_factor(self.unit)
+
+    @property
+    def _jumps(self) -> str:
+        pairs = (f"{low * self._factor:.6g} → {high * self._factor:.6g}" for low, high in self.jumps)
+        return f"jumps: {', '.join(pairs) or 'none'}"
 
 
 @labelled
-class OscillatorSweep(Described, Displacement[Array], Sweep):
+class OscillatorSweep(Result, Displacement[Array], Sweep):
     """Steady motion of an oscillator over frequency; states are x and x′."""
 
     periods: Integers = variable("frequency", "", "run until the motion repeats")
@@ -129,24 +131,16 @@ class OscillatorSweep(Described, Displacement[Array], Sweep):
         """Half peak-to-peak over frequency; see ``pictures.frequency_response``."""
         return drawing(self, "plot")(self, axes, length=length, unit=unit)
 
-    @property
-    def unit(self) -> str:
-        """What its frequencies read in: Hz, or rad/s for equations of one's own."""
-        return frequency_unit(self.oscillator.speed_unit)
-
-    def describe(self, unit: str | None = None) -> str:
-        """What was found, frequencies in ``unit``."""
-        unit, best = unit or self.unit, int(np.nanargmax(self.peak_to_peak))
-        return (
-            f"{self._head(self.oscillator.name, 'frequencies', unit)}\n"
-            f"  largest half peak-to-peak {self.peak_to_peak[best] / 2:.6g} at "
-            f"{self.frequency[best] * speed_factor(unit):.6g}; {self._jumps(unit)}\n"
-            f"  contact: {', '.join(f'{self.contact.count(k)} {k}' for k in CONTACTS)}; {self.outcome}"
-        )
+    def _lines(self) -> Iterator[str]:
+        best = int(np.nanargmax(self.peak_to_peak))
+        yield self._head(self.oscillator.name, "frequencies")
+        largest, at = self.peak_to_peak[best] / 2, self.frequency[best] * self._factor
+        yield f"  largest half peak-to-peak {largest:.6g} at {at:.6g}; {self._jumps}"
+        yield f"  contact: {', '.join(f'{self.contact.count(k)} {k}' for k in CONTACTS)}; {self.outcome}"
 
 
 @labelled
-class LineSweep(Described, TorqueRange, Sweep):
+class LineSweep(Result, TorqueRange, Sweep):
     """Steady motions of a line over its speed, or the common frequency of excitation in time."""
 
     line: StagedLine = internal("that moves")
@@ -212,28 +206,20 @@ class LineSweep(Described, TorqueRange, Sweep):
         """Torque of one spring over speed; see ``pictures.frequency_response.line_sweep``."""
         return drawing(self, "plot")(self, axes, spring=spring, unit=unit)
 
-    @property
-    def unit(self) -> str:
-        """What its speeds, or frequencies, read in: the unit of the description."""
-        of_line = speed_unit(self.line.assembly.line)
-        return of_line if self.line.independent_variable == "speed" else frequency_unit(of_line)
-
-    def describe(self, unit: str | None = None) -> str:
-        """What was found, speeds in ``unit``, by default that of the description."""
-        unit = unit or self.unit
-        value = self.value * speed_factor(unit)
-        rows = []
+    def _lines(self) -> Iterator[str]:
+        value, unit = self.value * self._factor, self.unit
+        yield self._head(self.line.name, "steps")
         for e, name in enumerate(self.springs):
             swing = self.torque_peak_to_peak[:, e]
             best = int(np.nanargmax(swing)) if np.isfinite(swing).any() else 0
-            rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
+            yield f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}"
         for row in zip(*self.contacts, strict=True):
             kinds = [contact.contact for contact in row]
             counts = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
             worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
             impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
-            rows.append(f"  contact of {row[0].spring}: {counts}{impact if row[worst].impacts else ''}")
-        return "\n".join([self._head(self.line.name, "steps", unit), *rows, f"  {self._jumps(unit)}; {self.outcome}"])
+            yield f"  contact of {row[0].spring}: {counts}{impact if row[worst].impacts else ''}"
+        yield f"  {self._jumps}; {self.outcome}"
 
 
 def abrupt_changes(swing: Array) -> list[int]:
@@ -359,7 +345,8 @@ def _oscillator(o: PiecewiseOscillator, values: Array, start: ArrayLike | None, 
         refuse_unbounded(o.but(frequency=float(omega)))
     first = np.array([o.equilibrium(), 0.0] if start is None else start, dtype=float)
     lost = "the motion at ω = {:g} crosses too often in a period; raise damping"
-    return [OscillatorMap(float(omega), 1, o) for omega in values], first, lost, partial(OscillatorSweep, oscillator=o)
+    result = partial(OscillatorSweep, oscillator=o, unit=frequency_unit(o.speed_unit))
+    return [OscillatorMap(float(omega), 1, o) for omega in values], first, lost, result
 
 
 def _line(line: Driveline | Assembly, values: Array, start: ArrayLike | None, speed: float | str | None) -> Bench:
@@ -368,7 +355,9 @@ def _line(line: Driveline | Assembly, values: Array, start: ArrayLike | None, sp
         refuse_overload(prepared.assembly, prepared.speed_at(float(value)))
     maps = [LineMap(float(value), 1, prepared) for value in values]
     lost = "the motion at {:g} rad/s changes its stages too often in a period; raise damping"
-    return maps, start_state(prepared, start)[maps[0].kept], lost, partial(LineSweep, line=prepared)
+    unit = speed_unit(prepared.assembly.line)
+    unit = unit if prepared.independent_variable == "speed" else frequency_unit(unit)
+    return maps, start_state(prepared, start)[maps[0].kept], lost, partial(LineSweep, line=prepared, unit=unit)
 
 
 def rattle_index(

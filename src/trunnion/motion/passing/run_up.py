@@ -25,6 +25,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import drive_torques, given_shares, static_torque
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
@@ -36,11 +37,11 @@ from trunnion.motion.simulation.simulate import simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.curves import extremes_in
 from trunnion.results.counts import counted
-from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
 from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.steady.shooting.free_orbit import is_periodic, kept_speed_orbit
@@ -73,7 +74,7 @@ class SteadyResponse:
 
 
 @labelled
-class RunUp(Described):
+class RunUp(Result):
     """A passage at constant acceleration, turn by turn of the input, the last with the little that leaves none over.
 
     The speed of a free–free line is that of the whole line, whose vibration does not count; the quasi-static torque is
@@ -93,6 +94,7 @@ class RunUp(Described):
     )
     steady: SteadyResponse | None = internal("response in the same range, None if not asked for")
     ending: RunUpEnding | None = internal("of a free–free line, None where the speed is prescribed")
+    unit: str = internal("of speeds in print")
     ended: str = attribute("what a time limit left out, as a clause", default="")
 
     @property
@@ -106,11 +108,6 @@ class RunUp(Described):
     def ramp(self) -> float:
         """Time over which it sets in [s]."""
         return self.schedule.ramp
-
-    @property
-    def unit(self) -> str:
-        """Unit that speeds are printed in: that of the line's description."""
-        return self.simulation.unit
 
     @property
     def outcome(self) -> Outcome:
@@ -189,10 +186,8 @@ class RunUp(Described):
         """Envelope against the steady response; see ``pictures.motion.run_up``."""
         return drawing(self, "plot")(self, axes, shaft=shaft, unit=unit)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        rows = []
+    def __str__(self) -> str:
+        unit, rows = self.unit, []
         for i, name in enumerate(self.shafts):
             against = self._against(i)
             rows.append(
@@ -218,7 +213,7 @@ class RunUp(Described):
             rows.append("  no steady response beside it: clutches rub, which no branch follows; ask periodic_response")
         if self.ended:
             rows.append(f"  {self.ended}")
-        return "\n".join([head, *rows, f"  {self.outcome_in(unit)}"])
+        return "\n".join([head, *rows, f"  {self.outcome}"])
 
     def _against(self, i: int) -> str:
         """When the vibration of a shaft is largest, where that tells, and the steady one beside it."""
@@ -286,6 +281,7 @@ def run_up(
     if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
         raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)
     refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
+    refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     require_share(prepared.assembly)
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)
@@ -338,6 +334,7 @@ def run_up(
         inertia_torque=np.abs(_inertia_torque(prepared.assembly)) * asked.acceleration,
         steady=found,
         ending=ending,
+        unit=run.unit,
         ended=ended,
     )
 

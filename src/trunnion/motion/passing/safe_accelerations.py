@@ -17,12 +17,13 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
-from trunnion.results.described import Described
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
-from trunnion.results.speeds import about_span, acceleration_span, rounded_speed, show_acceleration
+from trunnion.results.result import Result
+from trunnion.results.speeds import about_span, acceleration_span, show_acceleration
 
 REACHED = "reached"
 EDGE = 0.01
@@ -45,7 +46,7 @@ class TrialRunUp:
 
 
 @labelled
-class SafeAccelerations(Described):
+class SafeAccelerations(Result):
     """How fast and how slowly a line may pass a speed range."""
 
     trials: tuple[TrialRunUp, ...] = members(
@@ -103,13 +104,11 @@ class SafeAccelerations(Described):
     @property
     @computed(attribute(name="says"))
     def sentence(self) -> str:
-        """What may be done, speeds in the unit of the line's description."""
-        return self.describe()
+        """What may be done."""
+        return str(self)
 
-    def describe(self, unit: str | None = None) -> str:
-        """What may be done, speeds in ``unit``, by default that of the line's description."""
-        unit = unit or self.unit
-        stretch, last = self.stretch, rounded_speed(self.last, unit)
+    def __str__(self) -> str:
+        unit, stretch, last = self.unit, self.stretch, self.words.rounded(self.last)
         if stretch:
             return "; ".join([self._safe(last, unit), *self._beside(unit), *self._ended(unit)])
         span = acceleration_span(self.trials[0].acceleration, self.trials[-1].acceleration, unit)
@@ -204,6 +203,7 @@ def safe_accelerations(
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
     refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
+    refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     limits = _limits(limit, prepared.shafts)
     low, high = accelerations

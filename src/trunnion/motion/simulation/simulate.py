@@ -260,7 +260,7 @@ def simulate_line(
     profile = speed
     if not isinstance(profile, SpeedProfile):
         profile = SpeedProfile([0.0], [operating_speed(description, profile)])
-    prepared = line_system(line, profile.speed[0], leaves=True, slips=True)
+    prepared = line_system(line, profile.speed[0], leaves=True, slips=True, swing=True)
     wanted = None if times is None else rising_times(times, 0.0)
     if turns is not None:
         if duration is not None:

@@ -20,14 +20,12 @@ from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import Trajectory, joined
-from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.of_systems import about, ending, states
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
 from trunnion.results.result import Result
-from trunnion.results.speeds import rounded_speed
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.systems.system import System
 
@@ -229,14 +227,9 @@ class OfShafts(ABC):
         """Names of the shafts; massless shafts in series count as one."""
         return self.line.shafts
 
-    @property
-    def unit(self) -> str:
-        """Unit that speeds are printed in: that of the line's description."""
-        return speed_unit(self.line.assembly.line)
-
 
 @labelled
-class LineSimulation(Described, Simulation, OfShafts):
+class LineSimulation(Result, Simulation, OfShafts):
     """A motion of a line.
 
     rotation (points, coordinate): deviation [rad] from the uniform rotation of ``profile``, and rate [rad/s]; twist
@@ -249,6 +242,7 @@ class LineSimulation(Described, Simulation, OfShafts):
     line: LineSystem = internal("that moved")
     profile: SpeedProfile = internal("of the input speed")
     pieces: tuple[Simulation, ...] = internal("one motion per straight piece of the speed profile")
+    unit: str = internal("of speeds in print")
 
     @classmethod
     def of(cls, line: LineSystem, profile: SpeedProfile, pieces: Sequence[Simulation]) -> Self:
@@ -257,7 +251,8 @@ class LineSimulation(Described, Simulation, OfShafts):
         run = one if len(pieces) == 1 else joined([piece.trajectory for piece in pieces])
         shared: dict[str, Any] = {name: getattr(last, name) for name in Simulation.__dataclass_fields__}
         shared |= {"trajectory": run, "times": np.array([last.end])}
-        return cls(**shared, line=line, profile=profile, pieces=tuple(pieces))
+        unit = speed_unit(line.assembly.line)
+        return cls(**shared, line=line, profile=profile, pieces=tuple(pieces), unit=unit)
 
     def motion_at(self, time: ArrayLike) -> LineMotion:
         """Twists, torques and rotations at times (m,) of the run."""
@@ -422,26 +417,25 @@ class LineSimulation(Described, Simulation, OfShafts):
         """Torque spectrum over time or speed; see ``pictures.motion.map_of_orders``."""
         return drawing(self, "plot_order_map")(self, axes, shaft=shaft, window=window, highest=highest, unit=unit)
 
-    def describe(self, unit: str | None = None) -> str:
-        """The result in a few lines, speeds in ``unit``, by default that of the line's description."""
-        rows = [
-            f"  {name}: torque {low:.6g} … {high:.6g} N m"
-            for name, low, high in zip(self.shafts, self.torque_extremes.low, self.torque_extremes.high, strict=True)
-        ]
-        head = f"motion of {self.system.name} over {self.end:.6g} s ({self.turns:.6g} turns): "
-        own = [f"  {self._turning(unit or self.unit)}"] if self.starts_free else []
-        return "\n".join([f"{head}{self.steps} steps", *own, *rows, *self._slips(), f"  {self.outcome}"])
+    def _lines(self) -> Iterator[str]:
+        yield f"motion of {self.system.name} over {self.end:.6g} s ({self.turns:.6g} turns): {self.steps} steps"
+        if self.starts_free:
+            yield f"  {self._turning}"
+        extremes = self.torque_extremes
+        for name, low, high in zip(self.shafts, extremes.low, extremes.high, strict=True):
+            yield f"  {name}: torque {low:.6g} … {high:.6g} N m"
+        yield from self._slips()
+        yield f"  {self.outcome}"
 
-    def _slips(self) -> list[str]:
+    def _slips(self) -> Iterator[str]:
         """How far every slip clutch slipped, and what heat that was."""
-        if not (self.clutches and self.is_dense):
-            return []
-        return [
-            f"  {name}: slips by {np.rad2deg(angle):.4g} deg, {heat:.4g} J of heat" if angle else f"  {name}: sticks"
-            for name, heat, angle in zip(self.clutches, *self.slip_heat, strict=True)
-        ]
+        if self.clutches and self.is_dense:
+            for name, heat, angle in zip(self.clutches, *self.slip_heat, strict=True):
+                slips = f"slips by {np.rad2deg(angle):.4g} deg, {heat:.4g} J of heat"
+                yield f"  {name}: {slips if angle else 'sticks'}"
 
-    def _turning(self, unit: str) -> str:
+    @property
+    def _turning(self) -> str:
         """How fast a free–free line turned."""
         speed, last = self.whole.turns[1], self.whole.last_turn()[1]
         if not len(speed):
@@ -450,6 +444,6 @@ class LineSimulation(Described, Simulation, OfShafts):
         if back is not None:
             return f"the line is free–free: it turns back at t = {back:.4g} s"
         return (
-            f"the line is free–free: it turns at {rounded_speed(float(speed[0]), unit)} in its first turn and at "
-            f"{rounded_speed(last, unit)} in its last"
+            f"the line is free–free: it turns at {self.words.rounded(float(speed[0]))} in its first turn and at "
+            f"{self.words.rounded(last)} in its last"
         )

@@ -122,8 +122,9 @@ class Transient(Result):
             return np.array([self.end])
         return np.linspace(self.start_time, self.end, int(np.clip(PER_STEP * self.steps, FEWEST, MOST)) + 1)
 
-    def at(self, time: ArrayLike) -> Moving:
-        """Twists, torques, angles and speeds at times (m,) of the run, to about ten times the tolerance."""
+    def at(self, time: ArrayLike, *, applied: bool = True) -> Moving:
+        """Twists, torques, angles and speeds at times (m,) of the run, to about ten times the tolerance; with what is
+        ``applied`` to disks, or zeros in its place."""
         times = np.atleast_1d(np.asarray(time, dtype=float))
         order = np.argsort(times, kind="stable")
         rising = times[order]
@@ -132,7 +133,7 @@ class Transient(Result):
         parts, low = [], 0
         for piece, high in zip(self.pieces, places, strict=True):
             if high > low:
-                parts.append(_moving(piece, rising[low:high]))
+                parts.append(_moving(piece, rising[low:high], applied))
             low = high
         whole = [np.concatenate(columns) for columns in zip(*parts, strict=True)]
         back = np.argsort(order, kind="stable")
@@ -143,7 +144,7 @@ class Transient(Result):
 
     def torque_at(self, time: ArrayLike) -> Array:
         """Torque (m, spring) [N m] at times (m,) of the run."""
-        return self.at(time).torque
+        return self.at(time, applied=False).torque
 
     @cached_property
     def moving(self) -> Moving:
@@ -214,7 +215,7 @@ class Transient(Result):
         return InputRotation(self.profile, self.end, self.cuts, self._mean_deviation)
 
     def _mean_deviation(self, times: Array) -> tuple[Array, Array]:
-        topo, found = self.line.assembly.topology, self.at(times)
+        topo, found = self.line.assembly.topology, self.at(times, applied=False)
         if topo.free:
             share = self.line.shares(self.line.untwisted(self.line.assembly.table(1, self.line.speed)).inertia[0])
             angle, speed = found.angle[:, topo.firsts] @ share, found.speed[:, topo.firsts] @ share
@@ -382,9 +383,10 @@ class Transient(Result):
         )
 
 
-def _moving(piece: Piece, times: Array) -> Moving:
+def _moving(piece: Piece, times: Array, acting: bool) -> Moving:
     motion, speed = piece.line.moving(times, piece.trajectory.at(times), piece.numbers, piece.regime_at(times))
     angle = station_angles(piece, times, motion.rotation)
     applied, places = np.zeros(speed.shape), [one.station for one in piece.acting]
-    np.add.at(applied.T, places, applied_torques(piece, times, angle, speed).T)
+    if acting:
+        np.add.at(applied.T, places, applied_torques(piece, times, angle, speed).T)
     return Moving(motion.twist, motion.torque, angle, speed, applied)

@@ -15,6 +15,7 @@ from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCro
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import refuse_curves
+from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
@@ -95,6 +96,7 @@ def transient(
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
+    refuse_pendulums(description)
     prepared = line_system(changed, abs(begin), leaves=True, slips=True)
     refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
     if not prepared.assembly.topology.free and not begin > 0:

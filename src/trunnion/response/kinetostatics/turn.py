@@ -10,10 +10,11 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import known_speed, speed_unit
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.kinematics import Rotations
+from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.response.kinetostatics.bearings import Bearings
 from trunnion.response.kinetostatics.chain import KinematicChain, chain
@@ -73,7 +74,7 @@ def kinetostatics(
     ComputationError : shafts so soft that the twist does not settle.
     """
     if speed is None:
-        speed = (line.operation.speed if line.operation else None) or 1.0
+        speed = known_speed(line) or 1.0
     drive_speed = quantity(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
@@ -86,6 +87,9 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
+    refuse_pendulums(
+        line, "swings with the orders of the rotation, and a turn is quasi-static", "leave it out of the turn"
+    )
     train = chain(line, _lengths(line, lengths), branch, drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)

@@ -15,9 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Complex
-from trunnion.driveline.elements import Disk
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.harmonics import disk_torques
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.loads import mean_loads
 from trunnion.equations.slip_capacity import stations_beyond, sticking_clutches
 from trunnion.response.orders.result import OrderResponse
@@ -76,16 +77,16 @@ def clutch_torque(assembly: Assembly, name: str) -> ClutchTorque | None:
     group = topo.group_of(link)
     members = [s for s, station in enumerate(topo.stations) if station.group == group]
     beyond = set(stations_beyond(topo, link).tolist())
-    inertia = assembly.coefficients(assembly.table(1, 1.0), free_play=True, any_frequency=True).inertia[0]
+    numbers = assembly.coefficients(assembly.table(1, 1.0), free_play=True, any_frequency=True)
     for sense, side in ((1, [s for s in members if s in beyond]), (-1, [s for s in members if s not in beyond])):
-        found = _told_by(assembly, side, link, sense, inertia)
+        found = _told_by(assembly, side, link, numbers)
         if found is not None:
             return ClutchTorque(assembly, name, clutch.torque * clutch.last_share, sense, *found, tuple(side), link)
     return None
 
 
 def _told_by(
-    assembly: Assembly, side: list[int], link: int, sense: int, inertia: Array
+    assembly: Assembly, side: list[int], link: int, numbers: LineCoefficients
 ) -> tuple[float, tuple[int, float], tuple[tuple[int, float], ...]] | None:
     """Inertia, point and springs of a side; None where it does not tell."""
     topo = assembly.topology
@@ -95,10 +96,10 @@ def _told_by(
     laws = zip(topo.joints, joint_laws(assembly, assembly.table(1)), strict=True)
     if any(s in side and law.nonuniform for s, law in laws):
         return None
-    for s, i in topo.disks:
-        disk = assembly.line.elements[i]
-        if s in side and isinstance(disk, Disk) and (disk.excitation or disk.viscous_load or disk.quadratic_load):
-            return None
+    shaken = {torque.station for torque in disk_torques(assembly) if torque.acts}
+    if any(s in shaken or numbers.viscous[0, s] or numbers.quadratic[0, s] for s in side):
+        return None
+    inertia = numbers.inertia[0]
     faster = {s: float(topo.speed_ratio[s] / topo.speed_ratio[link]) for s in side}
     moment = sum(float(inertia[s]) * faster[s] ** 2 for s in side)
     at = next(((k, faster[s]) for k, (s, _) in enumerate(topo.points) if s in side), None)

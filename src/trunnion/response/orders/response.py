@@ -28,12 +28,14 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import disk_torques, line_harmonics
+from trunnion.equations.loads import load_slope
 from trunnion.equations.steady_base import has_joint_angles, has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import show_speed
 from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.amplitudes import OrderSpectrum
@@ -44,7 +46,7 @@ if TYPE_CHECKING:
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 TORQUE_LIMITS = ("vibratory_torque", "transient_vibratory_torque", "max_torque")
-NEAR_ENOUGH = 1e-9
+NEAR_ENOUGH, ROUNDING = 1e-9, 1e-12
 """Orders asked for are found within this."""
 
 
@@ -243,6 +245,7 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
             "about the motion of its rigid shafts, right to first order in what joints and excitations force.",
         )
     yield from _wound_up(assembly, spectrum.speed)
+    yield from _falls_away(assembly, spectrum)
     yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)
     yield from left_out("order_response", assembly.line)
@@ -262,6 +265,26 @@ def _wound_up(assembly: Assembly, speed: Array) -> Iterator[Finding]:
         f"{100 * abs(topo.apart[e] / near):.3g} % apart: its slip winds the line up by {most.max():.4g} N m, most in "
         f"{shaft_names(assembly)[int(most.argmax())]}, whatever the load; mean torques count it.",
     )
+
+
+def _falls_away(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
+    """A free–free line whose torques drive away what turns faster than the mean speed."""
+    topo = assembly.topology
+    if not topo.free or topo.graph:
+        return
+    co = assembly.coefficients(assembly.table(len(spectrum.speed), spectrum.speed), any_frequency=True)
+    slope = load_slope(topo, co.viscous, co.quadratic, spectrum.speed) * topo.mean_speeds**2
+    total = slope.sum(axis=1)
+    worst = int(total.argmin())
+    if total[worst] < -ROUNDING * np.abs(slope).max():
+        names = [name for (s, _), (name, _) in zip(topo.disks, topo.rotors, strict=True) if slope[worst, s] < 0]
+        yield Finding(
+            Gravity.CAUTION,
+            f"Nothing keeps the mean speed, at {show_speed(float(spectrum.speed[worst]), speed_unit(assembly.line))} "
+            f"least: what resists falls with it by {-total[worst]:.4g} N m s/rad at the input "
+            f"({', '.join(dict.fromkeys(names))}). Give the drive a torque that falls more steeply: the gain of a "
+            "controller, a smaller slip.",
+        )
 
 
 def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:

@@ -87,7 +87,7 @@ def periodic_steady_state(line: Driveline, speed: float, *, tolerance: float = T
     InputError : torques that do not balance.
     ComputationError : no motion found.
     """
-    prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed)
+    prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed, linearised=True)
     refuse_dragged(prepared.assembly)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
     orbit = kept_speed_orbit(prepared, tolerance=tolerance)

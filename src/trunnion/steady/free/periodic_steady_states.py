@@ -219,7 +219,7 @@ class SteadyStatesBySpeed:
         """Why there is no balance of smooth equations for all speeds; empty where there is."""
         if mean_by_load(self.line) and loaded_by_speed(assemble(unexcited(self.line))):
             return "the mean of its clutch changes with the speed besides"
-        if line_system(self.unexcited, 1.0).system.regimes is not None:
+        if line_system(self.unexcited, 1.0, linearised=True).system.regimes is not None:
             return "it has stages or play besides"
         return ""
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Integers
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import (
     BaseOfExcitation,
@@ -174,7 +175,8 @@ class _SpectrumProblem:
         self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
         self.twisted = statically_twisted
-        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:]))
+        pendulums = any(isinstance(element, CentrifugalPendulum) for element in assembly.line.elements)
+        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:])) and not pendulums
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers
@@ -285,7 +287,7 @@ class _SpectrumProblem:
                 for group, at in zip(groups, nu, strict=True)
             ]
             right = np.stack([force[:, 0] for force, _ in sources])
-            y = respond(topo, matrices, co.loss, nu, right, linearised=self.linearised)
+            y = respond(topo, matrices, co.loss, nu, right, lags=co.lags, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
                 if topo.free:  # driven away by a constant torque, without bound

@@ -2,18 +2,22 @@
 
     (−w² M + iw C + K + i sgn(w) H) Y = g,   w = KΩ + ν,
 
-with H the part of the stiffness that damps whatever the frequency. What stands still, w = 0, is a constant torque: it
-drives a free–free line away, against the loads that go with its speed or else against its inertia, and twists
-it. The matrix has the pattern of the line's tree, so elimination from the leaves solves all orders and speeds together;
-where that loses figures, bands with exchange of pivots do.
+with H the part of the stiffness that damps whatever the frequency. Of a machine whose torque lags behind its speed C
+has k/(1 + iw/w_c) in place of its slope k. What stands still, w = 0, is a constant torque: it drives a free–free line
+away, against the loads that go with its speed or else against its inertia, and twists it. The matrix has the pattern of
+the line's tree, so elimination from the leaves solves all orders and speeds together; where that loses figures, bands
+with exchange of pivots do.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.aligned import at_rest, rigid_rotation
+from trunnion.equations.line_coefficients import TorqueLag
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
@@ -29,12 +33,20 @@ SINGULAR = 1e-13
 
 
 def straight_response(
-    topo: Topology, matrices: TreeMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
+    topo: Topology,
+    matrices: TreeMatrices,
+    loss: Array,
+    frequency: Array,
+    right: Complex,
+    *,
+    lags: Sequence[TorqueLag] = (),
+    linearised: bool = False,
 ) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad]. NaN where the line resonates without damping. Of a
-    free–free line and is driven away the deviations are those beside what it turns as a whole.
+    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad], ``lags`` of what they have as damping. NaN where
+    the line resonates without damping. Of a free–free line and is driven away the deviations are those beside what it
+    turns as a whole.
     With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
     orders, cases, n = right.shape
@@ -47,6 +59,10 @@ def straight_response(
     three = matrices.stiffness, matrices.damping, matrices.mass
     own = dynamic(*(part.own[..., 0] for part in three))
     coupling = dynamic(*(part.down[..., 0] for part in three))
+    for lag in lags:
+        place = int(topo.unknown_of[lag.station])
+        if place >= 0:
+            own[place] += topo.relative_ratios[lag.station] ** 2 * lag.added(frequency)
     for e, (far, near) in enumerate(topo.ends):
         if not loss[:, e].any():
             continue
@@ -75,7 +91,14 @@ def straight_response(
 
 
 def coupled_response(
-    topo: Topology, matrices: LineMatrices, loss: Array, frequency: Array, right: Complex, *, linearised: bool = False
+    topo: Topology,
+    matrices: LineMatrices,
+    loss: Array,
+    frequency: Array,
+    right: Complex,
+    *,
+    lags: Sequence[TorqueLag] = (),
+    linearised: bool = False,
 ) -> Complex:
     """The same as ``straight_response`` where masses couple unknowns: dense, order by order and speed by speed."""
     mass, damping, stiffness = (part[:, 0] for part in (matrices.mass, matrices.damping, matrices.stiffness))
@@ -83,6 +106,9 @@ def coupled_response(
     w = frequency[..., None, None]
     stiffness = np.where(w == 0, at_rest(topo, stiffness), stiffness) if topo.dragged else stiffness
     matrix = stiffness - w**2 * mass + 1j * (w * damping + np.sign(w) * lossy)
+    for lag in lags:
+        turning = topo.turning[lag.station]
+        matrix = matrix + lag.added(frequency)[..., None, None] * np.outer(turning, turning)
     if not linearised:
         return _one_by_one(matrix, right)
     # To first order about the first case, whose matrix stands for all.

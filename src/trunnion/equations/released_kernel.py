@@ -1,14 +1,25 @@
 # mypy: ignore-errors
 # Types are inferred by the compiler of this code, from its arguments.
-"""The nonlinear right-hand side of lines with slip clutches, on top of that of any line.
+"""The nonlinear right-hand side of lines with slip clutches and centrifugal pendulums, on top of that of any line.
 
-``line_kernel`` knows a slip clutch as a compliance without stiffness or damping. Here its torque is added. It is T(v)
-against the slip v while it slips, and while it sticks what keeps v where it is: with w₀ = v̇ without any of their
-torques and A what a unit torque of one takes off the v̇ of another, Σ A T = w₀ over those that stick.
+``line_kernel`` knows both as compliances without stiffness or damping. Here their torques are added.
 
-Numbers of the clutches stand last among those of the line, in front of the room to work in; the last two of them are
-how many clutches there are and how many numbers they take. Tangents are those without their torques: nothing that
-needs tangents takes such lines.
+A clutch carries T(v) against the slip v while it slips, and while it sticks what keeps v where it is: with w₀ = v̇
+without any of their torques and A what a unit torque of one takes off the v̇ of another, Σ A T = w₀ over those that
+stick.
+
+A pendulum of mass m at S along its path, X(S) the square of its distance from the axis and G = √(X − ¼X′²), on a host
+of rotation θ (Denman 1992), its damper F = c S′:
+
+    m (S″ + G θ″ − ½X′θ′²) = −F
+    torque on the host: −m (X θ″ + G S″ + X′S′θ′ + G′S′²).
+
+S is c = R + r times the twist of its ring against the host, and S″ is put into the torque, so that m(X − G²) counts as
+inertia of the host.
+
+Numbers of pendulums and clutches stand last among those of the line, in front of the room to work in; the last three
+of them are how many pendulums and clutches there are and how many numbers they take together. Tangents are differences
+of fourth order.
 
 This file imports nothing of the package: it is compiled from a copy in the cache folder.
 """
@@ -31,6 +42,7 @@ from trunnion_kernels.line_kernel import (
     MEAN,
     NEAR,
     NEAR_COORDINATE,
+    OMEGA,
     PER_COMPLIANCE,
     PER_STATION,
     REFERENCE,
@@ -55,6 +67,12 @@ _JUMP = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64,
 # shares over time has, and where that begins behind these: time and share of each.
 OF, HOLDS, SLIDES, OVER, STEP, POINTS, TABLE = range(7)
 PER_CLUTCH = 7
+# Per pendulum: its compliance, m, R, r, whether its path is an epicycloid, and c of S′ [N s/m].
+MASS, RADIUS, CURVATURE, EPICYCLOID, DRAG = range(1, 6)
+PER_PENDULUM = 6
+STEP_SIZE = 1e-3
+"""Of differences, in units of 0.01 rad and of that times the speed: 1e-12 of truncation and of rounding."""
+MOVES, WEIGHTS = (1.0, -1.0, 2.0, -2.0), (8.0, -8.0, -1.0, 1.0)
 MOST = 4
 """Clutches of a line."""
 REST = 1e-9
@@ -94,6 +112,74 @@ def _call(typing, address, t, x, p, regime, out):
 def clutches(p, scratch):
     """Number of clutches and where their numbers begin."""
     return int(p[scratch - 2]), scratch - int(p[scratch - 1])
+
+
+@njit(cache=True, nogil=True)
+def path(at, travel, p):
+    """X, X′, G and G′ of the path of the pendulum whose numbers stand at ``at``."""
+    big, small = p[at + RADIUS], p[at + CURVATURE]
+    if p[at + EPICYCLOID] != 0.0:
+        square, arm = big / small, big + small
+        bend = square + square * square
+        along = math.sqrt(arm * arm - bend * travel * travel)
+        return arm * arm - square * travel * travel, -2.0 * square * travel, along, -bend * travel / along
+    c, s = math.cos(travel / small), math.sin(travel / small)
+    return big * big + small * small + 2.0 * big * small * c, -2.0 * big * s, small + big * c, -big / small * s
+
+
+@njit(cache=True, nogil=True)
+def pendulum(a, p, scratch, count):
+    """Where numbers of pendulum ``a`` stand, its compliance's place, S, S′ and the host's speed."""
+    _, first = clutches(p, scratch)
+    at = scratch - 3 - (int(p[scratch - 3]) - a) * PER_PENDULUM
+    compliance, _, _, _ = places(p)
+    q = compliance + int(p[at + OF]) * PER_COMPLIANCE
+    near, far = int(p[q + NEAR]), int(p[q + FAR])
+    arm, v = p[at + RADIUS] + p[at + CURVATURE], scratch + count
+    travel, rate = arm * (p[scratch + far] - p[scratch + near]), arm * (p[v + far] - p[v + near])
+    return at, q, travel, rate, p[v + near]
+
+
+@njit(cache=True, nogil=True)
+def swing_hosts(p, scratch, n, count, out):
+    """What pendulums put on their hosts, into the inertias and accelerations in the room to work and into ``out``."""
+    v, r, r1 = scratch + count, scratch + 2 * count, scratch + 3 * count
+    inertia, acceleration = scratch + 5 * count, scratch + 5 * count + 6 * n
+    for a in range(int(p[scratch - 3])):
+        at, q, travel, rate, turning = pendulum(a, p, scratch, count)
+        near, i = int(p[q + NEAR]), int(p[q + NEAR_COORDINATE])
+        if i < 0:
+            continue
+        x, x1, g, g1 = path(at, travel, p)
+        mass = p[at + MASS]
+        torque = g * p[at + DRAG] * rate
+        torque -= mass * (0.5 * g * x1 * turning * turning + x1 * rate * turning + g1 * rate * rate)
+        more, reference = mass * (x - g * g), int(p[HEAD + near * PER_STATION + REFERENCE])
+        pushed = torque - more * p[r1 + near] * p[v + reference] ** 2
+        before = p[acceleration + i]
+        felt = p[inertia + i] + more * p[r + near] ** 2
+        p[acceleration + i] = (p[inertia + i] * before + p[r + near] * pushed) / felt
+        p[inertia + i] = felt
+        out[n + i] += p[acceleration + i] - before
+
+
+@njit(cache=True, nogil=True)
+def swing(p, scratch, n, count, alpha, out):
+    """Accelerations of pendulums, by those of their hosts in ``out``; their torques among those of the shafts."""
+    v, r, r1 = scratch + count, scratch + 2 * count, scratch + 3 * count
+    shaft = scratch + 5 * count + 7 * n
+    for a in range(int(p[scratch - 3])):
+        at, q, travel, rate, turning = pendulum(a, p, scratch, count)
+        near, i, j = int(p[q + NEAR]), int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+        reference = int(p[HEAD + near * PER_STATION + REFERENCE])
+        host = p[HEAD + reference * PER_STATION + MEAN] * alpha + (out[n + i] if i >= 0 else 0.0)
+        host = p[r + near] * host + p[r1 + near] * p[v + reference] ** 2
+        x, x1, g, g1 = path(at, travel, p)
+        mass, arm = p[at + MASS], p[at + RADIUS] + p[at + CURVATURE]
+        along = 0.5 * x1 * turning * turning - g * host - p[at + DRAG] * rate / mass
+        far = int(p[HEAD + int(p[q + FAR]) * PER_STATION + REFERENCE])
+        out[n + j] = host + along / arm - p[HEAD + far * PER_STATION + MEAN] * alpha
+        p[shaft + int(p[at + OF])] = -mass * (x * host + g * along + x1 * rate * turning + g1 * rate * rate)
 
 
 @njit(cache=True, nogil=True)
@@ -204,38 +290,71 @@ def stages_of(regime, p, first, number, stage):
         stage[c] = regime // int(p[first + c * PER_CLUTCH + STEP]) % 3
 
 
-@cfunc(_RATE, cache=True)
-def slipping_line(t, y_, p_, k, regime, out_):
-    """Rates of the unknowns; the torques of the clutches stand in the room to work in, among those of the shafts."""
-    refused = _rate(t, y_, p_, k, regime, out_)
+@njit(cache=True, nogil=True)
+def rates(t, x, p, regime, out):
+    """Rates of a state x, as an array; torques of clutches and pendulums stand in the room to work in, among those of
+    the shafts."""
+    refused = _rate(t, _pointer(x), _pointer(p), 0, regime, _pointer(out))
     if refused != 0:
         return refused
-    head = carray(p_, (HEAD,))
-    n, count, joined = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES])
-    compliance, _, _, scratch = places(head)
-    p, out = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,)), carray(out_, (2 * n,))
+    n, count = int(p[UNKNOWNS]), int(p[STATIONS])
+    compliance, _, _, scratch = places(p)
     _, _, alpha = course(t, p)
-    slip, without, mutual = np.empty(MOST), np.empty(MOST), np.empty((MOST, MOST))
-    stage, torque = np.empty(MOST, dtype=np.int64), np.zeros(MOST)
+    swing_hosts(p, scratch, n, count, out)
     number, first = clutches(p, scratch)
-    effects(p, scratch, n, count, alpha, slip, without, mutual)
-    stages_of(regime, p, first, number, stage)
-    sliding(t, p, first, number, stage, slip, torque)
-    solved(stage, torque, without, mutual, number)
-    r, inertia, shaft = scratch + 2 * count, scratch + 5 * count, scratch + 5 * count + 7 * n
-    for c in range(number):
-        e = int(p[first + c * PER_CLUTCH + OF])
-        q = compliance + e * PER_COMPLIANCE
-        i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
-        p[shaft + e] = torque[c]
-        out[n + j] -= torque[c] / p[inertia + j]
-        if i >= 0:
-            out[n + i] += p[r + int(p[q + NEAR])] * torque[c] / p[inertia + i]
+    if number > 0:
+        slip, without, mutual = np.empty(MOST), np.empty(MOST), np.empty((MOST, MOST))
+        stage, torque = np.empty(MOST, dtype=np.int64), np.zeros(MOST)
+        effects(p, scratch, n, count, alpha, slip, without, mutual)
+        stages_of(regime, p, first, number, stage)
+        sliding(t, p, first, number, stage, slip, torque)
+        solved(stage, torque, without, mutual, number)
+        r, inertia, shaft = scratch + 2 * count, scratch + 5 * count, scratch + 5 * count + 7 * n
+        for c in range(number):
+            e = int(p[first + c * PER_CLUTCH + OF])
+            q = compliance + e * PER_COMPLIANCE
+            i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
+            p[shaft + e] = torque[c]
+            out[n + j] -= torque[c] / p[inertia + j]
+            if i >= 0:
+                out[n + i] += p[r + int(p[q + NEAR])] * torque[c] / p[inertia + i]
+    swing(p, scratch, n, count, alpha, out)
+    return 0
+
+
+@cfunc(_RATE, cache=True)
+def released_line(t, y_, p_, k, regime, out_):
+    """Rates of the unknowns and of k tangent vectors."""
+    head = carray(p_, (HEAD,))
+    n, count, joined, friction = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
+    _, _, _, scratch = places(head)
+    p, wide = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,)), 2 * n + friction
+    y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
+    refused = rates(t, y[:wide], p, regime, out[:wide])
+    if refused != 0 or k == 0:
+        return refused
+    x, f = np.empty(wide), np.empty(wide)
+    unit = 0.01 * max(1.0, abs(head[OMEGA]))
+    for block in range(1, k + 1):
+        w, o = y[block * wide : (block + 1) * wide], out[block * wide : (block + 1) * wide]
+        size = 0.0
+        for i in range(wide):
+            size = max(size, abs(w[i]) / (unit if n <= i < 2 * n else 0.01))
+        step = STEP_SIZE / size if size > 0.0 else 1.0
+        o[:] = 0.0
+        for move in range(4):
+            for i in range(wide):
+                x[i] = y[i] + MOVES[move] * step * w[i]
+            refused = rates(t, x, p, regime, f)
+            if refused != 0:
+                return refused
+            for i in range(wide):
+                o[i] += WEIGHTS[move] * f[i] / (12.0 * step)
     return 0
 
 
 @cfunc(_GUARD, cache=True)
-def slipping_guards(t, x_, p_, regime, sloped, g_, slope_):
+def released_guards(t, x_, p_, regime, sloped, g_, slope_):
     """Switching functions of the line's stages and sliders, and GUARDS of every clutch behind them.
 
     Sticking: the torque beyond − T_s and beyond T_s. Slipping: the slip, where it ends in sticking as the last of the
@@ -254,8 +373,9 @@ def slipping_guards(t, x_, p_, regime, sloped, g_, slope_):
         if p[compliance + e * PER_COMPLIANCE + STAGES] >= 2.0:
             m += GUARDS
     g, every = carray(g_, (m + GUARDS * number,)), carray(slope_, ((m + GUARDS * number) * wide,))
-    rates = np.empty(wide - 1)
-    _rate(t, x_, p_, 0, regime, _pointer(rates))
+    free = np.empty(wide - 1)
+    _rate(t, x_, p_, 0, regime, _pointer(free))
+    swing_hosts(p, scratch, n, count, free)
     _, omega, alpha = course(t, p)
     slip, without, mutual = np.empty(MOST), np.empty(MOST), np.empty((MOST, MOST))
     stage, torque = np.empty(MOST, dtype=np.int64), np.zeros(MOST)
@@ -289,7 +409,7 @@ def slipping_guards(t, x_, p_, regime, sloped, g_, slope_):
 
 
 @cfunc(_JUMP, cache=True)
-def slipping_jump(t, y_, p_, k, regime, which, delay_):
+def released_jump(t, y_, p_, k, regime, which, delay_):
     """As that of the line's sliders; clutches leave the state as it is."""
     head = carray(p_, (HEAD,))
     compliance, _, _, _ = places(head)
@@ -305,13 +425,13 @@ def slipping_jump(t, y_, p_, k, regime, which, delay_):
 @njit(cache=True, nogil=True)
 def located(rate, t, x, p, regime):
     """``regime`` of the springs and sliders with the stages of the clutches that the state tells: one whose sides turn
-    alike sticks where it can."""
+    alike sticks where it can. ``rate``: address of ``released_line``."""
     n, count = int(p[UNKNOWNS]), int(p[STATIONS])
     compliance, _, _, scratch = places(p)
     number, first = clutches(p, scratch)
     _, _, alpha = course(t, p)
-    rates = np.empty(x.size)
-    _call(rate, t, x, p, regime, rates)
+    out = np.empty(x.size)
+    _call(rate, t, x, p, regime, out)
     slip, without, mutual = np.empty(MOST), np.empty(MOST), np.empty((MOST, MOST))
     stage, torque = np.full(MOST, STICKS), np.zeros(MOST)
     effects(p, scratch, n, count, alpha, slip, without, mutual)
@@ -336,8 +456,8 @@ def located(rate, t, x, p, regime):
 
 
 @njit(cache=True, nogil=True)
-def observe_clutches(rate, times, states, p, regimes, stages, torque, slip):
-    """Torque into (m, compliances), and slip (m, clutches) of every clutch along a motion.
+def observe_released(rate, times, states, p, regimes, stages, torque, slip):
+    """Torques of clutches and pendulums into (m, compliances), and slip (m, clutches) of every clutch along a motion.
 
     ``regimes`` (m,) : those that the motion was in, or −1 where the state is to tell, of which ``stages`` (m,
     compliances) are those of the springs.
@@ -345,7 +465,7 @@ def observe_clutches(rate, times, states, p, regimes, stages, torque, slip):
     n, count = int(p[UNKNOWNS]), int(p[STATIONS])
     compliance, _, _, scratch = places(p)
     number, first = clutches(p, scratch)
-    rates = np.empty(states.shape[1])
+    out = np.empty(states.shape[1])
     for m in range(times.size):
         regime = regimes[m]
         if regime < 0:
@@ -355,9 +475,12 @@ def observe_clutches(rate, times, states, p, regimes, stages, torque, slip):
                 if p[q + STAGES] > 0.0:
                     regime += stages[m, e] * int(p[q + STRIDE])
             regime = located(rate, times[m], states[m], p, regime)
-        _call(rate, times[m], states[m], p, regime, rates)
+        _call(rate, times[m], states[m], p, regime, out)
         for c in range(number):
             e = int(p[first + c * PER_CLUTCH + OF])
             q = compliance + e * PER_COMPLIANCE
             torque[m, e] = p[scratch + 5 * count + 7 * n + e]
             slip[m, c] = p[scratch + count + int(p[q + FAR])] - p[scratch + count + int(p[q + NEAR])]
+        for a in range(int(p[scratch - 3])):
+            e = int(p[scratch - 3 - (a + 1) * PER_PENDULUM + OF])
+            torque[m, e] = p[scratch + 5 * count + 7 * n + e]

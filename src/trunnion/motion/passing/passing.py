@@ -1,0 +1,240 @@
+"""``passing``: does a line come from one speed to another under its torques, or does a resonance capture it?
+
+The torques are those of the drives, whatever they were asked for: a motor's curve, a table, a constant. A line that
+turns freely gives some of it to what vibrates, near a resonance the more the slower it passes, and may hang there
+(Sommerfeld's effect; with an angled joint at half of a mode's frequency too, for it shakes twice a turn).
+
+It has passed when its mean rotation, Σ Jρφ/Σ Jρ², first has the last speed. It is followed in stretches of many turns,
+of several times what its vibration takes to decay, and of a tenth at least of the time in which the rigid line would be
+there. It is captured where its mean speed has settled: where each of the last stretches gains so little that it would
+take another twenty times the rigid time at least.
+
+A. Sommerfeld, Z. VDI 46 (1902) 391; V. O. Kononenko, *Vibrating Systems with a Limited Power Supply* (1969).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.driveline.arguments import one_number, one_speed, speeds_of
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.errors import InputError
+from trunnion.modes.natural_frequencies import natural_frequencies
+from trunnion.motion.passing.passing_result import Passing, PassingEnd
+from trunnion.motion.passing.rigid import rigid_time
+from trunnion.motion.simulation.input_rotation import TURN
+from trunnion.motion.simulation.strongest_order import strongest_order
+from trunnion.motion.transients.prepare import Actions, actions_of, driven_line, follow
+from trunnion.motion.transients.result import Transient
+from trunnion.motion.transients.stepping import Place
+from trunnion.numerics.integration.integration import MOST_STEPS
+from trunnion.waiting import keeps_time, time_is_up
+
+DWELT = 3.0
+"""Times the rigid line's time beyond which a line has dwelt."""
+FEWEST_TURNS, DECAYS, SHARE = 40, 4.0, 0.1
+"""Of a stretch: turns at the speed it has, times that the slowest mode takes to decay by e, and rigid times."""
+LOOKS = 32
+"""Mean speeds in a stretch."""
+FAR = 20.0
+"""Rigid times that a captured line would take at the rate at which it still gains speed."""
+STRETCHES = 3
+"""The last ones that must all be so."""
+LONGEST = 60.0
+"""Rigid times, and as many stretches, after which it is not decided."""
+LOOSER = 30.0
+"""How much looser the tolerance of a second run is, whose ending must be the same."""
+
+
+@keeps_time
+def passing(
+    line: Driveline | Assembly,
+    speeds: Sequence[float | str],
+    *,
+    torque: Sequence[AppliedTorque],
+    friction: Sequence[FrictionTorque] = (),
+    phase: float = 0.0,
+    tolerance: float = 1e-9,
+    within: float | None = None,
+) -> Passing:
+    """Whether a free–free line comes from one speed to another under its torques.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` (or its ``Assembly``) without a ConstantSpeed.
+    speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
+    torque : what drives it, and what acts besides; tables over time last beyond their ends.
+    friction : dry friction on its disks.
+    phase : angle [rad] of the input when it begins; whether a line passes may depend on it.
+    tolerance : error allowed per step. A second run at thirty times as much must end alike, or nothing is decided.
+    within : seconds of computing after which it ends undecided.
+
+    Returns
+    -------
+    Passing: ``outcome.kind`` is "passed", "dwelt" (passed, in more than three times the time of the rigid line under
+    the same torques), "captured", "short of torque" (the rigid line would not come there either) or "undecided".
+
+    Raises
+    ------
+    InputError : a ConstantSpeed; speeds that do not rise; no torque; what ``transient`` refuses.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> disks = tn.Disk(name="motor", inertia=1.0), tn.Disk(name="load", inertia=4.0)
+    >>> line = tn.Driveline([disks[0], tn.HookeJoint(angle="15 deg"), tn.Shaft(stiffness=2e3, damping=1.0), disks[1]])
+    >>> weak = tn.AppliedTorque(on="motor", time=[0], torque=[2.0], between="steps")
+    >>> tn.passing(line, (10.0, 40.0), torque=[weak]).outcome.kind
+    'captured'
+    """
+    description = line.line if isinstance(line, Assembly) else line
+    first, last = _ends(speeds)
+    asked = actions_of([one.but(hold=True) for one in torque], friction, ())
+    if not asked[0]:
+        raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
+    prepared = line_system(driven_line(description, asked), first, leaves=True, slips=True)
+    if not prepared.assembly.topology.free:
+        raise InputError(
+            "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
+            remedy="leave it out, and put a Disk of the drive's inertia in its place",
+        )  # fmt: skip
+    for one in prepared.torques:
+        one.refuse_change()
+    angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, asked, first, last)
+    made = _Follower(prepared, asked, first, last, angle, rigid)
+    run, kind = made.ending(tolerance)
+    other = kind
+    if not time_is_up():
+        other = made.ending(min(LOOSER * tolerance, 1e-3))[1]
+    return _result(description, made, run, kind, other, tolerance)
+
+
+def passing_kind(
+    prepared: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float, tolerance: float
+) -> str:
+    """The kind of ending alone, at one tolerance: for maps."""
+    return _Follower(prepared, asked, first, last, phase, rigid).ending(tolerance)[1]
+
+
+def _ends(speeds: Sequence[float | str]) -> tuple[float, float]:
+    ends = [one_speed(one, "speeds") for one in speeds] if len(speeds) == 2 else speeds_of(speeds).tolist()
+    if len(ends) != 2 or not np.all(np.isfinite(ends)) or not 0 <= ends[0] < ends[1]:
+        remedy = '("0 rpm", "1500 rpm"), say'
+        raise InputError("must be two rising speeds", key="speeds", value=list(speeds), remedy=remedy)
+    return float(ends[0]), float(ends[1])
+
+
+class _Follower:
+    """A line on its way from ``first`` to ``last`` [rad/s], which takes a rigid one ``rigid`` [s]."""
+
+    def __init__(self, line: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float) -> None:
+        self.line, self.asked, self.first, self.last, self.phase, self.rigid = line, asked, first, last, phase, rigid
+        modes = natural_frequencies(line.assembly)
+        self.decay = float(max((1 / (z * w) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if
+                                w > 0 and z > 0), default=0.0))  # fmt: skip
+        slow = [w for w in modes.frequency if w > 0]
+        self.usual = self.rigid if np.isfinite(self.rigid) else 200 * TURN / float(min(slow, default=1.0))
+
+    def ending(self, tolerance: float) -> tuple[Transient, str]:
+        """The run, and how it ended."""
+        state = self.line.rest(self.phase)
+        if self.first == 0:
+            n = self.line.assembly.topology.size
+            state[n : 2 * n] = 0.0
+        place = Place(0.0, state, angle=self.phase, speed=self.first)
+        stretches: list[tuple[float, float, float]] = []
+        run: Transient | None = None
+        while True:
+            speed = max(abs(float(stretches[-1][1] if stretches else self.first)), 0.1 * self.last)
+            length = max(FEWEST_TURNS * TURN / speed, DECAYS * self.decay, SHARE * self.usual)
+            since = run.end if run else 0.0
+            run = self._on(run, run.place if run else place, length, tolerance)
+            if run.outcome.kind != "reached":
+                break
+            if time_is_up():
+                return run, "undecided"
+            stretches.append(self._means(run, since))
+            if self._settled(stretches):
+                return run, "captured" if np.isfinite(self.rigid) else "short of torque"
+            if run.end > LONGEST * self.usual and len(stretches) > LONGEST:
+                return run, "undecided"
+        if run.outcome.kind == "crossed":
+            return run, "dwelt" if run.end > DWELT * self.rigid else "passed"
+        return run, "undecided"
+
+    def _on(self, run: Transient | None, place: Place, length: float, tolerance: float) -> Transient:
+        found = follow(self.line, place, length, self.asked, tolerance, MOST_STEPS, self.last)
+        made = Transient.of(self.line, found, self.asked, tolerance, place.time, "", self.line.assembly.line)
+        return made if run is None else run.joined(made)
+
+    def _means(self, run: Transient, since: float) -> tuple[float, float, float]:
+        """Length [s] of the last stretch, its mean speed [rad/s], and the highest mean over one of its looks."""
+        times = np.linspace(since, run.end, LOOKS + 1)
+        angle = run.whole.angle(times)
+        means = np.diff(angle) / np.diff(times)
+        return run.end - since, float(means.mean()), float(means.max())
+
+    def _settled(self, stretches: list[tuple[float, float, float]]) -> bool:
+        """Whether the last stretches gain too little ever to come to the last speed."""
+        if len(stretches) <= STRETCHES:
+            return False
+        for before, behind in zip(stretches[-STRETCHES - 1 :], stretches[-STRETCHES:], strict=False):
+            way = self.last - behind[2]
+            rate = max(behind[1] - before[1], behind[2] - before[2], 0.0) / ((before[0] + behind[0]) / 2)
+            if rate * FAR * self.usual > way:
+                return False
+        return True
+
+
+def _result(
+    description: Driveline, made: _Follower, run: Transient, kind: str, other: str, tolerance: float
+) -> Passing:
+    hung = _slowest(made, run)
+    since, until = hung
+    strongest = strongest_order(run, since, until)
+    angle = run.whole.angle(np.array([since, until]))
+    speed = float((angle[1] - angle[0]) / (until - since))
+    ways = None if kind == other or {kind, other} <= {"passed", "dwelt"} else (kind, other)
+    end = PassingEnd(
+        "undecided" if ways else kind,
+        run.end,
+        made.rigid,
+        made.first,
+        made.last,
+        speed,
+        (since, until),
+        strongest,
+        ways,
+    )
+    return Passing(
+        ending=end, peak_torque=run.peak_torque, peak_time=run.peak_time, shafts=run.shafts,
+        run=replace(run, name="passing"), phase=made.phase, unit=speed_unit(description),
+    )  # fmt: skip
+
+
+def _slowest(made: _Follower, run: Transient) -> tuple[float, float]:
+    """The stretch in which the line gained least for its time [s]: where it hung, or what it passed most slowly."""
+    turns = run.whole.turns[0]
+    if len(turns) < 12:
+        return 0.0, run.end
+    if run.outcome.kind == "reached":
+        return float(turns[max(len(turns) - 30, 0)]), float(turns[-1])
+    # Where it vibrates most: the largest swing of torque within eight turns.
+    ends = turns[:: max((len(turns) - 1) // 200, 1)]
+    swing = np.array([_swing(run, a, b) for a, b in zip(ends, ends[1:], strict=False)])
+    worst = int(np.argmax(swing))
+    middle = int(np.searchsorted(turns, (ends[worst] + ends[worst + 1]) / 2))
+    return float(turns[max(middle - 5, 0)]), float(turns[min(middle + 5, len(turns) - 1)])
+
+
+def _swing(run: Transient, since: float, until: float) -> float:
+    torque: Array = run.torque_at(np.linspace(since, until, 33))
+    return float((torque.max(axis=0) - torque.min(axis=0)).max())

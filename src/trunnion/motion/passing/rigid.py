@@ -1,0 +1,63 @@
+"""How long a line takes from one speed to another if its shafts are rigid and its joints straight."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
+from trunnion.equations.line_system import LineSystem
+from trunnion.motion.transients.prepare import Actions
+
+LONGEST = 1e4
+"""Times the inertia over the largest torque at the first speed, after which it is not waited for any longer."""
+
+
+def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> float:
+    """Time [s] from ``first`` to ``last`` [rad/s] of the input under the torques ``asked``, the line being rigid and
+    without angled joints; infinite where it never comes there."""
+    assembly, topo = line.assembly, line.assembly.topology
+    co = line.untwisted(assembly.table(1, line.speed))
+    ratio, inertia = topo.mean_speeds, float(co.inertia[0] @ topo.mean_speeds**2)
+    torques, frictions = placed_torques(assembly, asked[0]), placed_frictions(assembly, asked[1])
+
+    def gained(t: float, state: Sequence[float]) -> list[float]:
+        angle, speed = state
+        own = np.abs(ratio) * speed
+        load = co.load[0] + (co.viscous[0] + co.quadratic[0] * np.abs(own)) * own
+        total = -float(load @ np.abs(ratio))
+        for one in torques:
+            size = abs(ratio[one.station])
+            total += size * one.value(t, size * speed, size * angle)
+        for rubs in frictions:
+            total -= abs(ratio[rubs.station]) * rubs.stated.torque * rubs.share(t)[0] * np.sign(speed or 1.0)
+        return [speed, total / inertia]
+
+    def reached(t: float, state: Sequence[float]) -> float:
+        return state[1] - last
+
+    def hangs(t: float, state: Sequence[float]) -> float:
+        return gained(t, state)[1] * np.sign(last - first) - least
+
+    reached.terminal = hangs.terminal = True  # type: ignore[attr-defined]
+    begin = abs(gained(0.0, (0.0, first))[1])
+    knots = time_knots(torques, frictions)
+    after = float(knots[-1]) if len(knots) else 0.0
+    most = max(begin, max((abs(gained(t, (0.0, first))[1]) for t in knots), default=0.0))
+    if most == 0.0:
+        return np.inf
+    least = 1e-9 * most
+    limit = after + LONGEST * abs(last - first) / most
+    ends = [float(k) for k in knots if k > 0] + [limit]
+    t, state = 0.0, np.array([0.0, first])
+    for end in ends:
+        watched = (reached, hangs) if end == limit else (reached,)
+        run = solve_ivp(gained, (t, end), state, "LSODA", rtol=1e-8, atol=1e-10 * max(abs(last), 1.0), events=watched)
+        if len(run.t_events[0]):
+            return float(run.t_events[0][0])
+        if run.status == 1:
+            return float(np.inf)
+        t, state = end, run.y[:, -1]
+    return float(np.inf)
