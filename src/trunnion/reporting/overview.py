@@ -61,7 +61,11 @@ class Overview(OverviewAssessment):
     def chartable(self) -> bool:
         """Whether a chart belongs to this line."""
         slow = self.speed_range[1] <= lowest_speed(self.assembly)
-        return bool(hooke_joints(self.line)) and not (slow or self.assembly.topology.free or lossy(self.assembly))
+        return (
+            not self.assembly.topology.graph
+            and bool(hooke_joints(self.line))
+            and not (slow or self.assembly.topology.free or lossy(self.assembly))
+        )
 
 
 def overview(
