@@ -107,6 +107,19 @@ class Assembly:
     def _derived(self) -> dict[Callable[[Assembly], Any], Any]:
         return {}
 
+    def mean_loads(self, table: Array) -> Array:
+        """Torque [N m] of every station (case, station), drives balanced; the last is kept, as every harmonic of every
+        disk may ask for it."""
+        content = table.tobytes()
+        known = self._last_loads[0]  # one value, as threads may ask at once
+        if known is None or known[0] != content:
+            known = self._last_loads[0] = content, mean_loads(self.topology, self.packed.column, table)
+        return known[1]
+
+    @cached_property
+    def _last_loads(self) -> list[tuple[bytes, Array] | None]:
+        return [None]
+
     def static_torque(self, table: Array) -> Array:
         """Torque [N m] that every compliance carries under the mean loads (case, compliance)."""
         return _static_torque(self, table, mean_loads(self.topology, self.packed.column, table))

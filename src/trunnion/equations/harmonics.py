@@ -28,7 +28,6 @@ from trunnion.equations.amplitudes import Running, amplitude, where
 from trunnion.equations.coefficients import Assembly, mesh_harmonics
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.loads import mean_loads
 from trunnion.equations.topology import Mesh, Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
@@ -117,9 +116,8 @@ class DiskTorque(LineHarmonic):
         return where(self.law, self._running(assembly, table))
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
-        topo, column = assembly.topology, assembly.packed.column
-        speed = table[:, 0] * abs(float(topo.speed_ratio[self.station]))
-        return Running(speed, lambda: -mean_loads(topo, column, table)[:, self.station])
+        speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
+        return Running(speed, lambda: -assembly.mean_loads(table)[:, self.station])
 
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         s = self.station
