@@ -3,7 +3,8 @@
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
 ``order_response`` at 50 speeds and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at
-one speed. Medians on one thread.
+one speed; ``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where
+that takes no more than a minute. Medians on one thread.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 import trunnion as tn
+from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.steady.orders import spectrum
 
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
@@ -77,6 +79,39 @@ def main() -> None:
                 median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for line in (chain(n, 0), chain(n))
             )
             print(f"| {n} | {straight:.3f} | {bent:.3f} | {'0.02, 0.5' if n == 100 else ''} |", flush=True)
+    print("\n| inertias, pixels of a chart | as chosen [s] | without whole matrices |\n|---|---|---|")
+    for n, size, both in CHARTS:
+        if n <= asked.most:
+            chart(chain(n), (8, 6))
+            chosen, other = chart(chain(n), size), without_whole_matrices(chain(n), size) if both else float("nan")
+            print(f"| {n}, {size[0]} × {size[1]} | {chosen:.2f} | {other:.2f} |", flush=True)
+
+
+CHARTS = (
+    (13, (40, 30), True),
+    (20, (30, 20), True),
+    (20, (60, 45), True),
+    (20, (200, 150), False),
+    (50, (200, 150), False),
+)
+"""Inertias, pixels, and whether the ways of shorter lines are timed too."""
+
+
+def chart(line: tn.Driveline, size: tuple[int, int]) -> float:
+    """Processor seconds of a chart of ``size`` pixels."""
+    begin = time.process_time()
+    speed, angle = ("speed", *tn.rpm(np.array([600.0, 3000.0])).tolist()), ("HookeJoint *.angle", 0.0, tn.deg(25.0))
+    tn.stability_chart(line, (*speed, size[0]), (*angle, size[1]), threads=1)
+    return time.process_time() - begin
+
+
+def without_whole_matrices(line: tn.Driveline, size: tuple[int, int]) -> float:
+    """As ``chart``, in the ways of shorter lines."""
+    own, LineFamily.whole_matrices = LineFamily.whole_matrices, ChartFamily.whole_matrices  # type: ignore[method-assign]
+    try:
+        return chart(line, size)
+    finally:
+        LineFamily.whole_matrices = own  # type: ignore[method-assign]
 
 
 def ways() -> Iterator[None]:

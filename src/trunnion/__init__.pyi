@@ -19,15 +19,20 @@ from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
 from trunnion.driveline import Engine as Engine
 from trunnion.driveline import Excitation as Excitation
+from trunnion.driveline import Fan as Fan
 from trunnion.driveline import GearPair as GearPair
+from trunnion.driveline import Generator as Generator
 from trunnion.driveline import HookeJoint as HookeJoint
 from trunnion.driveline import IdealJoint as IdealJoint
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
+from trunnion.driveline import Motor as Motor
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
 from trunnion.driveline import PressureCurve as PressureCurve
+from trunnion.driveline import Propeller as Propeller
+from trunnion.driveline import Pump as Pump
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint
@@ -39,6 +44,7 @@ from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
+from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
 from trunnion.driveline import TunedDamper as TunedDamper
@@ -53,6 +59,7 @@ from trunnion.driveline import load as load
 from trunnion.driveline import loads as loads
 from trunnion.driveline import rpm as rpm
 from trunnion.driveline.cardan_angles import cardan_line as cardan_line
+from trunnion.driveline.curve_points import read_curve as read_curve
 from trunnion.driveline.cylinders import reciprocating_mass as reciprocating_mass
 from trunnion.driveline.excitation_file import read_excitation as read_excitation
 from trunnion.driveline.layout import combined_angle as combined_angle

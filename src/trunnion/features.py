@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import FEATURES, UNEVEN, feature
-from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, remarks
+from trunnion.driveline.features import CURVE, FEATURES, UNEVEN, feature
+from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
@@ -70,6 +70,12 @@ _LIKE = {"rolling resistance": "load torque", "air drag": "quadratic load", "sli
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
 """What is said of a damper without a spring by what judges disturbances."""
+QUASI_STATIC: dict[str, Words] = {
+    LAG: (
+        "the torque is taken to follow the speed at once, which holds well below the corner frequency",
+        "quasi-static",
+    )
+}
 
 
 def _row(
@@ -125,7 +131,9 @@ _SERIES: dict[str, Words] = {
         "they count as one shaft",
     )
 }
-_BY_PLACE = {**_HELD, **_SERIES}
+_IN_ROWS = {**_HELD, **_SERIES}
+_BY_PLACE = {**_IN_ROWS, **QUASI_STATIC}
+_AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes")
 ONE_MOTION = "dry friction at one motion"
 _DRY_FRICTION = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
 _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
@@ -158,7 +166,7 @@ _UNPROVABLE = {
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", SERIES, "slip clutch",
+            "quadratic load", CURVE, LAG, SERIES, "slip clutch",
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -172,7 +180,10 @@ _MODES_SAID: dict[str, Words] = {
     **_SERIES,
     **dict.fromkeys(UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",
-    "quadratic load": "damping ratios are those without it, for it rises with the speed; campbell_diagram has it",
+    **dict.fromkeys(
+        ("quadratic load", CURVE),
+        "damping ratios are those without it, for it goes with the speed; campbell_diagram has it",
+    ),
 }
 _MODES_INERT = {
     **_TORSION,
@@ -183,6 +194,7 @@ _MODES_INERT = {
     "joint plane": _ALIGNED,
     "load torque": "moves no linear spring; a spring with stages takes the stage that the load holds it in",
     "drive share": "a constant torque",
+    LAG: "belongs to a torque that goes with the speed, which is left out",
     "backlash": "the load presses the mesh together; without a load it is refused",
 }
 _DAMPINGS = (
@@ -204,10 +216,12 @@ _DRIVEN = {
 }
 _PASSING = {
     **_ONE_DRIVE,
+    **_AT_ONE_SPEED,
     "excitation that varies with speed or load": "its amplitude would change on the way",
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
     **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
@@ -223,7 +237,7 @@ _RIGID = dict.fromkeys(
         "viscous damper", DRAGGED, "tuned damper", "dual-mass flywheel", "tyre", "vehicle", "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
         "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
-        "damping in contact only", "load torque", "viscous load", "quadratic load", "excitation by order",
+        "damping in contact only", "load torque", "viscous load", "quadratic load", CURVE, LAG, "excitation by order",
         "excitation that varies with speed or load", "cylinders", "engine", "excitation in time",
         "excitation by order and frequency", "excitation of a prescribed disk",
         "unlike damping in series", "free start", "drive share",
@@ -241,8 +255,9 @@ ROWS: dict[str, Row] = {
     "resonances": _row(
         refused=_DRY_FRICTION,
         said={
-            "viscous load": "resonance speeds are those of the line without it",
-            "quadratic load": "resonance speeds are those of the line without it",
+            **dict.fromkeys(
+                ("viscous load", "quadratic load", CURVE), "resonance speeds are those of the line without it"
+            ),
         },
         inert={
             **_MODES_INERT,
@@ -255,7 +270,10 @@ ROWS: dict[str, Row] = {
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
     "multipliers": _row(
-        refused=_BASE, said=_SERIES, inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING}, set_aside=(DRAGGED,)
+        refused=_BASE,
+        said={**_SERIES, **QUASI_STATIC},
+        inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
+        set_aside=(DRAGGED,),
     ),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
@@ -284,8 +302,12 @@ ROWS: dict[str, Row] = {
         inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
     ),
     "turn": _row(
-        refused={**_TREES, "prescribed far end": "the output follows from the input"},
+        refused={
+            **_TREES,
+            "prescribed far end": "the output follows from the input",
+        },
         said={
+            **QUASI_STATIC,
             "damping": _UNDAMPED_TURN,
             "loss factor": _UNDAMPED_TURN,
             "damping ratio": _UNDAMPED_TURN,
@@ -313,13 +335,13 @@ ROWS: dict[str, Row] = {
     "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
-    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_IN_ROWS, inert=_PASSIVE),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(
         refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
     ),
-    "stages": _row(refused=_NOT_EXACT, said=_BY_PLACE, inert=_UNBENT),
-    "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_BY_PLACE, inert=_UNBENT),
+    "stages": _row(refused=_NOT_EXACT, said=_IN_ROWS, inert=_UNBENT),
+    "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_IN_ROWS, inert=_UNBENT),
 }
 """How analyses treat features, by the word that ``trunnion.registry`` has for it; several may share a row."""
 TABLE: dict[str, Row] = {one.name: ROWS[one.features] for one in ANALYSES if one.features}

@@ -2,7 +2,7 @@
 
 Everything stands here by address ("module:name"), so that the rooms of the package import downward and nothing is
 loaded before it is needed. ``trunnion.features`` makes its table from this one; results find their pictures here, the
-command line its commands and the application its views. Tests and pages are held against it.
+command line its commands and the application its views. Tests and pages are compared with it.
 """
 
 from __future__ import annotations

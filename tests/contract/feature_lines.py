@@ -199,6 +199,17 @@ def damped_by(damper: object) -> Change:
     return behind("hub", damper)
 
 
+def machine(one: object) -> Change:
+    """On the hub."""
+    return behind("hub", one)
+
+
+def asynchronous(**more: int) -> tn.Generator:
+    """By Kloss's formula."""
+    numbers = {"breakdown_torque": 40.0, "breakdown_slip": 0.3, "synchronous_speed": 120.0}
+    return tn.Generator(inertia=0.05, name="pump", **numbers, **more)
+
+
 END = (tn.Shaft(stiffness=1e4, damping=5, name="end"), tn.ConstantSpeed(name="far"))
 STRAIGHT_JOINT = jointed(tn.IdealJoint(name="extra"))
 OWN = {one.key for one in FEATURES}
@@ -287,6 +298,8 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "load torque": (same, put("load", load_torque=80.0)),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),
+    "torque curve": (machine(tn.Pump(inertia=0.05, load_torque=15.0, name="pump")), machine(asynchronous())),
+    "lag of a motor": (machine(asynchronous()), machine(asynchronous(pole_pairs=2))),
     "excitation by order": (same, put("load", excitation=[{"order": 2, "amplitude": 5.0}])),
     "excitation in time": (same, put("load", excitation=[{"frequency": 100.0, "amplitude": 9.0}])),
     "excitation by order and frequency": (

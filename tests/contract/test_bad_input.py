@@ -6,7 +6,15 @@ import re
 import pytest
 
 import trunnion as tn
-from trunnion import assess, damper_optimum, natural_frequencies
+from trunnion import (
+    assess,
+    damper_optimum,
+    kinetostatics,
+    natural_frequencies,
+    order_response,
+    simulate,
+    stability,
+)
 from trunnion.driveline import (
     Belt,
     ConstantSpeed,
@@ -16,12 +24,16 @@ from trunnion.driveline import (
     Driveline,
     DualMassFlywheel,
     Engine,
+    Fan,
+    Generator,
     HookeJoint,
     IdealJoint,
     Limit,
     LoadCase,
+    Motor,
     Operation,
     Planetary,
+    Propeller,
     Ratio,
     Schedule,
     Shaft,
@@ -57,6 +69,26 @@ def on_a_bare_shaft():
 
 
 RUBS = {"torque": 1, "stiffness": 1}
+KLOSS = {"breakdown_torque": 500.0, "breakdown_slip": 0.2, "synchronous_speed": 157.0}
+CURVE = [{"speed": 0.0, "torque": 90.0}, {"speed": 150.0, "torque": 200.0}]
+SADDLE = [{"speed": w, "torque": t} for w, t in ((0.0, 300.0), (60.0, 100.0), (120.0, 300.0), (160.0, 0.0))]
+
+
+def motor(**changes):
+    return Motor(**{"inertia": 0.4, "name": "motor"} | changes)
+
+
+def fan(**changes):
+    return Fan(**{"inertia": 3.0, "name": "fan"} | changes)
+
+
+def propeller(**changes):
+    return Propeller(**{"inertia": 60.0, "quadratic_load": 20.0, "name": "propeller"} | changes)
+
+
+def driving(*ends):
+    """Two machines and a shaft between them, the line free–free."""
+    return Driveline([ends[0], Shaft(stiffness=1e4, damping=2.0), *ends[1:]])
 
 
 def engine(**changes):
@@ -766,6 +798,113 @@ PYTHON = [
         lambda: dual_mass(linear_amplitude=1, linear_frequency=9),
         "DualMassFlywheel.linear_amplitude = 1: stands",
         "stage",
+    ),
+    (lambda: motor(), "motor.breakdown_torque: is missing", 'synchronous_speed = "1500 rpm", or curve'),
+    (lambda: motor(breakdown_torque=9.0), "motor.breakdown_slip: is missing beside breakdown_torque", "needed are"),
+    (lambda: motor(**KLOSS, gain=3.0), "motor.gain = 3: stands beside breakdown_torque", "leave out gain or"),
+    (
+        lambda: motor(**KLOSS | {"breakdown_slip": 1.2}),
+        "motor.breakdown_slip = 1.2: must lie between 0 and 1",
+        "write 0.15, say",
+    ),
+    (lambda: motor(**KLOSS | {"breakdown_slip": 0.0}), "motor.breakdown_slip = 0: must lie between 0 and 1", "0.15"),
+    (lambda: motor(**KLOSS | {"breakdown_torque": "5 N/m"}), "motor.breakdown_torque = '5 N/m'", "N*m"),
+    (lambda: motor(**KLOSS, pole_pairs=0), "motor.pole_pairs = 0: must be 1 or more", "write 2, say"),
+    (lambda: motor(curve=CURVE, pole_pairs=2), "motor.pole_pairs = 2: belongs to Kloss's formula", "leave it out"),
+    (lambda: motor(**KLOSS, corner_frequency=0.0), "motor.corner_frequency = 0: must be positive", "write for"),
+    (lambda: motor(gain=3.0), "motor.set_speed: is missing beside gain", "needed are gain, set_speed"),
+    (
+        lambda: motor(gain=3.0, set_speed=9.0, drive_share=1),
+        "motor.drive_share = 1: stands beside set_speed",
+        "leave out set_speed",
+    ),
+    (lambda: motor(curve=CURVE, drive_share=1), "motor.drive_share = 1: stands beside curve", "leave it out"),
+    (lambda: motor(**KLOSS, drive_share=-1), "motor.drive_share = -1: must not be negative", "write for"),
+    (lambda: motor(**KLOSS, inertia=0), "motor.inertia = 0: must be positive", "write for"),
+    (lambda: motor(curve=CURVE[:1]), "motor.curve", "must have two points at least"),
+    (
+        lambda: motor(curve=CURVE[::-1]),
+        "motor.curve",
+        "does not rise in speed: 0 rpm after 1432.39 rpm; sort the points",
+    ),
+    (lambda: motor(curve=[*CURVE, CURVE[1]]), "motor.curve", "does not rise in speed"),
+    (lambda: motor(curve=[{"speed": -1.0, "torque": 3.0}, *CURVE]), "motor.curve", "must not be negative; begin at 0"),
+    (lambda: motor(curve=[{"speed": "1 Nm", "torque": 3.0}, *CURVE]), "motor.curve 1 speed = '1 Nm'", "rad/s"),
+    (lambda: motor(curve=[{"speed": 1.0, "torque": float("nan")}, *CURVE]), "motor.curve 1 torque = nan", "finite"),
+    (lambda: motor(curve="motor.csv"), "motor.curve = 'motor.csv': names a file", "tn.read_curve(path)"),
+    (lambda: motor(curve=3), "motor.curve = 3: is not a list of points", "or the name of a CSV file"),
+    (lambda: Generator(inertia=1.0), "Generator.power: is missing", 'power = "30 kW"'),
+    (lambda: Generator(inertia=1.0, power=0), "Generator.power = 0: must be positive", "write for"),
+    (lambda: fan(), "fan.rated_power: is missing", 'rated_speed = "1480 rpm"'),
+    (lambda: fan(rated_power=3.0), "fan.rated_speed: is missing beside rated_power", "needed are"),
+    (lambda: fan(rated_power=300.0, rated_speed=0), "fan.rated_speed = 0: must be positive", "write for"),
+    (lambda: fan(quadratic_load=-1), "fan.quadratic_load = -1: must not be negative", "write for"),
+    (
+        lambda: fan(rated_power=300.0, rated_speed=100.0, load_torque=4.0),
+        "fan.load_torque = 4: is more than the 3 N m",
+        "check the units",
+    ),
+    (lambda: fan(curve=CURVE, load_torque=4.0), "fan.curve", "stands beside load_torque; leave out curve or"),
+    (lambda: propeller(entrained_inertia=-1), "propeller.entrained_inertia = -1: must not be negative", "write for"),
+    (lambda: propeller(damping_factor=0), "propeller.damping_factor = 0: must be positive", "write for"),
+    (
+        lambda: propeller(damping_factor=3, viscous_load=1),
+        "propeller.damping_factor = 3: stands beside viscous_load",
+        "leave out one of the two",
+    ),
+    (
+        lambda: order_response(driving(Disk(inertia=9.0, name="engine"), propeller()), [30.0]),
+        "driveline.load_torque: is free–free and its torques do not balance",
+        'and nothing drives; give the driving disk, "engine" say, drive_share = 1',
+    ),
+    (
+        lambda: order_response(driving(motor(**KLOSS), fan(quadratic_load=0.01)), [120.0]),
+        "driveline.load_torque: is free–free and its torques do not balance",
+        "leave the speed out, so that it runs where they do, at 1428.405 rpm (stable)",
+    ),
+    (
+        lambda: stability(driving(motor(curve=CURVE), fan(load_torque=150.0))),
+        "operation.speed: is not given, and the line lasts at no speed: at 781.",
+        "drives it away; take a drive whose torque falls",
+    ),
+    (
+        lambda: stability(driving(motor(**KLOSS), fan(load_torque=600.0))),
+        "operation.speed: is not given, and the torques of the line balance at no speed",
+        "drive_share = 1, or check the signs",
+    ),
+    (
+        lambda: stability(driving(motor(curve=SADDLE), fan(load_torque=200.0))),
+        "operation.speed: balances the torques of the line at 167.8155 rpm, 1347.261 rpm",
+        "each stable; choose one: pass speed=141.08",
+    ),
+    (
+        lambda: order_response(driving(motor(**KLOSS, drive_share=1), fan(quadratic_load=0.04)), [100.0, 120.0]),
+        "motor.breakdown_torque = 500: would have to drive with 576 N*m at 1145.9 rpm of the input",
+        "lower the load, or narrow",
+    ),
+    (
+        lambda: order_response(driving(motor(curve=CURVE), fan(load_torque=150.0)), [160.0]),
+        "motor.curve: is a curve from 0 rpm to 1432.4 rpm, which does not cover 1527.9 rpm",
+        "add points, or narrow",
+    ),
+    (
+        lambda: kinetostatics(driving(Disk(inertia=9.0), Generator(inertia=1.0, curve=CURVE, name="generator")), 200.0),
+        "generator.curve: is a curve that does not cover 1909.9 rpm",
+        "add points",
+    ),
+    (
+        lambda: simulate(
+            driving(motor(**KLOSS, drive_share=1), fan(quadratic_load=0.01)),
+            0.1,
+            speed=tn.SpeedProfile((0, 1), (90, 99)),
+        ),
+        "motor.curve: has a torque over speed that equations of motion take by its tangent",
+        "use tn.order_response at several speeds",
+    ),
+    (
+        lambda: Driveline([ConstantSpeed(), Shaft(stiffness=1e4), motor(**KLOSS, drive_share=1)]),
+        "motor.drive_share = 1: shares the drive of a line that a ConstantSpeed drives",
+        "leave out the ConstantSpeed, or drive_share",
     ),
     (lambda: ViscousDamper(damping=1), "ViscousDamper.ring_inertia: is missing", 'ring_inertia = "0.12 kg*m^2"'),
     (lambda: ViscousDamper(ring_inertia=0.1), "ViscousDamper.damping: is missing", 'damping = "45 N*m*s/rad"'),

@@ -19,13 +19,18 @@ from trunnion.driveline import (
     Driveline,
     DualMassFlywheel,
     Engine,
+    Fan,
     GearPair,
+    Generator,
     HookeJoint,
     IdealJoint,
     LoadCase,
+    Motor,
     Operation,
     PiecewiseShaft,
     Planetary,
+    Propeller,
+    Pump,
     Ratio,
     RzeppaJoint,
     Shaft,
@@ -77,10 +82,20 @@ COMPONENTS = [
     DualMassFlywheel(primary_inertia=0.14, secondary_inertia=0.06, stiffnesses=["15 N*m/deg"]),
     TunedDamper(ring_inertia=0.02, stiffness="1.5 kN*m/rad", damping=2),
     Engine(
-        firing_order="1-3-4-2", throw_inertia=[0.02, 0.02, 0.02, 0.03], throw_stiffness="0.6 MN*m/rad",
-        pressure=[{"angles": [0.02 * i for i in range(629)], "pressures": [2e5] * 629}], bore="80 mm", stroke="90 mm",
-        rod_length="150 mm", reciprocating_mass="0.8 kg", strokes=4, misfiring=2, loss_factor=0.02,
-        compression_ratio=12, charge_pressure="1 bar", polytropic_exponent=1.3,
+        firing_order="1-3-4-2",
+        throw_inertia=[0.02, 0.02, 0.02, 0.03],
+        throw_stiffness="0.6 MN*m/rad",
+        pressure=[{"angles": [0.02 * i for i in range(629)], "pressures": [2e5] * 629}],
+        bore="80 mm",
+        stroke="90 mm",
+        rod_length="150 mm",
+        reciprocating_mass="0.8 kg",
+        strokes=4,
+        misfiring=2,
+        loss_factor=0.02,
+        compression_ratio=12,
+        charge_pressure="1 bar",
+        polytropic_exponent=1.3,
     ),
     SlipClutch(
         torque="1200 N*m",
@@ -91,7 +106,16 @@ COMPONENTS = [
     ),
     Tyre(stiffness=15e3, damping=200, slip_stiffness="60 kN", radius=0.3, travel_speed="90 km/h", inertia=0.6),
     Vehicle(mass="1.6 t", wheel_radius=0.31, wheel_inertia=1.8, rolling_resistance="1.2 %", grade=0.05, drag_area=0.65),
-]  # fmt: skip
+]
+MACHINES = [
+    Motor(inertia=0.4, breakdown_torque=500, breakdown_slip=0.2, synchronous_speed="1500 rpm", pole_pairs=2),
+    Motor(inertia=0.4, gain=40, torque_limit="300 N*m", corner_frequency="80 Hz", drive_share=1),
+    Generator(inertia=0.6, curve=[{"speed": "0 rpm", "torque": 0}, {"speed": "1500 rpm", "torque": "90 N*m"}]),
+    Generator(inertia=0.6, power="30 kW", excitation=[{"order": 6, "share": 0.02}]),
+    Fan(inertia=3, rated_power="30 kW", rated_speed="1480 rpm", load_torque=2),
+    Pump(inertia=0.3, load_torque="120 N*m", viscous_load=0.2),
+    Propeller(inertia=60, entrained_inertia=15, quadratic_load=20, damping_factor=2.9),
+]
 WITH_STAGES = [
     RzeppaJoint(
         angle="8 deg",
@@ -128,7 +152,7 @@ def small_line(**rest):
     )
 
 
-@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + WITH_STAGES, ids=lambda e: e.kind)
+@pytest.mark.parametrize("element", ONE_OF_EACH + PARTS + COMPONENTS + MACHINES + WITH_STAGES, ids=lambda e: e.kind)
 def test_every_element_is_a_frozen_value_made_from_what_it_states(element):
     assert KINDS[element.kind] is type(element)
     assert type(element)(**element.stated) == element

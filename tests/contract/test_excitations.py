@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.harmonic_lines import AMPLITUDES, ANGLES, DAMPING, NEAR, STIFFNESS, STRUCTURES, Shaken
+from oracles.harmonic_lines import AMPLITUDES, ANGLES, BY_TORQUE, DAMPING, NEAR, STIFFNESS, STRUCTURES, Shaken
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
@@ -329,9 +329,10 @@ def cells() -> Iterator[Any]:
         for by in ANGLES:
             for structure in structures:
                 for law in laws:
-                    if (law != "constant" and by == "in time") or (law == "over the torque" and structure == "free"):
+                    if (law != "constant" and by == "in time") or (law in BY_TORQUE and structure == "free"):
                         continue
-                    if law != "constant" and check not in (order_response, simulate) and structure != "geared":
+                    elsewhere = law != "constant" and check not in (order_response, simulate)
+                    if elsewhere and (structure != "geared" or law == BY_TORQUE[1]):
                         continue
                     name = "-".join((check.__name__, by, structure, law)).replace(" ", "_")
                     yield pytest.param(check, Shaken(by, structure, law), id=name)

@@ -35,14 +35,15 @@ NOUNS = """
     unexcited line, verdict, vibratory torque, window
 """
 RETIRED = """
-    Answer Asked Bounded Built Case ChainLanes Closing Course ExactClosing Followed FreeMotions Given Hanging Held
-    Help IntegratedClosing Judged KnownMotion LADDER LANES Lost Mode MotionsBySpeed Neutral NoSharedMotion OwnBase
-    OwnFamily OwnLine OwnMotion OwnMotions OwnOrders Passage PlainPoints Question Quiet Seen Settling Side Spots
-    StabilityAlong Strand Subject Trial Tried Turning Wanted Way at_hand by_halving by_meetings carried_mode
-    carried_modes chain_lanes closing_of few_nodes fields_over hindered kernel_price lanes lanes_of
-    meeting_exponents meetings moves_by_itself own_axis own_growth own_limits own_line own_motion own_motions
-    own_motions_of pixel_price plain_pixels plain_radii prices refuse_own_motion require_closing rows_by_meetings
-    rubbing step_price strand strands stubborn told_apart uneven untold way_named
+    Answer Asked Bounded Built Case ChainLanes Closing Course ExactClosing Followed FreeMotions Given Hanging
+    Held Help IntegratedClosing Judged KnownMotion LADDER LANES Lost Mode MotionsBySpeed Neutral NoSharedMotion
+    OwnBase OwnFamily OwnLine OwnMotion OwnMotions OwnOrders Passage PlainPoints QUIET Question Quiet Seen
+    Settling Side Spots StabilityAlong Strand Subject TOLD Trial Tried Turning UNTOLD Wanted Way at_hand
+    by_halving by_meetings carried_mode carried_modes chain_lanes closing_of few_nodes fields_over hindered
+    kernel_price lanes lanes_of meeting_exponents meetings moves_by_itself own_axis own_growth own_limits
+    own_line own_motion own_motions own_motions_of pixel_price plain_pixels plain_radii prices refuse_own_motion
+    require_closing rows_by_meetings rubbing step_price strand strands stubborn told told_apart uneven untold
+    way_named
 """
 """What only their author understood, with the field's word in place of it."""
 

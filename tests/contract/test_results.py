@@ -32,8 +32,6 @@ ROOMS = ("modes", "steady", "floquet", "response", "motion", "design")
 for room in ROOMS:
     for found in pkgutil.walk_packages([str(Path(tn.__file__).parent / room)], f"trunnion.{room}."):
         import_module(found.name)
-BY_HAND = ("trunnion.steady.", "trunnion.motion.")
-"""Rooms whose results declare what they hold by hand: being put together anew, they get labelled fields then."""
 
 
 def subclasses(base: type) -> set[type]:
@@ -41,22 +39,21 @@ def subclasses(base: type) -> set[type]:
 
 
 RESULTS = sorted(
-    (kind for kind in subclasses(Result) if not kind.__module__.startswith("trunnion.results.declared")),
+    (kind for kind in subclasses(Result) if not kind.__module__.startswith("trunnion.results.described")),
     key=lambda kind: kind.__name__,
 )
-LABELLED = [kind for kind in RESULTS if not kind.__module__.startswith(BY_HAND)]
-MEMBERS = {label.members for kind in LABELLED for label in labels(kind).values() if label.members}
+MEMBERS = {label.members for kind in RESULTS for label in labels(kind).values() if label.members}
 
 
 @pytest.mark.parametrize("kind", RESULTS, ids=lambda k: k.__name__)
 def test_every_result_declares_and_introduces_itself(kind: type[Result]) -> None:
-    assert labels(kind) or kind.declared is not Result.declared
+    assert labels(kind)
     assert kind._lines is not Result._lines or kind.__str__ is not Result.__str__
     assert kind.__repr__ is Result.__repr__, "write @labelled"
 
 
 @pytest.mark.parametrize(
-    "kind", sorted({*LABELLED, *MEMBERS}, key=lambda k: k.__qualname__), ids=lambda kind: kind.__name__
+    "kind", sorted({*RESULTS, *MEMBERS}, key=lambda k: k.__qualname__), ids=lambda kind: kind.__name__
 )
 def test_every_field_is_declared_or_internal(kind: type) -> None:
     """No field is forgotten: each says what it is, and the docstring lists it."""

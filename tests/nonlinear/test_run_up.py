@@ -49,7 +49,7 @@ def test_safe_accelerations_keep_the_limit() -> None:
     assert f"safe at each of the {len(found.stretch)} accelerations tried" in str(found)
     none = tn.safe_accelerations(line, 28.0, 46.0, limit=5.0, accelerations=(10.0, 100.0), points=3)
     assert np.isnan(none.slowest) and str(none).startswith("none of the 3 accelerations tried from 10 to 100 rad/s²")
-    assert "the quietest that reaches 46 rad/s, 100 rad/s², comes to 77" in str(none)
+    assert "the best that reaches 46 rad/s, 100 rad/s², comes to 77" in str(none)
     # Nothing is said of what was not run.
     wide = tn.safe_accelerations(line, 28.0, 46.0, limit={"Shaft 1": 1e6}, accelerations=(10.0, 100.0), points=2)
     assert (wide.slowest, wide.fastest) == (10.0, pytest.approx(100.0))

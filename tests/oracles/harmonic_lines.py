@@ -40,6 +40,10 @@ def tabled(points: tuple[float, ...], at: Any) -> Any:
 AMPLITUDES: dict[str, tuple[dict[str, Any], Callable[[Any, float], Any]]] = {
     "constant": ({"amplitude": 0.05}, lambda speed, drives: 0.05 + 0j * speed),
     "by the square of the speed": ({"quadratic_amplitude": 4e-6}, lambda speed, drives: 4e-6 * speed**2 + 0j),
+    "by the share of the mean torque": (
+        {"share": 0.01},
+        lambda speed, drives: 0.01 * np.full(np.shape(speed), drives) + 0j,
+    ),
     "over the speed": (
         {"speeds": (10.0, 120.0, 700.0), **TABLE},
         lambda speed, drives: tabled((10.0, 120.0, 700.0), speed),
@@ -51,6 +55,9 @@ AMPLITUDES: dict[str, tuple[dict[str, Any], Callable[[Any, float], Any]]] = {
 }
 """How a description states an amplitude, and what it is by the disk's speed [rad/s] and the mean torque that it drives
 with [N m]."""
+
+
+BY_TORQUE = ("over the torque", "by the share of the mean torque")
 
 
 @dataclass(frozen=True)
@@ -116,7 +123,7 @@ class Shaken:
     @property
     def drives(self) -> float:
         """Mean torque [N m] that the disk drives with."""
-        return DRIVES if self.law == "over the torque" else 0.0
+        return DRIVES if self.law in BY_TORQUE else 0.0
 
     @property
     def ahead(self) -> float:

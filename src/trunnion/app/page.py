@@ -91,11 +91,11 @@ class Page:
         self.cancel_button = pn.widgets.Button(label="Cancel", width=80, disabled=True, margin=(2, 8))
         self.cancel_button.on_click(lambda event: cancel())
         self.mark = HtmlPane("", width=0, height=0, margin=0)
-        told = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
-        self.status = column(self.said, told)
+        progress = pn.Row(self.bar, self.cancel_button, self.state, self.mark, margin=0)
+        self.status = column(self.said, progress)
         self.main, self.aside = column(), column()
         self._shown: tuple[Any, ...] = ()
-        self._told = 0.0
+        self._last_shown = 0.0
         self._done = 0
         self._marks = 0
         self.template = pn.Template(_TEMPLATE, location=True)
@@ -139,9 +139,9 @@ class Page:
         if self.cancel_button.disabled:
             self.cancel_button.disabled = False
             self.bar.visible = True
-        elif now - self._told < MOST_OFTEN:
+        elif now - self._last_shown < MOST_OFTEN:
             return
-        self._told = now
+        self._last_shown = now
         self.bar.value = int(100 * min(1.0, max(0.0, share)))
         self.state.object = markup("<span role='status' data-state='busy'>computing …</span>")
 

@@ -31,7 +31,7 @@ from trunnion.driveline.files import loads
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError, TrunnionError
 
-QUIET = 0.05
+PAUSE = 0.05
 """Seconds without a further change before a computation takes the place of one under way."""
 QUICK = 0.15
 """Seconds that a computation takes at most for which nothing is shown in advance."""
@@ -214,7 +214,7 @@ class Session:
                 self.view.of(side).disown(f"Not of the settings above, which are refused: {error}")
             self.page.failed(str(error))
             return
-        work = self._compute(sides, QUIET if under_way else 0.0)
+        work = self._compute(sides, PAUSE if under_way else 0.0)
         self.task = asyncio.get_event_loop().create_task(self._watched(work))
 
     def _write_address(self) -> None:
@@ -279,8 +279,8 @@ class Session:
         self.page.failed(sentence)
         self._tell("it could not be computed anew")
 
-    async def _compute(self, sides: list[str], quiet: float) -> None:
-        await asyncio.sleep(quiet)
+    async def _compute(self, sides: list[str], pause: float) -> None:
+        await asyncio.sleep(pause)
         loop = asyncio.get_running_loop()
         self.said_from = loop.time() + UNSAID
         saying = loop.call_at(self.said_from, self._progress, 0, 1, 0.0)

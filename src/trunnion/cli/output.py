@@ -36,10 +36,10 @@ if TYPE_CHECKING:
 
 LONG = 10.0
 """Seconds between lines of progress where stderr is not a terminal."""
-QUIET = 10.0
+SILENCE = 10.0
 """Seconds after which something is said there though the work tells nothing of how far it is."""
 LEAST_SHARE, LEAST_WORK, ALIKE = 0.05, 2.0, 1.5
-"""Share done and seconds of work from which the time left is told; factor by which the pace may have changed."""
+"""Share done and seconds of work from which the time left is shown; factor by which the pace may have changed."""
 PIPED_WIDTH = 110
 _COLOUR = {"danger": "bold red", "caution": "yellow", "note": "green"}
 
@@ -186,7 +186,7 @@ class _Clock:
     def __init__(self) -> None:
         self.start = time.monotonic()
         self.spent, self.depth, self.since = 0.0, 0, 0.0
-        self.told: list[tuple[float, float]] = []
+        self.shares: list[tuple[float, float]] = []
 
     def begin(self) -> None:
         """Something is being compiled."""
@@ -207,11 +207,11 @@ class _Clock:
 
     def left(self, share: float) -> str:
         """Time left of the work; "" where nothing is known of it yet: where little is done, or where the pace of the
-        first half of the time would have told something else."""
+        first half of the time would have given another answer."""
         worked = max(time.monotonic() - self.start - self.seconds(), 0.0)
-        if share > (self.told[-1][1] if self.told else 0.0):
-            self.told.append((worked, share))
-        early = [one for one in self.told if one[0] <= worked / 2]
+        if share > (self.shares[-1][1] if self.shares else 0.0):
+            self.shares.append((worked, share))
+        early = [one for one in self.shares if one[0] <= worked / 2]
         if not early or not LEAST_SHARE <= share <= 1 or worked < LEAST_WORK:
             return ""
         whole, before = worked / share, early[-1][0] / early[-1][1]
@@ -298,13 +298,13 @@ class _ProgressLines:
             self._say(f"{self.what}: {100 * share:.0f} %{f', {left}' if left else ''}")
 
     def _tell(self) -> None:
-        while not self.done.wait(QUIET):
-            if time.monotonic() - self.last >= QUIET:
+        while not self.done.wait(SILENCE):
+            if time.monotonic() - self.last >= SILENCE:
                 self._say(f"still at work after {time.monotonic() - self.clock.start:.0f} s: {self.what}")
 
-    def _say(self, told: str) -> None:
+    def _say(self, sentence: str) -> None:
         self.last = time.monotonic()
-        note(told)
+        note(sentence)
 
 
 STOPPING = "stopping with what is known by now; Ctrl-C again leaves at once"

@@ -6,6 +6,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
@@ -17,6 +18,7 @@ from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionError
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
@@ -43,16 +45,21 @@ __all__ = [
     "Element",
     "Engine",
     "Excitation",
+    "Fan",
     "GearPair",
+    "Generator",
     "HookeJoint",
     "IdealJoint",
     "Limit",
     "LoadCase",
+    "Motor",
     "Operation",
     "Coupling",
     "PiecewiseShaft",
     "Planetary",
     "PressureCurve",
+    "Propeller",
+    "Pump",
     "Ratio",
     "Schedule",
     "Shaft",
@@ -60,6 +67,7 @@ __all__ = [
     "SwitchedOff",
     "TitleBlock",
     "Tolerance",
+    "TorquePoint",
     "TransmissionError",
     "Belt",
     "Clutch",

@@ -295,13 +295,15 @@ def _wrong_drives(line: Driveline) -> Iterator[InputError]:
     if not any(isinstance(element, ConstantSpeed) for element in line.elements):
         return
     for name, element in line.parts:
-        if isinstance(element, Loaded) and element.drive_share:
+        if getattr(element, "drive_share", 0.0):
             yield InputError(
                 "shares the drive of a line that a ConstantSpeed drives",
                 element=name,
                 key="drive_share",
-                value=element.drive_share,
-                remedy="leave out the ConstantSpeed, or write what this disk drives with as a negative load_torque",
+                value=getattr(element, "drive_share", None),
+                remedy="leave out the ConstantSpeed, or write what this disk drives with as a negative load_torque"
+                if isinstance(element, Loaded)
+                else "leave out the ConstantSpeed, or drive_share",
             )
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
@@ -36,6 +36,9 @@ from trunnion.driveline.quantities import (
 )
 from trunnion.driveline.record import Name, Record, as_tuple, is_name
 from trunnion.errors import InputError, InputRemark
+
+if TYPE_CHECKING:
+    from trunnion.laws.torque_curve import PowerCurve, TorqueCurve
 
 Doubt = tuple[str, str, str]
 """(key, what is odd, what to do about it)."""
@@ -148,7 +151,52 @@ class ConstantSpeed(Element):
         return (Prescribed(),)
 
 
-class Loaded(Element):
+class Rotor(Element):
+    """What is heavy, and turned or resisted from outside: a disk, a machine.
+
+    Its outer torque at a speed is its ``load_of``; ``excitation`` are harmonic torques besides.
+    """
+
+    if TYPE_CHECKING:
+        excitation: Excitations
+
+    def parts(self) -> tuple[Part, ...]:
+        """An inertia on which outer torques act."""
+        return (Heavy(loaded=True),)
+
+    def load_of(self, number: Numbers) -> TorqueCurve:
+        """Outer torque over its own speed, positive where it resists, for the values of its numbers, one or many."""
+        raise NotImplementedError
+
+    @property
+    def load(self) -> TorqueCurve:
+        """The same as described."""
+        return self.load_of(lambda key: getattr(self, key))
+
+    @property
+    def tangent(self) -> bool:
+        """Whether equations of motion have its load by the tangent at the mean speed: any that is no polynomial."""
+        from trunnion.laws.torque_curve import PowerCurve  # a description alone loads without numpy
+
+        return not isinstance(self.load, PowerCurve)
+
+    @property
+    def loaded_by_speed(self) -> bool:
+        """Whether its load depends on the speed."""
+        return self.tangent or self.loaded_by_square or bool(getattr(self.load, "viscous", 0.0))
+
+    @property
+    def loaded_by_square(self) -> bool:
+        """Whether a part of its load goes with the square of the speed, as equations of motion have it."""
+        return not self.tangent and bool(getattr(self.load, "quadratic", 0.0))
+
+    @property
+    def moment_of_inertia(self) -> float:
+        """Polar moment [kg m²], all that turns rigidly with it."""
+        return self.inertia_values[0]
+
+
+class Loaded(Rotor):
     """What is heavy and carries outer torques: a disk, a vehicle.
 
     Parameters
@@ -171,31 +219,19 @@ class Loaded(Element):
     )
     excitation: Excitations = optional(default=(), description="harmonic torques, in time or in the disk's rotation")
 
-    def parts(self) -> tuple[Part, ...]:
-        """An inertia on which outer torques act."""
-        return (Heavy(loaded=True),)
+    def load_of(self, number: Numbers) -> PowerCurve:
+        """Constant, viscous and quadratic."""
+        from trunnion.laws.torque_curve import PowerCurve
 
-    @property
-    def moment_of_inertia(self) -> float:
-        """Polar moment [kg m²], as stated or as it follows."""
-        return self.inertia_values[0]
+        constant, quadratic = self.resistance(number)
+        return PowerCurve(
+            number("load_torque") + constant, number("viscous_load"), number("quadratic_load") + quadratic
+        )
 
     def resistance(self, number: Numbers) -> tuple[Any, Any]:
         """What resists beside the loads that are stated, for the values of its numbers, one or many: a torque [N m],
         and one per square of the speed [N m s²/rad²]."""
         return 0.0, 0.0
-
-    @property
-    def resists(self) -> bool:
-        """Whether there is any."""
-        return False
-
-    @property
-    def loads(self) -> tuple[float, float, float]:
-        """All that acts on it as described: constant [N m], by its speed [N m s/rad] and by the square of its speed
-        [N m s²/rad²]."""
-        constant, quadratic = self.resistance(lambda key: getattr(self, key))
-        return self.load_torque + constant, self.viscous_load, self.quadratic_load + quadratic
 
 
 _ANGLES = as_tuple("angles", 'write firing_angles = ["0 deg", "180 deg", "540 deg", "360 deg"], say')

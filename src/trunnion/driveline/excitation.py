@@ -25,7 +25,7 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.record import Record, as_tuple, listed
 from trunnion.errors import InputError
 
-AMPLITUDES = ("amplitude", "quadratic_amplitude", "amplitudes")
+AMPLITUDES = ("amplitude", "quadratic_amplitude", "share", "amplitudes")
 """Keys that each state an amplitude; ``equations.amplitudes`` has the law of each."""
 _LISTS = as_tuple("quantities", 'write speeds = ["600 rpm", "1800 rpm"], amplitudes = ["40 N*m", "90 N*m"], say')
 
@@ -39,8 +39,8 @@ class Excitation(Record):
     counts in the disk's own sense, also behind a gear that reverses it.
 
     Several orders together are an engine-order table. A is one ``amplitude``; or grows with the square of the disk's
-    speed; or stands in a table over the disk's speed or over the mean torque it drives with, A e^{i phase} linear
-    between its points and refused beyond its ends.
+    speed; or is a ``share`` of the mean torque there, as of blades and of motors; or stands in a table over the disk's
+    speed or over the mean torque it drives with, A e^{i phase} linear between its points and refused beyond its ends.
 
     Parameters
     ----------
@@ -49,6 +49,7 @@ class Excitation(Record):
     frequency : in time [rad/s].
     phase : at zero rotation and time [rad].
     quadratic_amplitude : A over the square of the disk's mean speed [N m s²/rad²], as of oscillating masses.
+    share : A over the size of the mean torque on its disk or machine, drive or load.
     speeds : of the disk [rad/s], rising: where the table has its points; or else
     torques : mean torque that the disk drives with [N m], rising.
     amplitudes : A at these points [N m].
@@ -69,6 +70,7 @@ class Excitation(Record):
     quadratic_amplitude: Maybe[QuadraticLoad] = optional(
         default=None, description="amplitude over the square of the disk's speed, instead"
     )
+    share: Maybe[Dimensionless] = optional(default=None, description="amplitude over the mean torque there, instead")
     speeds: Annotated[Several[Speed], BeforeValidator(_LISTS)] = optional(
         default=(), description="of the disk, where a table of amplitudes has its points"
     )

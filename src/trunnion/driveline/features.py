@@ -14,15 +14,16 @@ from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
+from trunnion.driveline.elements import ConstantSpeed, Element, Rotor
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
-from trunnion.driveline.remarks import DRAGGED, HELD, SERIES, prescribed_excitations, unlike_in_series
+from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
@@ -62,7 +63,7 @@ def _where(kind: type[Element], key: str, test: Callable[[Any], object]) -> Find
 
 
 def _excited(test: Callable[[Excitation], object]) -> Finder:
-    return _where(Loaded, "excitation", lambda disk: any(map(test, disk.excitation)))
+    return _where(Rotor, "excitation", lambda rotor: any(map(test, rotor.excitation)))
 
 
 def _dry_friction(at_one_motion: bool) -> Finder:
@@ -73,6 +74,15 @@ def _dry_friction(at_one_motion: bool) -> Finder:
 
 def _kind(kind: type[Element]) -> Finder:
     return lambda line: [name for name, element in line.parts if isinstance(element, kind)]
+
+
+def _curves(line: Driveline) -> list[str]:
+    return [f"torque of {name}" for name, element in line.parts if isinstance(element, Rotor) and element.tangent]
+
+
+def _lags(line: Driveline) -> list[str]:
+    electric = ((name, one) for name, one in line.parts if isinstance(one, ElectricMachine))
+    return [f"lag of {name}" for name, one in electric if one.lag_frequency is not None]
 
 
 def _dragged(line: Driveline) -> list[str]:
@@ -108,6 +118,8 @@ UNEVEN = (
 """Features of joints that do not pass rotation unchanged."""
 
 
+MACHINES = ("Motor", "Generator", "Fan", "Pump", "Propeller")
+ELECTRIC, CONSUMERS = MACHINES[:2], MACHINES[2:]
 _STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
 _DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
 
@@ -123,16 +135,19 @@ def _of_springs(*keys: str) -> tuple[str, ...]:
 
 
 def _of_loaded(key: str) -> tuple[str, ...]:
-    """A field of every kind of element that carries outer torques."""
-    return tuple(f"{name}.{key}" for name, kind in KINDS.items() if issubclass(kind, Loaded))
+    """A field of every kind of element that carries outer torques, and of machines that have it."""
+    kinds = KINDS.items()
+    return tuple(f"{name}.{key}" for name, kind in kinds if issubclass(kind, Rotor) and key in kind.model_fields)
 
 
+CURVE = "torque curve"
 FEATURES = (
     Feature(
         "inertia",
         (
             "Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density",
-            "Disk.material", "Disk.mass", "Disk.radius",
+            "Disk.material", "Disk.mass", "Disk.radius", "Propeller.entrained_inertia",
+            *(f"{kind}.inertia" for kind in MACHINES),
         ),
     ),
     Feature(
@@ -259,7 +274,20 @@ FEATURES = (
     Feature("load torque", _of_loaded("load_torque")),
     Feature("drive share", _of_loaded("drive_share")),
     Feature("viscous load", _of_loaded("viscous_load")),
-    Feature("quadratic load", _of_loaded("quadratic_load")),
+    Feature(
+        "quadratic load",
+        (*_of_loaded("quadratic_load"), *_of_loaded("rated_power"), *_of_loaded("rated_speed")),
+    ),
+    Feature(
+        CURVE,
+        (
+            *_of_loaded("curve"), "TorquePoint.speed", "TorquePoint.torque", "Generator.power",
+            *(one for key in (*KLOSS, "gain", "set_speed", "torque_limit") for one in _of_loaded(key)),
+            "Propeller.damping_factor",
+        ),
+        _curves,
+    ),
+    Feature(LAG, (*_of_loaded("corner_frequency"), *_of_loaded("pole_pairs")), _lags),
     Feature(
         "excitation by order",
         (*_of_loaded("excitation"), "Excitation.order", "Excitation.amplitude"),
@@ -268,8 +296,8 @@ FEATURES = (
     Feature(
         "excitation that varies with speed or load",
         (
-            "Excitation.quadratic_amplitude", "Excitation.speeds", "Excitation.torques", "Excitation.amplitudes",
-            "Excitation.phases",
+            "Excitation.quadratic_amplitude", "Excitation.share", "Excitation.speeds",
+            "Excitation.torques", "Excitation.amplitudes", "Excitation.phases",
         ),
         _excited(lambda one: one.varies),
     ),

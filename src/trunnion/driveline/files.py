@@ -29,6 +29,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
+from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.excitation_file import read_excitation
@@ -370,6 +371,7 @@ TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
     "gas_torque": read_excitation,
     "pressure": read_pressure,
     "compression": read_pressure,
+    "curve": read_curve,
 }
 """What reads the table that a key of an element may name."""
 

@@ -12,6 +12,7 @@ from trunnion.driveline.engine import Engine
 from trunnion.driveline.flywheels import DualMassFlywheel
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -30,6 +31,11 @@ KINDS: dict[str, type[Element]] = {
         DualMassFlywheel,
         Disk,
         Engine,
+        Motor,
+        Generator,
+        Fan,
+        Pump,
+        Propeller,
         ViscousDamper,
         TunedDamper,
         HookeJoint,

@@ -25,6 +25,7 @@ from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.quantities import (
     RATIO,
     Acceleration,
@@ -56,14 +57,15 @@ SHIP_SHAFTS = {
 """Design features of ship shafts and their factor C_K (IACS UR M68)."""
 
 _SPRING: tuple[type[Element], ...] = (Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, Belt, Tyre)
+_TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*_SPRING, GearPair),
     "vibratory_torque": (*_SPRING, GearPair),
     "transient_vibratory_torque": (*_SPRING, GearPair),
     "max_stress": (Shaft,),
     "max_twist": _SPRING,
-    "max_speed_fluctuation": (Disk, Vehicle),
-    "max_acceleration": (Disk, Vehicle),
+    "max_speed_fluctuation": _TURNING,
+    "max_acceleration": _TURNING,
     "temperature_factor": (Coupling,),
     "starting_factor": (Coupling,),
     "ship_shaft": (Shaft,),

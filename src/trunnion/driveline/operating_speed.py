@@ -8,6 +8,8 @@ import numpy as np
 
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.machines import Motor
+from trunnion.driveline.mean_balance import is_left_free, own_speed
 from trunnion.driveline.quantities import SPEED, parse
 from trunnion.errors import InputError
 
@@ -28,12 +30,20 @@ def stated_range(line: Driveline) -> tuple[float, float] | None:
     return None if operation.speed is None else (operation.speed, operation.speed)
 
 
+def runs_by_itself(line: Driveline) -> bool:
+    """Whether a machine drives the line that nothing prescribes or controls, so that it finds its own speed."""
+    return is_left_free(line) and any(isinstance(element, Motor) for element in line.elements)
+
+
 def operating_speed(line: Driveline, speed: float | str | None) -> float:
-    """``speed``, a number or a text with its unit, or the operating speed the description gives [rad/s]."""
+    """``speed``, a number or a text with its unit, or the operating speed the description gives [rad/s]; without one
+    that at which a motor and its loads settle."""
     if isinstance(speed, str):
         speed = quantity(speed, SPEED, "speed")
     if speed is None:
         speed = line.operation.speed if line.operation else None
+    if speed is None and runs_by_itself(line):
+        return own_speed(line)
     if speed is None:
         raise InputError(
             "is not given",

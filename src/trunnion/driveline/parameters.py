@@ -293,6 +293,7 @@ _HARMONICS = {
         "frequency": "rad/s",
         "phase": "rad",
         "quadratic_amplitude": "N*m*s^2/rad^2",
+        "share": "1",
     },
     "transmission_error": {"amplitude": "m", "phase": "rad"},
     "stiffness_variation": {"share": "1", "phase": "rad"},

@@ -10,13 +10,15 @@ from collections.abc import Iterator
 from math import inf, isfinite
 
 from trunnion.driveline.chain import ElementChain
-from trunnion.driveline.elements import ConstantSpeed, Loaded
+from trunnion.driveline.elements import ConstantSpeed, Rotor
+from trunnion.driveline.machines import ElectricMachine
 from trunnion.driveline.parts import Dragged, Sprung
+from trunnion.driveline.quantities import FREQUENCY, shown
 from trunnion.driveline.shafts import Shaft, SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
 
 HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
-DRAGGED = "damper without a spring"
+DRAGGED, LAG = "damper without a spring", "lag of a motor"
 ALIKE = 1e-9
 """Relative difference of two c/k that counts as none."""
 
@@ -28,7 +30,7 @@ def prescribed_excitations(line: ElementChain) -> tuple[str, ...]:
     return tuple(
         name
         for name, element, g in zip(line.names, line.elements, group, strict=True)
-        if isinstance(element, Loaded) and g in fixed and any(one.largest for one in element.excitation)
+        if isinstance(element, Rotor) and g in fixed and any(one.largest for one in element.excitation)
     )
 
 
@@ -80,6 +82,14 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             f"{' and '.join(names)}: in series, with no inertia between and damping over stiffness different, they "
             f"count as one shaft, which holds {holds}; put a Disk between",
         )
+    for name, element in zip(line.names, line.elements, strict=True):
+        if isinstance(element, ElectricMachine) and element.lag_frequency is not None:
+            corner = shown(element.lag_frequency, FREQUENCY, digits=4)
+            yield (
+                LAG,
+                f"{name}: its torque lags above {corner}; its slope is taken as quasi-static, which holds well below "
+                "that; leave pole_pairs and corner_frequency out where it does not matter",
+            )
 
 
 def _slip_clutch_before(line: ElementChain, name: str) -> str:

@@ -8,11 +8,13 @@ from pydantic import BaseModel
 
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT, TABLES
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
+from trunnion.driveline.machines import KLOSS
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
@@ -27,6 +29,8 @@ _ROLLING = ["mass", "radius"]
 _TOOTHED = ["teeth_in", "teeth_out", "module"]
 _SLIP = ["slip_stiffness", "radius", "travel_speed", "inertia"]
 _BASE = ["base_radius_in", "base_radius_out"]
+_RATED = ["rated_power", "rated_speed"]
+_POWERS = ["load_torque", "viscous_load", "quadratic_load"]
 
 
 def _geometry(sizes: list[str], property_: str) -> dict[str, Any]:
@@ -60,6 +64,20 @@ _RULES: dict[str, dict[str, Any]] = {
             **dict.fromkeys((*_SOLID, "inner_diameter", "material", "density"), _SOLID),
             **dict.fromkeys(_ROLLING, _ROLLING),
         },
+    },
+    **{
+        kind: {"oneOf": [{"required": [*needed]} for needed in ways]}
+        for kind, ways in {
+            "Motor": (KLOSS, ("curve",), ("gain",)),
+            "Generator": (KLOSS, ("curve",), ("gain", "set_speed"), ("power",)),
+        }.items()
+    },
+    **{
+        kind: {
+            "anyOf": [{"required": [key]} for key in (_RATED[0], *_POWERS, "curve")],
+            "dependentRequired": {_RATED[0]: [_RATED[1]], _RATED[1]: [_RATED[0]]},
+        }
+        for kind in ("Fan", "Pump", "Propeller")
     },
     "Ratio": {
         "oneOf": [{"required": ["ratio"]}, {"required": ["teeth_in", "teeth_out"]}],
@@ -150,6 +168,7 @@ def json_schema() -> dict[str, Any]:
             "StiffnessVariation": _model(StiffnessVariation),
             "Ripple": _model(Ripple),
             "Slider": _model(Slider),
+            "TorquePoint": _model(TorquePoint),
         },
     }
 

@@ -50,6 +50,9 @@ def _numbers(element: Element) -> list[str]:
             count = len(value) if len(value) > 1 or key != "excitation" else "one"
             parts.append(f"{key.replace('_', ' ')} of {count} {_LISTS[key]}{'s' if len(value) > 1 else ''}")
             continue
+        if key == "curve":
+            parts.append(f"curve of {len(value)} points")
+            continue
         if isinstance(value, tuple):
             parts.append(f"{key.replace('_', ' ')} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
             continue

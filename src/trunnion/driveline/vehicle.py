@@ -150,7 +150,7 @@ class Vehicle(Loaded, VehicleMass):
     drive_share, excitation : as of a ``Disk``.
 
     >>> car = Vehicle(mass="1600 kg", wheel_radius="0.31 m", rolling_resistance=0.012, drag_area="0.65 m^2")
-    >>> print(f"{car.moment_of_inertia:.1f} kg m², {car.loads[0]:.1f} N m at rest")
+    >>> print(f"{car.moment_of_inertia:.1f} kg m², {car.load.constant:.1f} N m at rest")
     153.8 kg m², 58.4 N m at rest
     """
 
@@ -170,11 +170,6 @@ class Vehicle(Loaded, VehicleMass):
     def inertias(self, number: Numbers) -> tuple[Any, ...]:
         """Mass and undriven wheels, as the driven wheels feel them."""
         return (number("mass") * number("wheel_radius") ** 2 + number("wheel_inertia"),)
-
-    @property
-    def resists(self) -> bool:
-        """Whether anything but stated torques resists."""
-        return bool(self.rolling_resistance or self.grade or self.drag_area)
 
     def resistance(self, number: Numbers) -> tuple[Any, Any]:
         """Of rolling and climbing [N m], and of the air [N m s²/rad²]."""

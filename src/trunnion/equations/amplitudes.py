@@ -1,4 +1,5 @@
-"""The laws of a harmonic torque's amplitude: constant, by the square of the disk's speed, or from a table."""
+"""The laws of a harmonic torque's amplitude: constant, by the square of the disk's speed, a share of the mean torque on
+it, or from a table."""
 
 from __future__ import annotations
 
@@ -62,6 +63,7 @@ def _shape(law: Excitation, running: Running) -> Complex:
 LAWS: dict[str, Callable[[Excitation, Running], Complex | Array | float]] = {
     "amplitude": lambda law, running: 1.0,
     "quadratic_amplitude": lambda law, running: running.speed**2,
+    "share": lambda law, running: np.abs(running.torque()),
     "amplitudes": _shape,
 }
 """A over the packed number, by the key that states it (``driveline.excitation.AMPLITUDES``)."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.driveline.clutches import Clutch
-from trunnion.driveline.elements import Loaded
+from trunnion.driveline.elements import Rotor
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.sliders import sliders
 from trunnion.equations.stage_laws import stage_law
@@ -86,9 +86,9 @@ def carries_static_torque(assembly: Assembly) -> bool:
 
     Bent joints, loads by the square of the speed, torques by order and drives that keep a speed add to them.
     """
-    disks = [element for element in assembly.line.elements if isinstance(element, Loaded)]
+    disks = [element for element in assembly.line.elements if isinstance(element, Rotor)]
     return not (
         assembly.topology.free
         or has_joint_angles(assembly)
-        or any(disk.loads[2] or any(one.order for one in disk.excitation) for disk in disks)
+        or any(disk.tangent or disk.loaded_by_square or any(one.order for one in disk.excitation) for disk in disks)
     )

@@ -21,7 +21,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk, Loaded
+from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.amplitudes import Running, amplitude, where
@@ -81,8 +81,8 @@ class LineHarmonic(Harmonic):
 
 @dataclass(frozen=True)
 class DiskTorque(LineHarmonic):
-    """A harmonic torque on the disk at a ``station``: amplitude as its ``law`` makes it of the packed number there, of
-    all ``cylinders`` together.
+    """A harmonic torque on the disk at a ``station``, an ``element`` of the line: amplitude as its ``law`` makes it of
+    the packed number there, of all ``cylinders`` together.
 
     columns: of that number, of the phase, and of the frequency (−1 without one); prescribed: a ConstantSpeed gives the
     rotation that it acts on.
@@ -90,6 +90,7 @@ class DiskTorque(LineHarmonic):
 
     columns: tuple[int, ...]
     station: int
+    element: int
     law: Excitation
     cylinders: complex
     prescribed: bool
@@ -117,7 +118,7 @@ class DiskTorque(LineHarmonic):
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
         speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
-        return Running(speed, lambda: -assembly.mean_loads(table)[:, self.station])
+        return Running(speed, lambda: -assembly.own_load(self.element, table))
 
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         s = self.station
@@ -190,13 +191,13 @@ def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTor
     found = []
     for s, place in topo.disks:
         disk = packed.line.elements[place]
-        assert isinstance(disk, Loaded)
+        assert isinstance(disk, Rotor)
         for i, law in enumerate(disk.excitation, start=1):
             keys = ("amplitude" if law.points else law.stated_as, "phase", "frequency")
             columns = tuple(packed.column(place, f"excitation {i} {key}") for key in keys)
             number, phase, frequency = (float(row[column]) if column >= 0 else 0.0 for column in columns)
             order = Fraction(str(law.order or 0)) * abs(topo.speed_ratio[s])
-            own = packed.line.names[place], i, columns, s, law, cylinders(disk, law), not topo.turning[s].any()
+            own = packed.line.names[place], i, columns, s, place, law, cylinders(disk, law), not topo.turning[s].any()
             found.append(DiskTorque(order, frequency, number, phase, *own))
     return tuple(found)
 
@@ -212,7 +213,7 @@ def mesh_errors(assembly: Assembly, mesh: Mesh, row: Array) -> tuple[MeshError, 
     )
 
 
-def cylinders(disk: Loaded, law: Excitation) -> complex:
+def cylinders(disk: Rotor, law: Excitation) -> complex:
     """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 1 where it has none."""
     if not isinstance(disk, Disk) or not disk.firing_angles or law.order is None:
         return 1.0
@@ -225,9 +226,9 @@ def cylinders(disk: Loaded, law: Excitation) -> complex:
 def unexcited(line: Driveline) -> Driveline:
     """``line`` without excitations of disks and transmission errors."""
     for name, element in zip(line.names, line.elements, strict=True):
-        if isinstance(element, Loaded) and element.excitation:
-            cylinders_too = {"firing_angles": None, "misfiring": None} if isinstance(element, Disk) else {}
-            line = line.replace(name, excitation=None, **cylinders_too)
+        if isinstance(element, Rotor) and element.excitation:
+            keys = ("excitation", "firing_angles", "misfiring")
+            line = line.replace(name, **{key: None for key in keys if key in type(element).model_fields})
         if isinstance(element, GearPair) and element.transmission_error:
             line = line.replace(name, transmission_error=())
     return line

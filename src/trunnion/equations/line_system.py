@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
+from trunnion.driveline import quantities
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
@@ -23,11 +25,11 @@ from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_regimes import line_regimes, slider_strides, slip_kernel, staged_springs
-from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares
+from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares, refuse_curves
 from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.slip_clutches import PlacedClutch, clutch_numbers, placed_clutches, slipping
 from trunnion.equations.steady_base import require_tree
-from trunnion.errors import InputError
+from trunnion.errors import InputError, InputRemark
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, common_rate, periods_in_common, turning
 from trunnion.laws.hooke import CrossLaw
@@ -194,6 +196,8 @@ class LineSystem(Portable):
         stations[:, core.VISCOUS], stations[:, core.QUADRATIC] = co.viscous[case], co.quadratic[case]
         if self.leaves and topo.free:
             stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
+        if on.acceleration:
+            refuse_curves(topo, "use tn.order_response at several speeds, or tn.simulate at one")
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
@@ -379,6 +383,11 @@ def line_system(line: Driveline | Assembly, speed: float, *, leaves: bool = Fals
     require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
+    for name, rotor in assembly.topology.rotors:
+        if rotor.tangent:
+            at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
+            remark = f"{name}: equations of motion have its torque over speed by the tangent at {at} of the input"
+            warnings.warn(InputRemark(remark), stacklevel=2)
     return LineSystem(assembly, float(speed), leaves)
 
 

@@ -1,8 +1,9 @@
 """Outer torques of a line, and how drives balance them where no speed is prescribed.
 
-A station of speed ratio R carries the torque M(ω) = M₀ + c₁ω + c₂ω|ω| against its mean sense of rotation. At the
-mean input speed Ω of a free–free line the powers M_s(|R_s|Ω)|R_s|Ω must add up to nothing; where disks have
-a ``drive_share``, each carries its share of what is left as a constant torque.
+A station of speed ratio R carries the torque M(ω) = M₀ + c₁ω + c₂ω|ω| against its mean sense of rotation. Of a
+machine whose torque is another curve this is the tangent at its mean speed |R|Ω. At the mean input speed Ω of a
+free–free line the powers M_s(|R_s|Ω)|R_s|Ω must add up to nothing; where disks have a ``drive_share``, each carries its
+share of what is left as a constant torque, a motor with the slope that it has where it carries it.
 """
 
 from __future__ import annotations
@@ -13,7 +14,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.elements import Loaded, Rotor
+from trunnion.driveline.machines import Motor
+from trunnion.driveline.parts import Numbers
+from trunnion.driveline.quantities import SPEED, TORQUE, shown
 from trunnion.equations.topology import Topology
+from trunnion.errors import InputError
+from trunnion.laws.torque_curve import PowerCurve
 
 Column = Callable[[int, str], int]
 
@@ -31,29 +38,99 @@ class StationLoads:
 
 
 def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
-    """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0."""
+    """The loads at every row of packed numbers (cases, columns), drives balanced at the speed in column 0.
+
+    Raises
+    ------
+    InputError : a speed beyond the curve of a machine; a motor that would have to carry more than it can.
+    """
     loads = _described(topo, column, table)
     if topo.free and (share := given_shares(topo, column, table)).any():
-        left = load_at_input(topo, column, table)
-        loads = replace(loads, constant=loads.constant + drive_torques(topo, share, left))
+        torque = drive_torques(topo, share, load_at_input(topo, column, table))
+        loads = replace(loads, constant=loads.constant + torque)
+        _put_slopes(topo, column, table, loads, torque / np.where(share > 0, share, 1.0))
     return loads
 
 
 def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
-    keys = ("load_torque", "viscous_load", "quadratic_load")
-    constant, viscous, quadratic = (_of_disks(topo, column, table, key) for key in keys)
-    for station, place, element in topo.resisting:
-        more = element.resistance(lambda key, i=place: table[:, column(i, key)])  # type: ignore[misc]
-        constant[:, station] += more[0]
-        quadratic[:, station] += more[1]
-    return StationLoads(constant, viscous, quadratic)
+    loads = StationLoads(*np.zeros((3, len(table), len(topo.stations))))
+    for (station, place), (name, rotor) in zip(topo.disks, topo.rotors, strict=True):
+        load = rotor.load_of(_numbers(column, table, place))
+        turning = table[:, 0] * abs(topo.mean_speeds[station])
+        if not isinstance(load, PowerCurve):
+            known = np.isfinite(turning)
+            value, slope = load.value(turning), np.where(known, load.slope(turning), 0.0)
+            if np.isnan(value[known]).any():
+                raise _beyond(name, load.range, turning[known & np.isnan(value)])
+            load = PowerCurve(value - slope * np.where(known, turning, 0.0), slope)
+        loads.constant[:, station] += load.constant
+        loads.viscous[:, station] += load.viscous
+        loads.quadratic[:, station] += load.quadratic
+    return loads
+
+
+def _numbers(column: Column, table: Array, place: int) -> Numbers:
+    """The numbers of an element at every row (case,)."""
+    return lambda key: table[:, column(place, key)]
+
+
+def _beyond(name: str, reach: tuple[float, float], speeds: Array) -> InputError:
+    asked = shown(float(speeds[0]), SPEED, "rpm", 5)
+    covers = " to ".join(shown(end, SPEED, "rpm", 5) for end in reach)
+    return InputError(
+        f"is a curve from {covers}, which does not cover {asked} of its shaft", element=name, key="curve",
+        remedy="add points, or narrow the range of speeds",
+    )  # fmt: skip
+
+
+def _put_slopes(topo: Topology, column: Column, table: Array, loads: StationLoads, by_share: Array) -> None:
+    """Add the slopes of motors that carry their share, ``by_share`` times it (case, station) [N m]; their torque at the
+    mean speed stays."""
+    for (station, place), (name, motor) in zip(topo.disks, topo.rotors, strict=True):
+        if not isinstance(motor, Motor) or not motor.set:
+            continue
+        number, known = _numbers(column, table, place), np.isfinite(table[:, 0])
+        torque = np.where(known, -by_share[:, station] * number("drive_share"), 0.0)
+        slope = np.asarray(motor.set_slope(number, torque))
+        if np.isnan(slope).any():
+            raise _too_much(name, motor, torque[np.isnan(slope)], table[np.isnan(slope), 0])
+        slope = np.where(known, slope, 0.0)
+        loads.viscous[:, station] += slope
+        loads.constant[:, station] -= slope * np.where(known, table[:, 0] * abs(topo.mean_speeds[station]), 0.0)
+
+
+def _too_much(name: str, motor: Motor, torque: Array, speed: Array) -> InputError:
+    worst = int(np.abs(torque).argmax())
+    key, most = motor.most or ("", 0.0)
+    at = shown(float(speed[worst]), SPEED, "rpm", 5)
+    return InputError(
+        f"would have to drive with {shown(float(torque[worst]), TORQUE, digits=5)} at {at} of the input, more than its "
+        f"{key.replace('_', ' ')}", element=name, key=key, value=most,
+        remedy="raise it, lower the load, or narrow the range of speeds",
+    )  # fmt: skip
+
+
+def refuse_curves(topo: Topology, remedy: str) -> None:
+    """Refuse machines whose torque is taken by its tangent, where the speed changes.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    for name, rotor in topo.rotors:
+        if rotor.tangent:
+            raise InputError(
+                "has a torque over speed that equations of motion take by its tangent at one speed, and the speed "
+                "changes here", element=name, key="curve", remedy=remedy,
+            )  # fmt: skip
 
 
 def _of_disks(topo: Topology, column: Column, table: Array, key: str) -> Array:
-    """One number of the disks added up by station (case, station)."""
+    """One number of those disks and machines that state it, added up by station (case, station)."""
     found = np.zeros((len(topo.stations), len(table)))
-    columns = [column(element, key) for _, element in topo.disks]
-    np.add.at(found, [station for station, _ in topo.disks], table[:, columns].T)
+    stating = [(station, at) for station, place in topo.disks if (at := column(place, key)) >= 0]
+    if stating:
+        np.add.at(found, [station for station, _ in stating], table[:, [at for _, at in stating]].T)
     return np.ascontiguousarray(found.T)
 
 
@@ -92,6 +169,20 @@ def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
     return np.asarray(loads.constant + np.where((loads.viscous != 0) | (loads.quadratic != 0), by_speed, 0.0))
 
 
+def own_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
+    """Mean torque (case,) [N m] that the element at a place of the line resists with, its share of the drive in it."""
+    station, rotor = next((s, rotor) for (s, i), (_, rotor) in zip(topo.disks, topo.rotors, strict=True) if i == place)
+    turning = table[:, 0] * abs(topo.mean_speeds[station])
+    found = rotor.load_of(_numbers(column, table, place))
+    by_speed = not isinstance(found, PowerCurve) or np.any(found.viscous) or np.any(found.quadratic)
+    own = np.broadcast_to(found.value(turning if by_speed else np.zeros_like(turning)), turning.shape)
+    if topo.free and (at := column(place, "drive_share")) >= 0 and table[:, at].any():
+        share = given_shares(topo, column, table)
+        torque = drive_torques(topo, share, load_at_input(topo, column, table))[:, station]
+        own = own + torque * table[:, at] / np.where(share[:, station] > 0, share[:, station], 1.0)
+    return np.asarray(own)
+
+
 def mean_loads(topo: Topology, column: Column, table: Array) -> Array:
     """The same of every row of packed numbers (cases, columns), drives balanced."""
     return mean_load(topo, station_loads(topo, column, table), table[:, 0])
@@ -121,18 +212,25 @@ def drive_torques(topo: Topology, share: Array, torque: Array) -> Array:
 def drive_places(topo: Topology, column: Column, table: Array) -> Array:
     """Shares (case, station) of whatever else a drive must give to keep the speed.
 
-    The given shares; without any, disks that drive (a negative load_torque), by their power; without any, the
-    first disk.
+    The given shares; without any, motors, and disks that drive (a negative load_torque) by their power; without any,
+    the first disk.
     """
     share = given_shares(topo, column, table)
     driving = np.zeros_like(share)
-    for station, element in topo.disks:
-        driving[:, station] += np.maximum(-table[:, column(element, "load_torque")], 0.0)
+    for (station, place), (_, rotor) in zip(topo.disks, topo.rotors, strict=True):
+        driving[:, station] += _drives(rotor, _numbers(column, table, place))
     driving *= np.abs(topo.mean_speeds)
     first = np.zeros_like(share)
     first[:, topo.disks[0][0] if topo.disks else 0] = 1.0
     share = np.where(share.any(axis=1, keepdims=True), share, driving)
     return np.where(share.any(axis=1, keepdims=True), share, first)
+
+
+def _drives(rotor: Rotor, number: Numbers) -> Array | float:
+    """A measure [N m] of what drives with a torque of its own."""
+    if isinstance(rotor, Motor):
+        return 1.0
+    return np.maximum(-number("load_torque"), 0.0) if isinstance(rotor, Loaded) else 0.0
 
 
 def static_torque(topo: Topology, load: Array, stiffness: Array | None = None, damping: Array | None = None) -> Array:

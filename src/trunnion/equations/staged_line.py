@@ -23,7 +23,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Loaded
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
@@ -329,11 +329,13 @@ def _refuse_inexact(assembly: Assembly) -> None:
             found = "stiffness_variation", "makes the stages vary in time, so that no motion is exact"
         elif isinstance(element, GearPair) and element.impact_damping:
             found = "impact_damping", "goes with the depth of contact, so that no stage is linear"
-        elif isinstance(element, Loaded) and any(one.varies for one in element.excitation):
+        elif isinstance(element, Rotor) and any(one.varies for one in element.excitation):
             found = "excitation", "has an amplitude that depends on the speed or the load"
-        elif isinstance(element, Loaded) and element.loads[2]:
+        elif isinstance(element, Rotor) and element.tangent:
+            found = "curve", "goes with the speed, so that no stage is linear with constant coefficients"
+        elif isinstance(element, Rotor) and element.loaded_by_square:
             found = (
-                "quadratic_load" if element.quadratic_load else "drag_area",
+                "drag_area" if getattr(element, "drag_area", 0.0) else "quadratic_load",
                 "is not linear in the speed, so that no motion is exact",
             )
         if found:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.mean_balance import balances_in_words
+from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
@@ -179,13 +181,12 @@ def _driving(assembly: Assembly, table: Array) -> tuple[int, int]:
 
 def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     topo = assembly.topology
+    if runs_by_itself(assembly.line) and (balances := balances_in_words(assembly.line)):
+        return f"leave the speed out, so that it runs where they do, at {balances}; or give the motor drive_share = 1"
     station, element = _driving(assembly, row[None])
     name = assembly.line.names[element]
     remedy = f'give the driving disk, "{name}" say, drive_share = 1'
-    by_speed = [
-        row[assembly.packed.column(i, key)] for _, i in topo.disks for key in ("viscous_load", "quadratic_load")
-    ]
-    if any(by_speed) or any(element.loads[2] for _, _, element in topo.resisting):
+    if any(rotor.loaded_by_speed for _, rotor in topo.rotors):
         return remedy  # no constant torque balances at more than one speed
     needed = float(row[assembly.packed.column(element, "load_torque")]) - left / abs(float(topo.speed_ratio[station]))
     return f'{remedy}, or load_torque = "{needed:.10g} N*m"'

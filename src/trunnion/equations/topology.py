@@ -12,7 +12,7 @@ a group that is no unknown. ``Topology.turning`` says what every station turns b
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
 from fractions import Fraction
@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Flags, Places
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Element, Loaded
+from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
 from trunnion.driveline.stages import PiecewiseShaft
@@ -115,10 +115,9 @@ class Topology:
     ``reference[g]`` is the first station of group g; ``coordinate[g]`` its place among the unknowns, or −1
     where its rotation is prescribed. ``speed_ratio[s]`` is the mean speed of station s over the input's,
     an exact fraction. ``inertias`` are station, element and number among the element's own of every inertia, ``disks``
-    station and element of those that outer torques act on; ``meshes`` are those that vary with their phase. ``names``
-    are those of the unknowns; ``points`` are station and name of what is seen to move: each disk where it is, what else
-    is heavy where none is; ``resisting`` are station, place and element of those of the disks that resist by a law of
-    their own. What follows from these is found once.
+    station and element of those that outer torques act on, ``rotors`` these elements by name; ``meshes`` are those that
+    vary with their phase. ``names`` are those of the unknowns; ``points`` are station and name of what is seen to move:
+    each disk where it is, what else is heavy where none is. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -127,12 +126,12 @@ class Topology:
     coordinate: tuple[int, ...]
     prescribed: tuple[bool, ...]
     disks: tuple[tuple[int, int], ...]
+    rotors: tuple[tuple[str, Rotor], ...]
     inertias: tuple[tuple[int, int, int], ...]
     speed_ratio: tuple[Fraction, ...]
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
     points: tuple[tuple[int, str], ...]
-    resisting: tuple[tuple[int, int, Loaded], ...] = ()
 
     @cached_property
     def size(self) -> int:
@@ -547,10 +546,17 @@ def _merge_massless(line: Driveline, draft: LineStations) -> Topology:
     return Topology(
         stations=tuple(draft.stations), compliances=tuple(compliances), reference=tuple(draft.reference),
         coordinate=tuple(coordinate), prescribed=tuple(draft.prescribed), disks=tuple(draft.disks),
+        rotors=tuple(_rotors(line, draft)),
         inertias=tuple(draft.inertias), speed_ratio=tuple(draft.speed_ratio), names=tuple(names),
         meshes=tuple(_meshes(line, draft, compliances)), points=tuple(_points(line, draft, coordinate, names)),
-        resisting=tuple(_resisting(line, draft)),
     )  # fmt: skip
+
+
+def _rotors(line: Driveline, draft: LineStations) -> Iterator[tuple[str, Rotor]]:
+    for _, i in draft.disks:
+        element = line.elements[i]
+        assert isinstance(element, Rotor)
+        yield line.names[i], element
 
 
 def _points(line: Driveline, draft: LineStations, coordinate: list[int], names: list[str]) -> list[tuple[int, str]]:
@@ -564,13 +570,6 @@ def _points(line: Driveline, draft: LineStations, coordinate: list[int], names: 
     with_disk = {draft.stations[s].group for s, _ in draft.disks}
     found += [(draft.reference[g], names[c]) for g, c in enumerate(coordinate) if c >= 0 and g not in with_disk]
     return sorted(found, key=lambda point: point[0])
-
-
-def _resisting(line: Driveline, draft: LineStations) -> Iterable[tuple[int, int, Loaded]]:
-    for s, i in draft.disks:
-        element = line.elements[i]
-        if isinstance(element, Loaded) and element.resists:
-            yield s, i, element
 
 
 def _meshes(line: Driveline, draft: LineStations, compliances: list[Compliance]) -> Iterable[Mesh]:

@@ -438,7 +438,7 @@ def _mark(one: Look, says: str) -> tuple[Any, ...]:
 
 
 def _says(item: Any, k: Any = 0) -> str:
-    """What the pointer is told: what the item says of its k-th part, its name, or what it is."""
+    """What the pointer shows: what the item says of its k-th part, its name, or what it is."""
     said = getattr(item, "says", "")
     said = (said[k] if len(said) > k else "") if not isinstance(said, str) else said
     return str(said or item.name or item.role.rstrip(" 0123456789"))

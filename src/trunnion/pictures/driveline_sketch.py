@@ -21,7 +21,7 @@ from trunnion.driveline.composite import StatedChain
 from trunnion.driveline.dampers import Damper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Loaded, Ratio
+from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio, Rotor
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.planetary import Planetary
@@ -42,7 +42,7 @@ LENGTH = {
     "Shaft": 1.25, "Coupling": 1.0, "Disk": 0.55, "ConstantSpeed": 0.6, "Ratio": 0.9, "GearPair": 0.9,
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
-    "SlipClutch": 0.7,
+    "SlipClutch": 0.7, "Motor": 0.95, "Generator": 0.95, "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 THROW = 0.5
@@ -252,6 +252,34 @@ def _engine(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     _bar(axes, *crank, place.end, zorder=5)
 
 
+def _electric(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """The circle of an electric machine with its letter."""
+    _bar(axes, place.start, place.end)
+    axes.add_patch(Ellipse(tuple(place.middle), 0.86, 0.86, fc="#f6d9c9", ec=INK, lw=1.2, zorder=3))
+    x, y = place.middle
+    axes.text(x, y, place.element.kind[0], fontsize=SMALL + 1, color=INK, ha="center", va="center", zorder=4)
+
+
+def _blades(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """Blades above and below a hub."""
+    _bar(axes, place.start, place.end)
+    tilt = np.rad2deg(place.direction)
+    for side in (1, -1):
+        tip = place.middle + side * 0.48 * _across(place.direction)
+        look: dict[str, Any] = {"angle": tilt - side * 14, "fc": "#cfe8dc", "ec": INK, "lw": 1.1, "zorder": 3}
+        axes.add_patch(Ellipse(tuple(tip), 0.3, 0.86, **look))
+    _box(axes, place.part(-0.17, 0.17), 0.2, fc="#8fa9b8", zorder=4)
+
+
+def _pump(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """The circle of a pump with its triangle."""
+    _bar(axes, place.start, place.end)
+    axes.add_patch(Ellipse(tuple(place.middle), 0.86, 0.86, fc="#cfe8dc", ec=INK, lw=1.2, zorder=3))
+    along, across = _along(place.direction), _across(place.direction)
+    corners = [place.middle + 0.4 * along, place.middle - 0.2 * along + 0.36 * across]
+    _bar(axes, *corners, place.middle - 0.2 * along - 0.36 * across, corners[0], lw=1.2, zorder=4)
+
+
 def _damper(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """A ring above and below in its housing, in oil or on a spring."""
     damper = place.element
@@ -391,6 +419,11 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "PiecewiseShaft": _stages,
     "Clutch": _stages,
     "SlipClutch": _slip_clutch,
+    "Motor": _electric,
+    "Generator": _electric,
+    "Fan": _blades,
+    "Propeller": _blades,
+    "Pump": _pump,
 }
 
 
@@ -407,7 +440,7 @@ def _name(axes: Axes, place: _ElementPlace, number: int, size: float, floor: flo
         middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
         fontsize=size, color=INK, ha="left", va="center",
     )  # fmt: skip
-    below = 0.95 if isinstance(place.element, Disk) else 0.55 + 0.9 * abs(np.sin(place.direction))
+    below = 0.95 if isinstance(place.element, Rotor) else 0.55 + 0.9 * abs(np.sin(place.direction))
     if middle[1] - below > floor + 0.1:
         axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)
 
@@ -439,8 +472,8 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
         text = f"forks {element.fork_offset / DEGREE:.4g}°"
     elif isinstance(element, GEARS):
         text = f"i {element.speed_ratio:.4g}"
-    elif isinstance(element, Loaded) and element.load_torque:
-        text = f"load\n{element.load_torque:.4g} N·m"
+    elif load := getattr(element, "load_torque", 0.0):
+        text = f"load\n{load:.4g} N·m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
     elif isinstance(element, Engine) and len(element.firing_order) > 1:
@@ -449,7 +482,7 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
         at = place.end + np.array([0.05, 0.75])
         axes.text(at[0], at[1], text, fontsize=size, color=INK, ha="left", va="bottom")
     elif text:
-        tall = {Disk: 1.0, Engine: 1.2}.get(type(element))
+        tall = 1.0 if isinstance(element, Rotor) else 1.2 if isinstance(element, Engine) else None
         height = tall or 0.55 + 0.9 * abs(np.sin(place.direction))
         colour = ACCENT if hasattr(element, "angle") else INK
         axes.text(

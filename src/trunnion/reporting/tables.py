@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.design.assessment.check import Status, percent
 from trunnion.design.assessment.result import Assessment
+from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.engine import Engine
@@ -98,9 +99,11 @@ def _numbers(element: Element) -> list[str]:
 
 
 def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
-    """Quantities one after the other, or how many harmonics or curves there are."""
+    """Quantities one after the other, or how many harmonics, curves or points there are."""
     if isinstance(values[0], PressureCurve):
         return f"of {len(values)} curve{'s' if len(values) > 1 else ''}"
+    if isinstance(values[0], TorquePoint):
+        return f"of {len(values)} points"
     if not all(isinstance(value, float) for value in values):
         return f"of {len(values)} harmonic{'s' if len(values) > 1 else ''}"
     return ", ".join(_signs(shown(value, kind)) if kind else str(value) for value in values if isinstance(value, float))
@@ -304,6 +307,6 @@ def operation(contents: Contents, unit: str) -> Table:
         first, last = (np.rad2deg(a) for a in seen.angle_range)
         rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
     for name, element in zip(seen.line.names, seen.line.elements, strict=True):
-        if isinstance(element, Loaded) and element.load_torque:
-            rows.append((f"load torque on {name}", f"{four(element.load_torque)} N·m"))
+        if torque := getattr(element, "load_torque", 0.0):
+            rows.append((f"load torque on {name}", f"{four(torque)} N·m"))
     return Table(("", ""), tuple(rows))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Loaded
+from trunnion.driveline.elements import Rotor
 from trunnion.errors import ComputationError, InputError
 from trunnion.motion.orbits.periodic_response import PeriodicResponse, periodic_response
 from trunnion.results.finding import Finding, Gravity
@@ -64,5 +64,5 @@ def heaviest(motions: tuple[LoadedMotion, ...]) -> LoadedMotion:
 
 
 def _loaded(line: Driveline) -> bool:
-    disks = [e for e in line.elements if isinstance(e, Loaded)]
-    return any(any(d.loads) or d.excitation for d in disks)
+    rotors = [e for e in line.elements if isinstance(e, Rotor)]
+    return any(one.loaded_by_speed or one.excitation or getattr(one, "load_torque", 0.0) for one in rotors)

@@ -41,7 +41,7 @@ FORMAT = "trunnion stability chart 4"
 
 WAYS = 'how it was built in the end: "patches", "smaller patches", "whole periods" or "pixel by pixel"'
 BYTES_A_PIXEL = 64
-"""Radius, error, multiplier and verdict of a pixel, and what is held beside them while it is filled."""
+"""Radius, error, multiplier and verdict of a pixel, and what is stored beside them while it is filled."""
 
 
 @dataclass(frozen=True)

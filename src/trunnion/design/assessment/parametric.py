@@ -38,7 +38,7 @@ ROUGHLY = 1e-3
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
 NAME = "parametric stability"
-QUIET = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
+NOT_EXCITED = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
 
 
 def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
@@ -47,7 +47,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         found = _ranges_of(case)
     except (InputError, ComputationError) as error:
         if not case.parametric:
-            yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+            yield Check(NAME, Status.NOT_APPLICABLE, RULE, NOT_EXCITED)
             return
         yield Check(NAME, Status.NOT_JUDGED, RULE, str(error).splitlines()[0], load_case=case.name)
         return
@@ -57,7 +57,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         return
     speeds, growth = found.along.speed, found.along.growth_rate
     if not case.parametric and not found.ranges:
-        yield Check(NAME, Status.NOT_APPLICABLE, RULE, QUIET)
+        yield Check(NAME, Status.NOT_APPLICABLE, RULE, NOT_EXCITED)
         return
     known = np.isfinite(growth)
     if not np.any(known):

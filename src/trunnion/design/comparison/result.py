@@ -135,13 +135,13 @@ class Comparison(Result):
     def _lines(self) -> Iterator[str]:
         yield f"{self.names[0]} → {self.names[1]}: {self.sentence}"
         yield from (f"  {one}" for one in self.changes)
-        told = [one for one in self.differences if one.differs]
-        shown = [one for one in told if one.matters]
+        differing = [one for one in self.differences if one.differs]
+        shown = [one for one in differing if one.matters]
         for one in shown:
             yield f"  {one.name}: {self._value(one, 0)} → {self._value(one, 1)}{_in_brackets(one)}"
-        if len(told) > len(shown):
-            yield f"  {len(told) - len(shown)} more move by less than {100 * LITTLE:g} %"
-        if self.changes and not told:
+        if len(differing) > len(shown):
+            yield f"  {len(differing) - len(shown)} more move by less than {100 * LITTLE:g} %"
+        if self.changes and not differing:
             yield f"  {self._unmoved}"
 
     @property

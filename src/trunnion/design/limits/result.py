@@ -88,8 +88,8 @@ class StableLimit(Result):
         """The stable ranges (ranges, 2) of each speed, those above the limit among them; none where it is unknown."""
         known = (self.kind != LimitKind.UNKNOWN).tolist()
         return tuple(
-            _between(ranges, self.low, self.high) if told else np.zeros((0, 2))
-            for ranges, told in zip(self.unstable, known, strict=True)
+            _between(ranges, self.low, self.high) if is_known else np.zeros((0, 2))
+            for ranges, is_known in zip(self.unstable, known, strict=True)
         )
 
     @property

@@ -39,6 +39,10 @@ DIRECT_BYTES = 512 * 2**20
 """Memory for matrices of points that are integrated by themselves together."""
 AT_ONCE = 200_000
 """Numbers of a patch that are turned into pixels together."""
+COLUMNS = 8_000_000
+"""Numbers of a patch along columns of pixels, which stay in memory while their rows are shown."""
+SAMPLING = 0.7
+"""Share of the progress that building the function makes; showing its pixels makes the rest."""
 UNEVEN = 0.4713
 """Where boxes are divided for smaller patches: not in the middle, so that no node stands where one stood."""
 
@@ -77,7 +81,7 @@ FALLBACKS = (
 
 @dataclass(frozen=True)
 class BuiltChart:
-    """A chart's pixels and what stands behind them: the way that held, its family and tolerance, and its check.
+    """A chart's pixels and what stands behind them: strategy, family, tolerance and check.
 
     ``failed``: what the checks of the ways before found.
     """
@@ -143,8 +147,8 @@ def build(
             own, asked = family_for(strategy, family), tolerance * strategy.share
             if strategy.smaller and not strategy.half_windows and own is family:
                 continue  # it never used half periods, so this was tried before
-            function = _patched(strategy, own, x, y, asked, threads, report_progress)
-            pixels = fill(own, function, x, y, asked, threads)
+            function = _patched(strategy, own, x, y, asked, threads, lambda share: report_progress(SAMPLING * share))
+            pixels = fill(own, function, x, y, asked, threads, report_progress)
             check = compared(sharp() if first is None else first.result(), pixels)
             first = None
             if not check.worst_ratio > 1:
@@ -171,11 +175,10 @@ def _patched(
     box = Box.around(u, v)
     if not strategy.patched or box.u0 == box.u1 or box.v0 == box.v1:
         return PatchedFunction((), (box,))
-    if (
-        not strategy.smaller
-        and (few := family.leading(box, len(u) * len(v), tolerance / 4, threads, report_progress)) is not None
-    ):
-        return few
+    if not strategy.smaller:
+        for way in (family.leading, family.whole_matrices):
+            if (few := way(box, len(u) * len(v), tolerance / 4, threads, report_progress)) is not None:
+                return few
     sampler = family.sampler(box, len(u) * len(v), tolerance / 4, threads, slabs=not strategy.smaller)
     boxes = [part for whole in sampler.boxes for part in (_quarters(whole) if strategy.smaller else [whole])]
     return patches.build(
@@ -189,14 +192,26 @@ def _quarters(box: Box) -> list[Box]:
     return [Box(a, b, c, d) for a, b in ((box.u0, u), (u, box.u1)) for c, d in ((box.v0, v), (v, box.v1))]
 
 
-def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tolerance: float, threads: int) -> Pixels:
+def fill(
+    family: ChartFamily,
+    function: PatchedFunction,
+    x: Array,
+    y: Array,
+    tolerance: float,
+    threads: int,
+    report_progress: Progress = lambda share: None,
+) -> Pixels:
     """Every pixel, patch by patch in parallel, the rest by direct integration."""
+    pixels_in_all = len(x) * len(y)
+
+    def tell(done: int) -> None:
+        report_progress(SAMPLING + (1 - SAMPLING) * done / pixels_in_all)
 
     def judged(patch: Patch, u: Array) -> Callable[[Array], Pixels]:
         along = patch.columns(u)
         return lambda v: judge_rows(patch, along, u, v, family.size, family.set_aside)
 
-    pixels, left = shown(function, family.to_patch(x, True), family.to_patch(y, False), judged, threads)
+    pixels, left = shown(function, family.to_patch(x, True), family.to_patch(y, False), judged, threads, tell)
     r, c = np.nonzero(left)
     batch_size = int(np.clip(DIRECT_BYTES // (32 * (2 * family.size) ** 2), 1, 65536))
     for start in range(0, len(r), batch_size):
@@ -204,6 +219,7 @@ def fill(family: ChartFamily, function: PatchedFunction, x: Array, y: Array, tol
         values, bounds = family.evaluate(x[here[1]], y[here[0]], tolerance / 4, threads)
         found = judge(np.ascontiguousarray(values.T), np.ascontiguousarray(bounds.T), family.size, family.set_aside)
         pixels.put(here, found)
+        tell(pixels_in_all - len(r) + start + len(found.radius))
     decide(family, pixels, x, y, tolerance, threads)
     return pixels
 
@@ -214,8 +230,10 @@ def shown(
     v: Array,
     judged: Callable[[Patch, Array], Callable[[Array], Pixels]],
     threads: int,
+    tell: Callable[[int], None] = lambda done: None,
 ) -> tuple[Pixels, Flags]:
-    """Pixels (v, u) of all patches, and which are left; ``judged``: (patch, u) → v → its pixels."""
+    """Pixels (v, u) of all patches, and which are left; ``judged``: (patch, u) → v → its pixels; ``tell`` is called
+    with the pixels done so far."""
     pixels, left = Pixels.failed((len(v), len(u))), np.ones((len(v), len(u)), dtype=bool)
 
     def fill_strip(task: tuple[Callable[[Array], Pixels], slice, slice]) -> None:
@@ -223,13 +241,22 @@ def shown(
         pixels.put((rows, columns), judge_strip(v[rows]))
 
     # One patch may cover most of the pixels, so threads share strips.
-    tasks = []
-    for patch, rows, columns in function.parts(u, v):
-        width = (columns.stop - columns.start) * len(patch.error)
+    tasks, held = [], 0
+    parts = [
+        (patch, rows, some)
+        for patch, rows, columns in function.parts(u, v)
+        for some in _strips(columns, patch.coefficients[..., 0].size, COLUMNS)
+    ]
+    for k, (patch, rows, columns) in enumerate(parts):
         judge_strip = judged(patch, u[columns])
+        width = (columns.stop - columns.start) * len(patch.error)
         tasks += [(judge_strip, part, columns) for part in _strips(rows, width)]
         left[rows, columns] = False
-    on_threads(fill_strip, tasks, threads)
+        held += (columns.stop - columns.start) * patch.coefficients[..., 0].size
+        if held >= COLUMNS // 2 or k == len(parts) - 1:
+            on_threads(fill_strip, tasks, threads)
+            tell(int(np.count_nonzero(~left)))
+            tasks, held = [], 0
     return pixels, left
 
 
@@ -307,7 +334,7 @@ def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> No
     pixels.put_better(found, rows, columns)
 
 
-def _strips(rows: slice, per_row: int) -> list[slice]:
-    """Rows in strips of at most ``AT_ONCE`` numbers: bounded memory, and work for every thread's cache."""
-    step = max(1, AT_ONCE // max(per_row, 1))
+def _strips(rows: slice, per_row: int, most: int = AT_ONCE) -> list[slice]:
+    """Rows in strips of at most ``most`` numbers: bounded memory, and work for every thread's cache."""
+    step = max(1, most // max(per_row, 1))
     return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]

@@ -25,6 +25,7 @@ from trunnion.floquet.charts.axes import ChartAxis
 from trunnion.floquet.charts.chart_pixels import Pixels, undamped
 from trunnion.floquet.charts.cost_model import compiling_pays, instead_of_compiling, without_groups
 from trunnion.floquet.charts.leading_group import distinguished
+from trunnion.floquet.charts.matrix_interpolation import matrix_patches
 from trunnion.floquet.charts.multiplier_interpolation import corners_of, leading_patches
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import (
@@ -83,6 +84,12 @@ class ChartFamily(Protocol):
         self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
     ) -> PatchedFunction | None:
         """Patches of the largest multipliers alone, where those stand apart and cost less; else None."""
+        return None
+
+    def whole_matrices(
+        self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """Patches of all entries on grids whose degrees fit, where those cost less; else None."""
         return None
 
     def differ(self, x: Array, y: Array) -> bool:
@@ -261,6 +268,19 @@ class LineFamily(ChartFamily):
 
         return leading_patches(points, corners, box, pixels, tolerance, threads, elsewhere, report_progress)
 
+    def whole_matrices(
+        self, box: Box, pixels: int, tolerance: float, threads: int, report_progress: Callable[[float], None]
+    ) -> PatchedFunction | None:
+        """See ``ChartFamily``; only of lines too long for groups of multipliers."""
+        if self.size <= LARGEST_DENSE:
+            return None
+
+        def sample(u: Array, v: Array) -> tuple[Array, Array, Array]:
+            return self.matrices(*self._from_patch(u, v), SAMPLED * tolerance, threads)
+
+        most_nodes = NODES_FOR_PIXELS * pixels
+        return matrix_patches(sample, box, 2 * self.size, tolerance, most_nodes, MOST_BYTES, report_progress)
+
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""
         return LARGEST < 2 * self.size <= 2 * LARGEST_DENSE and distinguished(self.exponentials(x, y))
@@ -377,6 +397,10 @@ AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
 """How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
 RESOLVED = 20.0
 """Radians to either side of a patch's middle that its nodes resolve, with as many again for what is not a wave."""
+SAMPLED = 0.01
+"""Share of the tolerance that matrices of long lines are integrated to: they are known less well than asked."""
+NODES_FOR_PIXELS, MOST_BYTES = 0.8, 1e9
+"""Matrices that may be spent for a pixel of a long line, which costs as much by itself; memory that they may take."""
 FEWEST_SLABS = 3
 """Below this a slab is not much shorter than the period, and patching it saves nothing."""
 

@@ -13,8 +13,8 @@ from trunnion.numerics.patches.patches import Patch
 from trunnion.numerics.spectrum import multipliers, spectral_radius
 from trunnion.results.verdict import Verdict, verdicts
 
-FEW = 256
-"""Matrices that a library is quick enough for."""
+FEW, SMALL = 256, 24
+"""Matrices that a library is quick enough for, and their size."""
 ROUNDING = 4e-15
 """Of a matrix's norm, what of it eigenvalues are found for."""
 
@@ -168,7 +168,7 @@ def _eigenvalues(matrices: Array, m: int) -> tuple[Complex, Array]:
     points = matrices.shape[1]
     alike = np.ascontiguousarray(matrices.T).reshape(points, m, m)
     every = np.full((points, m), np.nan, dtype=complex)
-    if points > FEW:
+    if points > FEW or m > SMALL:
         parts = np.empty((m, points, 2))
         eigenvalues_in_rows(np.ascontiguousarray(matrices), m, parts, hessenberg := np.empty((points, m, m)))
         every, alike = parts.view(np.complex128)[..., 0].T.copy(), hessenberg
@@ -182,7 +182,7 @@ def _condition(matrix: Array, value: Complex) -> Array:
     """‖left‖‖right‖/|left·right| of one eigenvalue of each matrix."""
     count, m = matrix.shape[:2]
     out = np.full(count, np.nan)
-    if count > FEW:
+    if count > FEW or m > SMALL:
         conditions(matrix, value, out)
         return np.clip(out, 1.0, 1e10)
     finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(value)

@@ -2,8 +2,8 @@
 
 Most modes of a stiff line die within a period. Where the d largest multipliers stay apart from the rest in modulus,
 their elementary symmetric functions e₁ … e_d are analytic in every parameter, as all coefficients of the
-characteristic polynomial are, and as quiet as those few modes: few nodes resolve them, and what the others leave in the
-matrix has no part in them.
+characteristic polynomial are, and as smooth as those few modes: few nodes resolve them, and what the others leave in
+the matrix has no part in them.
 """
 
 from __future__ import annotations

@@ -38,13 +38,13 @@ def slow_enough(assembly: Assembly) -> float:
     except InputError:
         return 0.0
     first, second = (4 * once - 3 * at_rest - twice) / (2 * unit), (at_rest - 2 * once + twice) / (2 * unit**2)
-    held = _lyapunov(at_rest)
-    if held is None:
+    form = _lyapunov(at_rest)
+    if form is None:
         return 0.0
     slope = np.fft.irfft(
-        np.fft.rfft(held, axis=0) * (1j * np.arange(n // 2 + 1) / float(turns))[:, None, None], n, axis=0
+        np.fft.rfft(form, axis=0) * (1j * np.arange(n // 2 + 1) / float(turns))[:, None, None], n, axis=0
     )
-    one, two = (float(_largest(_both(part, held) + more)) for part, more in ((first, slope), (second, 0.0)))
+    one, two = (float(_largest(_both(part, form) + more)) for part, more in ((first, slope), (second, 0.0)))
     if two <= 0:
         return NEARLY / one if one > 0 else np.inf
     return NEARLY * 2 / (one + np.sqrt(one**2 + 4 * two))

@@ -170,7 +170,7 @@ class Span:
         """Every excitation that acts and has a table, its disk, and where the rows of ``table`` read it (case,); of
         those of a disk whose tables have the same points one."""
         read = {
-            (one.station, one.law.points, bool(one.law.torques)): one
+            (one.element, one.law.points, bool(one.law.torques)): one
             for one in reversed(disk_torques(self.assembly))
             if one.law.points and not one.prescribed
         }

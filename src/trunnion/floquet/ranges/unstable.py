@@ -66,7 +66,7 @@ class UnstableRanges:
 
     @property
     def undecided(self) -> Flags:
-        """Where it could not be told (speed,)."""
+        """Where it could not be decided (speed,)."""
         return np.asarray((self.along.verdict != Verdict.STABLE) & (self.along.verdict != Verdict.UNSTABLE))
 
     def stable_part(self, pieces: tuple[SmoothRange, ...]) -> list[SmoothRange]:

@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.arrays import Array, Flags
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.tongues.region import Region, turned
-from trunnion.floquet.tongues.rows import UNTOLD, unstable_intervals
+from trunnion.floquet.tongues.rows import OPEN_ERROR, unstable_intervals
 from trunnion.results.verdict import Verdict
 
 
@@ -50,10 +50,10 @@ def sampled_columns(region: Region, v: Array) -> ColumnSearch:
     def search(u: Array) -> list[Column]:
         found = region.judged(np.repeat(u, len(v)), np.tile(v, len(u)))
         grows = (found.radius - 1 > found.error).reshape(len(u), len(v))
-        told = ((found.verdict != Verdict.UNDECIDED) | (found.error < UNTOLD)).reshape(grows.shape)
+        decided = ((found.verdict != Verdict.UNDECIDED) | (found.error < OPEN_ERROR)).reshape(grows.shape)
         return [
             Column(place, _stretches(own, v), _stretches(~known, v))
-            for place, own, known in zip(u.tolist(), grows, told, strict=True)
+            for place, own, known in zip(u.tolist(), grows, decided, strict=True)
         ]
 
     return search

@@ -211,4 +211,4 @@ def _attributed(row: TongueRow, rows_alone: TongueRow, which: Places, stretches:
     own = np.stack([rows_alone.low, rows_alone.high], axis=1)
     met = _met(row, stretches)
     by = BY_ROWS * _met(row, own).any(axis=1) + BY_RESONANCES * met[:, opened].any(axis=1)
-    return replace(row, by=np.asarray(by, dtype=np.int8), of=tuple(frozenset(which[held].tolist()) for held in met))
+    return replace(row, by=np.asarray(by, dtype=np.int8), of=tuple(frozenset(which[places].tolist()) for places in met))

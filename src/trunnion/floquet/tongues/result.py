@@ -128,7 +128,7 @@ class Tongues(Result):
     row_step: float = attribute("largest distance between rows")
     complete: bool = attribute("whether each row was searched for every zero of the boundary functions, or sampled")
     search: str = attribute("the same in words")
-    unknown: tuple[Unknown, ...] = internal("where rows could not be told")
+    unknown: tuple[Unknown, ...] = internal("where rows could not be decided")
     line: Driveline | None = internal("that was searched; None of a family of one's own")
     remarks: tuple[str, ...] = internal("what was clipped", default=())
     find: Intervals | None = internal("a row searched anew", default=None, compare=False)

@@ -32,7 +32,7 @@ looked at closely."""
 
 TIGHT = 1e-7
 """Half of the first bracket about a zero of the patches, as a share of the box."""
-UNTOLD = 1e-6
+OPEN_ERROR = 1e-6
 """An error of ρ above which an open verdict is no answer; below, ρ is 1 as far as anybody asks."""
 EXACT = 1e-14
 """How closely edges are solved, as a share of the box."""
@@ -199,8 +199,8 @@ def settled(
     which, every = _of_rows(gaps)
     found = region.judged(every[:, 2], v[which])
     unstable = found.radius - 1 > found.error
-    told = (found.verdict != Verdict.UNDECIDED) | (found.error < UNTOLD)
-    return _edges(region, v, every, which, unstable, np.where(told, found.radius, np.nan), kind_of(found.critical))
+    decided = (found.verdict != Verdict.UNDECIDED) | (found.error < OPEN_ERROR)
+    return _edges(region, v, every, which, unstable, np.where(decided, found.radius, np.nan), kind_of(found.critical))
 
 
 def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
@@ -213,15 +213,15 @@ def _highest(region: Region, v: Array, stretch: Array) -> tuple[Array, Array]:
         u = low[left, None] + (high - low)[left, None] * shares
         found = region.judged(u.ravel(), np.repeat(v[left], LOOKS))
         height = (found.radius - 1 - found.error).reshape(u.shape)
-        told = np.isfinite(height)
-        here = np.where(told, height, -np.inf).argmax(axis=1)
+        decided = np.isfinite(height)
+        here = np.where(decided, height, -np.inf).argmax(axis=1)
         reached = np.take_along_axis(height, here[:, None], 1)[:, 0]
         at = np.take_along_axis(u, here[:, None], 1)[:, 0]
         best[left], top[left] = np.where(reached > top[left], at, best[left]), np.fmax(top[left], reached)
         step = (high - low)[left] / (LOOKS - 1)
         low[left], high[left] = np.maximum(low[left], best[left] - step), np.minimum(high[left], best[left] + step)
         # Meetings lie in the middle of their stretches: where nothing rises there, no region hides.
-        flat = reached - np.where(told, height, np.inf).min(axis=1) < RISES * np.abs(reached)
+        flat = reached - np.where(decided, height, np.inf).min(axis=1) < RISES * np.abs(reached)
         left = left[~(top[left] > 0) & ~(flat & (not region.by_coefficients))]
         if not len(left):
             break

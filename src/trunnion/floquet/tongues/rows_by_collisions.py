@@ -19,7 +19,7 @@ from trunnion.floquet.ranges.unstable import UnstableRanges, exponent_collisions
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.floquet.tongues.boundary_traces import Search
 from trunnion.floquet.tongues.region import Region
-from trunnion.floquet.tongues.rows import BY_ROWS, UNTOLD, TongueRow, kind_of
+from trunnion.floquet.tongues.rows import BY_ROWS, OPEN_ERROR, TongueRow, kind_of
 from trunnion.results.verdict import Verdict
 
 RISES = 0.02
@@ -115,7 +115,7 @@ def _row(family: LineFamily, v: float, found: UnstableRanges) -> TongueRow:
 def _unknown(family: LineFamily, found: UnstableRanges) -> Array:
     """Stretches (stretches, 2) in u about speeds that could not be computed, or not closely enough to tell."""
     along = found.along
-    blind = ~np.isfinite(along.radius) | ((along.verdict == Verdict.UNDECIDED) & (along.error > UNTOLD))
+    blind = ~np.isfinite(along.radius) | ((along.verdict == Verdict.UNDECIDED) & (along.error > OPEN_ERROR))
     place = np.flatnonzero(blind)
     last = len(along.speed) - 1
     stretch = np.stack([along.speed[np.maximum(place - 1, 0)], along.speed[np.minimum(place + 1, last)]], axis=1)

@@ -180,7 +180,7 @@ def rows_in_words(region: Region, apart: str) -> str:
 
 
 def _unknown(region: Region, rows: list[TongueRow]) -> tuple[Unknown, ...]:
-    """Where rows could not be told, each with the rows next to it: what lies between is not known either."""
+    """Where rows could not be decided, each with the rows next to it: what lies between is not known either."""
     found = []
     for k, row in enumerate(rows):
         beside = (rows[max(k - 1, 0)].v, rows[min(k + 1, len(rows) - 1)].v)

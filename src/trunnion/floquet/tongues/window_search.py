@@ -167,7 +167,7 @@ def _left_out(region: Region, regions: Regions, column: Column) -> list[tuple[fl
     sliver = SLIVER * (region.box.v1 - region.box.v0)
     known = [(low - sliver, high + sliver) for low, high in _covered(regions)]
     parts = [(a, b, UNNAMED) for a, b in column.unstable.tolist()]
-    # Between two zeros the verdict does not change: a row that crosses there has told it, or is unknown itself.
+    # Between two zeros the verdict does not change: a row that crosses there has decided it, or is unknown itself.
     heights = np.array([row.v for row in regions.rows])
     parts += [(a, b, UNKNOWN) for a, b in column.unknown.tolist() if not np.any((heights >= a) & (heights <= b))]
     return [(a, b, name) for begin, end, name in parts for a, b in _without(begin, end, known)]

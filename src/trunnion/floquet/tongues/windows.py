@@ -31,13 +31,13 @@ from trunnion.results.words import Words
 from trunnion.waiting import keeps_time
 
 Progress = Callable[[float], None]
-COMPLETE = "whether rows and columns were searched for every zero and told everywhere, and every tip confirmed"
+COMPLETE = "whether rows and columns were searched for every zero and decided everywhere, and every tip confirmed"
 
 
 @dataclass(frozen=True)
 class WindowEnd:
     """Where a window ends: the speed [rad/s] that turns unstable first, and the region it belongs to, or ``UNKNOWN``
-    where it could not be told; None at the ends of the range asked for."""
+    where it could not be decided; None at the ends of the range asked for."""
 
     speed: float
     region: str
@@ -95,8 +95,8 @@ class StableWindows(Result):
             return f"No {self.parameter} is known yet to keep every speed {span} stable: {self.ended}."
         if not len(self.windows):
             asked = f"{self.parameter} from {self._value(self.low)} to {self._value(self.high)}"
-            told = not self.tongues.unknown and not any(t.fades for t in self.tongues)
-            known = "keeps" if told else "is known to keep"
+            complete = not self.tongues.unknown and not any(t.fades for t in self.tongues)
+            known = "keeps" if complete else "is known to keep"
             return f"No {asked} {known} every speed {span} stable{f'; {self.ended}' if self.ended else ''}."
         parts = []
         for (low, high), (below, above) in zip(self.windows.tolist(), self.ends, strict=True):

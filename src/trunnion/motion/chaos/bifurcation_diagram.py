@@ -7,7 +7,6 @@ that exists; where up and down differ, there are several.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,48 +17,50 @@ from trunnion.errors import InputError
 from trunnion.motion.chaos.chaos_subject import as_system, first_starts, values_of, whole_number
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import about, states
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import axis_of_parameter
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
 
 DIRECTIONS = ("up", "down")
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class BifurcationDiagram(Result):
-    """Points (directions, values, points, n) of the map over a parameter, NaN where the motion failed.
+    """Points of the map over a parameter."""
 
-    repeat (directions, values): points after which the map repeats, 0 if it does not, −1 where it failed; settling
-    (directions, values): where it does not repeat and comes closer to it, so that a longer ``transient`` would tell.
-    """
+    system: System = internal("that was followed")
+    parameter: str = internal("that was moved")
+    values: Array = coordinate("value", "{self.parameter_unit}", "{self.parameter}")
+    directions: tuple[str, ...] = coordinate("direction")
+    points: Array = internal("NaN where the motion failed", axes="direction value point state")
+    repeat: Integers = variable(
+        "direction value", "", "points after which the map repeats, 0 if it does not, -1 where the motion failed"
+    )
+    settling: Flags = internal(
+        "where it does not repeat and comes closer to it, so that a longer transient would tell", axes="direction value"
+    )
+    section: str = attribute("what the points have in common")
+    transient: int = attribute("periods or returns left out before")
+    tolerance: float = attribute("error allowed per step")
+    outcome: Outcome = internal("how it ended")
 
-    system: System
-    parameter: str
-    values: Array
-    directions: tuple[str, ...]
-    points: Array
-    repeat: Integers
-    settling: Flags
-    section: str
-    transient: int
-    tolerance: float
-    outcome: Outcome
+    @property
+    def parameter_unit(self) -> str:
+        """SI unit of the parameter."""
+        return self.system.parameter_units.get(self.parameter, "1")
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Every state over (direction, value, point), and after how many points the motion repeats."""
-        yield data_coordinate(
-            "value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter
-        )
-        yield data_coordinate("direction", self.directions)
-        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield data_variable("direction value point", name, self.points[..., i], unit)
-        yield data_variable("direction value", "repeat", self.repeat)
-        yield data_variable("direction value", "settling", self.settling)
-        remarks = {"section": self.section, "transient": self.transient, "tolerance": self.tolerance}
-        yield from about(self.system, self.outcome, **remarks)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, every state by its name, and the system."""
+        yield from states(self.system, "direction value point", self.points)
+        yield from super().declared()
+        yield Variable("settling", self.settling, "direction value")
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None, *, state: str = "") -> Axes:
         """One state over the parameter; see ``pictures.chaos.bifurcations``."""
@@ -74,10 +75,10 @@ class BifurcationDiagram(Result):
         ]
         for direction, repeat, settling in zip(self.directions, self.repeat, self.settling, strict=True):
             counts = {int(k): int(np.sum(repeat == k)) for k in np.unique(repeat[repeat > 0])}
-            told = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
-            told = f"{told or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
+            known = ", ".join(f"{count} repeat after {k}" for k, count in counts.items())
+            known = f"{known or 'none repeats'}; {int(np.sum((repeat == 0) & ~settling))} do not repeat"
             late = f"; {int(np.sum(settling))} still settle: raise transient" if settling.any() else ""
-            rows.append(f"  {direction}: {told}{late}")
+            rows.append(f"  {direction}: {known}{late}")
         return "\n".join([*rows, f"  {self.outcome}"])
 
 
@@ -144,7 +145,7 @@ def bifurcation_diagram(
     found = np.full((len(directions), len(chosen), points, system.size), np.nan)
     repeat = np.full((len(directions), len(chosen)), -1, dtype=np.int64)
     settling = np.zeros(repeat.shape, dtype=bool)
-    told: list[str] = []
+    failed: list[str] = []
     shown: PoincareMap | None = None
     for d, direction in enumerate(directions):
         state = first
@@ -154,15 +155,16 @@ def bifurcation_diagram(
             mapped = poincare_map(here, points, section=section, start=state, transient=transient, tolerance=tolerance)
             report_progress((d + (done + 1) / len(chosen)) / len(directions))
             if not mapped.outcome.ok:
-                told.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
+                failed.append(f"{direction} at {parameter} = {chosen[i]:.6g}: {mapped.outcome}")
                 state = first
                 continue
             shown = mapped
             found[d, i], repeat[d, i], settling[d, i] = mapped.wrapped, mapped.repeat, mapped.settling
             state = mapped.points[-1]
     outcome = Outcome(True, "reached", "every value was reached")
-    if told:
-        outcome = Outcome(False, "failed in part", f"{len(told)} of {repeat.size} values failed, the first {told[0]}")
+    if failed:
+        sentence = f"{len(failed)} of {repeat.size} values failed, the first {failed[0]}"
+        outcome = Outcome(False, "failed in part", sentence)
     words = shown.section if shown else ""
     return BifurcationDiagram(
         system,

@@ -50,9 +50,11 @@ from trunnion.motion.chaos.lyapunov_map import LyapunovSweep, lyapunov_sweep
 from trunnion.motion.chaos.lyapunov_spectrum import FEWEST, FIRST, LyapunovSpectrum, lyapunov_spectrum, shear_bound
 from trunnion.motion.chaos.poincare_map import PoincareMap, poincare_map
 from trunnion.numerics.integration.integration import IntegrationEnd
-from trunnion.results.declared import DatasetItem, Result, data_attribute, data_attributes
 from trunnion.results.drawing import Figure, drawing
+from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.shooting.repetition import modulo
 from trunnion.systems.events import Event
 from trunnion.systems.system import System
@@ -132,10 +134,10 @@ def _third(system: System, spectrum: LyapunovSpectrum) -> Criterion:
         return Criterion(name, total, False, False, why)
     if low > 0 or high < 0:
         kind, rate = ("shrink", -high) if high < 0 else ("grow", low)
-        told = f"{rate:.6g} 1/s along every motion of this system"
+        words = f"{rate:.6g} 1/s along every motion of this system"
         if system.divergence is None:
-            told = f"{rate:.4g} 1/s or more everywhere on the motion"
-        return Criterion(name, total, high < 0, False, f"volumes {kind} at {told}")
+            words = f"{rate:.4g} 1/s or more everywhere on the motion"
+        return Criterion(name, total, high < 0, False, f"volumes {kind} at {words}")
     return Criterion(name, total, bool(total < 0), True, "volumes shrink in places and grow in others")
 
 
@@ -172,42 +174,34 @@ class Witness:
     reasons: tuple[str, ...]
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ChaosCertificate(Result):
-    """A verdict with its evidence.
+    """A verdict with its evidence: the exponents, the map, the 0–1 test and the sweep."""
 
-    verdict; kind: "periodic", "quasi-periodic", "at rest" of a regular motion, "at rest on an unstable equilibrium"
-    of an undecided one; repeat: forcing periods, or returns
-    to the section, after which a periodic motion closes, and period [s], its time; reasons: one sentence each;
-    criteria (37)–(39); spectrum, map, zero_one, sweep (or None): the evidence.
-    """
+    system: System = internal("that was judged")
+    verdict: ChaosVerdict = attribute()
+    kind: str = attribute(
+        '"periodic", "quasi-periodic" or "at rest" of a regular motion, "at rest on an unstable equilibrium" of an '
+        "undecided one"
+    )
+    repeat: int = attribute("forcing periods, or returns to the section, after which a periodic motion closes")
+    period: float = internal("time after which it closes, NaN of another", "s")
+    reasons: tuple[str, ...] = internal("one sentence each")
+    criteria: tuple[Criterion, ...] = internal("(37) to (39)")
+    spectrum: LyapunovSpectrum = internal("the exponents")
+    map: PoincareMap | None = internal("of the motion")
+    zero_one: ZeroOne | None = internal("the 0–1 test of its points")
+    sweep: LyapunovSweep | None = internal("exponents over a parameter")
 
-    system: System
-    verdict: ChaosVerdict
-    kind: str
-    repeat: int
-    period: float
-    reasons: tuple[str, ...]
-    criteria: tuple[Criterion, ...]
-    spectrum: LyapunovSpectrum
-    map: PoincareMap | None
-    zero_one: ZeroOne | None
-    sweep: LyapunovSweep | None
-
-    def declared(self) -> Iterator[DatasetItem]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """The exponents, with the verdict and its reasons."""
         yield from self.spectrum.declared()
-        yield from data_attributes(
-            verdict=str(self.verdict),
-            kind=self.kind,
-            repeat=self.repeat,
-            reasons="\n".join(self.reasons),
-            criteria="\n".join(map(str, self.criteria)),
-        )
+        yield from super().declared()
+        yield from attributes(reasons="\n".join(self.reasons), criteria="\n".join(map(str, self.criteria)))
         if self.zero_one is not None:
-            yield data_attribute("zero_one_test", self.zero_one.k)
+            yield Attribute("zero_one_test", self.zero_one.k)
         if np.isfinite(self.period):
-            yield data_attribute("period", self.period)
+            yield Attribute("period", self.period)
 
     def plot(self) -> Figure:
         """Portrait, exponents, and the map at two numbers of points."""
@@ -295,10 +289,10 @@ def certify_chaos(
     same = all((w.verdict, w.kind) == (first.verdict, first.kind) for w in witnesses)
     verdict, kind, reasons = first.verdict, first.kind, first.reasons
     if not same:
-        told = "; ".join(f"start {i} {w.kind or w.verdict}" for i, w in enumerate(witnesses, start=1))
+        words = "; ".join(f"start {i} {w.kind or w.verdict}" for i, w in enumerate(witnesses, start=1))
         verdict, kind = ChaosVerdict.UNDECIDED, ""
         each = (f"start {i}: {reason}" for i, w in enumerate(witnesses, start=1) for reason in w.reasons)
-        reasons = (f"the starts do not agree ({told}): certify each with starts=1, or over a longer time", *each)
+        reasons = (f"the starts do not agree ({words}): certify each with starts=1, or over a longer time", *each)
     elif not spectrum.agree:
         reasons = (*reasons, "the starts agree on this and differ in their exponents: there may be several attractors")
     repeat = first.map.repeat if first.map is not None and kind == "periodic" else 0
@@ -396,23 +390,23 @@ def _judge(
     forced = spectrum.system.forcing_period is not None
     shear = shear_bound(len(spectrum.runs[i].growth), spectrum.interval)
     parts = bool(exponent > max(width, shear))
-    told = f"largest exponent {exponent:+.4g} ± {width:.2g} 1/s"
+    words = f"largest exponent {exponent:+.4g} ± {width:.2g} 1/s"
     if mapped.repeat and not parts:
         times = "point" if mapped.repeat == 1 else "points"
         return Witness(
-            mapped, test, ChaosVerdict.REGULAR, "periodic", (f"{told}; the map repeats after {mapped.repeat} {times}",)
+            mapped, test, ChaosVerdict.REGULAR, "periodic", (f"{words}; the map repeats after {mapped.repeat} {times}",)
         )
     if mapped.settling and not parts:
         longer = spectrum.transient + 4 * len(spectrum.runs[i].growth)
         reason = f"the map is {mapped.repetition} to {longer} periods or more"
-        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (told, reason))
+        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (words, reason))
     if test is None:
         reason = f"{len(mapped.points)} points are too few for the 0–1 test; give {FEWEST_FOR_TEST} periods or more"
-        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (told, reason))
+        return Witness(mapped, test, ChaosVerdict.UNDECIDED, "", (words, reason))
     if parts and test.says == "chaotic":
         return Witness(
             mapped, test, ChaosVerdict.CHAOTIC, "",
-            (f"{told}: neighbours part exponentially, by e in {1 / exponent:.4g} s; the 0–1 test agrees",),
+            (f"{words}: neighbours part exponentially, by e in {1 / exponent:.4g} s; the 0–1 test agrees",),
         )  # fmt: skip
     if not parts and test.says == "regular":
         settling = exponent + width < 0 and _zeros(spectrum, i) < (1 if forced else 2)
@@ -420,26 +414,26 @@ def _judge(
             longer = int(np.ceil(10 / (-exponent * spectrum.interval)))
             return Witness(
                 mapped, test, ChaosVerdict.UNDECIDED, "",
-                (f"{told}: it settles on a periodic motion and has not yet; raise transient by {longer} periods",),
+                (f"{words}: it settles on a periodic motion and has not yet; raise transient by {longer} periods",),
             )  # fmt: skip
         damping = -spectrum.divergence
         if damping * spectrum.interval > UNDAMPED and width > VAGUE * damping:
             return Witness(
                 mapped, test, ChaosVerdict.UNDECIDED, "",
                 (
-                    f"{told}: no exponent is known by that beside a damping of {damping:.4g} 1/s; "
+                    f"{words}: no exponent is known by that beside a damping of {damping:.4g} 1/s; "
                     f"average over {4 * len(spectrum.runs[i].growth)} periods or more",
                 ),
             )  # fmt: skip
         return Witness(
             mapped, test, ChaosVerdict.REGULAR, "quasi-periodic",
-            (f"{told}: neighbours do not part; the map does not repeat, and the 0–1 test finds no diffusion",),
+            (f"{words}: neighbours do not part; the map does not repeat, and the 0–1 test finds no diffusion",),
         )  # fmt: skip
     more = 4 * len(spectrum.runs[i].growth)
     return Witness(
         mapped, test, ChaosVerdict.UNDECIDED, "",
         (
-            f"{told} and the 0–1 test ({test.k:.2f}, {test.says}) do not agree: a long transient or weak chaos; "
+            f"{words} and the 0–1 test ({test.k:.2f}, {test.says}) do not agree: a long transient or weak chaos; "
             f"average over {more} periods or more",
         ),
     )  # fmt: skip
@@ -455,11 +449,11 @@ def _zeros(spectrum: LyapunovSpectrum, i: int) -> int:
 
 def _too_short(spectrum: LyapunovSpectrum, i: int) -> str:
     growth = spectrum.runs[i].growth[:, 0]
-    told = f"{len(growth)} periods are too few to average over"
+    words = f"{len(growth)} periods are too few to average over"
     if len(growth) < 4:
-        return f"{told}; {FIRST} periods decide most motions"
+        return f"{words}; {FIRST} periods decide most motions"
     needed = int(np.clip((4 * growth.std() / max(abs(growth.mean()), 1e-300)) ** 2, FEWEST, 1e7))
-    return f"{told}; by the scatter of what they show, about {max(needed, FEWEST_FOR_TEST)} periods would decide"
+    return f"{words}; by the scatter of what they show, about {max(needed, FEWEST_FOR_TEST)} periods would decide"
 
 
 def _growing(system: System, states: Array, running: dict[int, float], turning: Array) -> Witness | None:

@@ -277,10 +277,10 @@ def failure(system: System, motion: Motion, length: float, before: str) -> Outco
         system.equations, motion.time, motion.time + length, motion.state, regime=motion.regime,
         tolerance=motion.tolerance, most_steps=motion.most_steps, dense=False,
     )  # fmt: skip
-    told = outcome_of(system, again, motion.tolerance, system.regimes.guards if system.regimes else ())
-    if told.ok:
+    outcome = outcome_of(system, again, motion.tolerance, system.regimes.guards if system.regimes else ())
+    if outcome.ok:
         return Outcome(False, "refused", f"{before}the tangents could not be followed any further")
-    return Outcome(False, told.kind, f"{before}{told.sentence}")
+    return Outcome(False, outcome.kind, f"{before}{outcome.sentence}")
 
 
 def usual_time(system: System, state: Array, tolerance: float, steps: int = 32) -> float:

@@ -43,8 +43,8 @@ class ZeroOne:
         return "regular" if self.k < REGULAR else "chaotic" if self.k > CHAOTIC else "undecided"
 
     def __str__(self) -> str:
-        told = f"0–1 test on {self.points} points: K = {self.k:.3f} ({self.says})"
-        return f"{told}; {LIMIT}" if self.says == "chaotic" else told
+        words = f"0–1 test on {self.points} points: K = {self.k:.3f} ({self.says})"
+        return f"{words}; {LIMIT}" if self.says == "chaotic" else words
 
 
 def zero_one_test(series: ArrayLike, *, scale: float = 0.0) -> ZeroOne:

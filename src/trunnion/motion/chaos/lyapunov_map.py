@@ -6,12 +6,11 @@ import os
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.motion.chaos.chaos_subject import (
     BYTES_A_VALUE,
@@ -26,45 +25,53 @@ from trunnion.motion.chaos.lyapunov_spectrum import shear_bound
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable, data_variables
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import about
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import axis_of_parameter
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 
 Request = tuple[str, float, float, int]
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class LyapunovSweep(Result):
-    """exponents, half_width (values, k) [1/s] over one parameter, the largest first; NaN where the motion failed."""
+    """Exponents over one parameter, the largest first; NaN where the motion failed."""
 
-    system: System
-    parameter: str
-    values: Array
-    exponents: Array
-    half_width: Array
-    periods: int
-    transient: int
-    tolerance: float
-    outcome: Outcome
+    system: System = internal("that was followed")
+    parameter: str = internal("that was moved")
+    values: Array = coordinate("value", "{self.parameter_unit}", "{self.parameter}")
+    exponents: Array = variable("value order", "1/s", "Lyapunov exponents, natural logarithm", name="exponent")
+    half_width: Array = variable("value order", "1/s", "of the intervals of confidence")
+    periods: int = attribute("averaged over")
+    transient: int = attribute("periods left out before")
+    tolerance: float = attribute("error allowed per step")
+    outcome: Outcome = internal("how it ended")
+
+    @property
+    def parameter_unit(self) -> str:
+        """SI unit of the parameter."""
+        return self.system.parameter_units.get(self.parameter, "1")
+
+    @property
+    @computed(coordinate("order"), after="values")
+    def order(self) -> Integers:
+        """Number of each exponent, from 1 (order,)."""
+        return np.arange(1, self.exponents.shape[1] + 1)
 
     @property
     def positive(self) -> Flags:
         """Where (values,) the largest exponent is above 0 by more than its interval."""
         return np.asarray(self.exponents[:, 0] - self.half_width[:, 0] > 0)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Exponents [1/s] and their half-widths over (value, order)."""
-        yield data_coordinate(
-            "value", self.values, self.system.parameter_units.get(self.parameter, "1"), self.parameter
-        )
-        yield data_coordinate("order", np.arange(1, self.exponents.shape[1] + 1))
-        yield data_variable("value order", "exponent", self.exponents, "1/s")
-        yield data_variable("value order", "half_width", self.half_width, "1/s")
-        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
-        yield from about(self.system, self.outcome, **effort)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, and the system."""
+        yield from super().declared()
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None, *, mark: float | None = None) -> Axes:
         """Exponents over the parameter."""
@@ -86,34 +93,36 @@ class LyapunovSweep(Result):
         return f"{head}\n  {share}; the largest is {most}\n  {self.outcome}"
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class LyapunovMap(Result):
-    """exponent, half_width (y, x) [1/s]: the largest exponent over two parameters; NaN where the motion failed."""
+    """The largest exponent over two parameters; NaN where the motion failed."""
 
-    system: System
-    parameters: tuple[str, str]
-    x: Array
-    y: Array
-    exponent: Array
-    half_width: Array
-    periods: int
-    transient: int
-    tolerance: float
-    threads: int
-    outcome: Outcome
+    system: System = internal("that was followed")
+    parameters: tuple[str, str] = internal("along x and along y")
+    x: Array = coordinate("x", "{self.parameter_units[0]}", "{self.parameters[0]}")
+    y: Array = coordinate("y", "{self.parameter_units[1]}", "{self.parameters[1]}")
+    exponent: Array = variable("y x", "1/s", "largest Lyapunov exponent, natural logarithm")
+    half_width: Array = variable("y x", "1/s", "of its interval of confidence")
+    periods: int = attribute("averaged over")
+    transient: int = attribute("periods left out before")
+    tolerance: float = attribute("error allowed per step")
+    threads: int = internal("that computed it")
+    outcome: Outcome = internal("how it ended")
+
+    @property
+    def parameter_units(self) -> tuple[str, ...]:
+        """SI units of the parameters."""
+        return tuple(self.system.parameter_units.get(parameter, "1") for parameter in self.parameters)
 
     @property
     def positive(self) -> Flags:
         """Where (y, x) the exponent is above 0 by more than its interval."""
         return np.asarray(self.exponent - self.half_width > 0)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Largest exponent [1/s] and its half-width over (y, x)."""
-        for name, values, parameter in zip("xy", (self.x, self.y), self.parameters, strict=True):
-            yield data_coordinate(name, values, self.system.parameter_units.get(parameter, "1"), parameter)
-        yield from data_variables("y x", self, exponent="1/s", half_width="1/s")
-        effort = {"periods": self.periods, "transient": self.transient, "tolerance": self.tolerance}
-        yield from about(self.system, self.outcome, **effort)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, and the system."""
+        yield from super().declared()
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """The map in colour, white at 0; see ``pictures.chaos.lyapunov_map``."""
@@ -182,13 +191,13 @@ def lyapunov_sweep(
     chosen = values_of(system, parameter, values)
     count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)
     points = [{parameter: float(v)} for v in chosen]
-    mean, width, told = _all(
+    mean, width, failed = _all(
         system, points, count, periods, transient, start, interval, tolerance, _threads(threads), progress
     )
     order = np.argsort(-mean, axis=1, kind="stable")
     mean, width = np.take_along_axis(mean, order, 1), np.take_along_axis(width, order, 1)
     return LyapunovSweep(
-        system, parameter, chosen, mean, width, periods, transient, tolerance, _told(told, len(chosen))
+        system, parameter, chosen, mean, width, periods, transient, tolerance, _failed_in_part(failed, len(chosen))
     )
 
 
@@ -243,11 +252,11 @@ def lyapunov_map(
     require_memory(needed, key="x, y", value=f"{len(columns)} x {len(rows)}", remedy="ask for fewer values")
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     used = _threads(threads)
-    mean, width, told = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
+    mean, width, failed = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
     shape = (len(rows), len(columns))
     return LyapunovMap(
         system, (x[0], y[0]), columns, rows, mean.reshape(shape), width.reshape(shape), periods, transient, tolerance,
-        used, _told(told, len(points)),
+        used, _failed_in_part(failed, len(points)),
     )  # fmt: skip
 
 
@@ -259,7 +268,7 @@ def _all(
     whole_number("transient", transient, 0)
     state = first_starts(system, start, 1)[0]
     mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
-    told: list[str] = []
+    failed: list[str] = []
     report_progress = progress or (lambda share: None)
 
     def one(place: int) -> None:
@@ -270,7 +279,7 @@ def _all(
         if found.end is IntegrationEnd.REACHED:
             found = motion.run(periods)
         if found.end is not IntegrationEnd.REACHED:
-            told.append(str(points[place]))
+            failed.append(str(points[place]))
             return
         result, bound = average(found.growth / length), shear_bound(periods, length)
         mean[place], width[place] = result.mean, result.half_width
@@ -285,7 +294,7 @@ def _all(
                 report_progress(done / len(points))
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-    return mean, width, told
+    return mean, width, failed
 
 
 def _threads(threads: int | None) -> int:
@@ -294,9 +303,8 @@ def _threads(threads: int | None) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _told(told: list[str], total: int) -> Outcome:
-    if not told:
+def _failed_in_part(failed: list[str], total: int) -> Outcome:
+    if not failed:
         return Outcome(True, "reached", "every point was reached")
-    return Outcome(
-        False, "failed in part", f"at {len(told)} of {total} points the motion did not reach its end, first {told[0]}"
-    )
+    sentence = f"at {len(failed)} of {total} points the motion did not reach its end, first {failed[0]}"
+    return Outcome(False, "failed in part", sentence)

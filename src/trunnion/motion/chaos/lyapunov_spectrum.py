@@ -38,9 +38,12 @@ from trunnion.motion.chaos.chaos_subject import (
 from trunnion.numerics.averages import BATCHES, CONFIDENCE, average, batch_means, pooled
 from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.integration.tangents import Motion, Samples
-from trunnion.results.declared import DatasetItem, Result, about, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, internal, labelled, variable
+from trunnion.results.of_systems import about
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
 from trunnion.waiting import time_is_up
@@ -60,8 +63,8 @@ SLOW = 1e-3
 """Growth per sample below which all exponents count as this large when widths are compared to them."""
 LEFT_OUT = 10
 """The default effort leaves out one in so many samples at the beginning, besides the transient."""
-TOLD = 2048
-"""Samples after which the share done is told."""
+REPORTED = 2048
+"""Samples after which the share done is reported."""
 MOST = 10_000_000
 """Samples that fit into memory."""
 DWARFED, MISSED = 10.0, 0.01
@@ -90,29 +93,28 @@ class Run:
     wanted: int
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class LyapunovSpectrum(Result):
     """Exponents of a system's motion, the largest first.
 
-    exponents, half_width (k,) [1/s]: means over all starts and half of their intervals of confidence (95 %), never
-    less than the error of the sum, nor than ``shear`` where exponents lie together at 0. by_start,
-    by_start_half_width (starts, k). divergence [1/s]: what the sum must be, NaN where not all exponents were asked for
-    or the motion jumps. interval [s] of a sample; windowed: averaged with a smooth window (see ``numerics.averages``).
+    Half-widths are never less than the error of the sum, nor than ``shear`` where exponents lie together at 0.
     """
 
-    system: System
-    exponents: Array
-    half_width: Array
-    starts: Array
-    by_start: Array
-    by_start_half_width: Array
-    divergence: float
-    interval: float
-    transient: int
-    runs: tuple[Run, ...]
-    tolerance: float
-    windowed: bool
-    outcome: Outcome
+    system: System = internal("that was followed")
+    exponents: Array = variable("order", "1/s", "natural logarithm, of all starts together", name="exponent")
+    half_width: Array = variable("order", "1/s", "of their intervals of confidence (95 %)")
+    starts: Array = variable("start state", "", "where the motions begin", name="start_state")
+    by_start: Array = variable("start order", "1/s", "exponents of each motion", name="exponent_of_start")
+    by_start_half_width: Array = variable("start order", "1/s", "of their intervals", name="half_width_of_start")
+    divergence: float = internal(
+        "what the sum must be; NaN where not all exponents were asked for, or the motion jumps", "1/s"
+    )
+    interval: float = attribute("of a sample", "s")
+    transient: int = attribute("periods or samples left out before")
+    runs: tuple[Run, ...] = internal("one motion each")
+    tolerance: float = attribute("error allowed per step")
+    windowed: bool = internal("averaged with a smooth window, see ``numerics.averages``")
+    outcome: Outcome = internal("how it ended")
 
     @property
     def largest(self) -> float:
@@ -120,6 +122,7 @@ class LyapunovSpectrum(Result):
         return float(self.exponents[0])
 
     @property
+    @computed(attribute())
     def sum(self) -> float:
         """Sum of the exponents [1/s]."""
         return float(self.exponents.sum())
@@ -130,6 +133,7 @@ class LyapunovSpectrum(Result):
         return abs(self.sum - self.divergence)
 
     @property
+    @computed(attribute())
     def samples(self) -> int:
         """Samples of the shortest run."""
         return min(len(run.growth) for run in self.runs)
@@ -179,24 +183,18 @@ class LyapunovSpectrum(Result):
         ]
         return places * self.interval, np.array(means)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Exponents [1/s] with half-widths, of each start too, their running means over time, and the sum rule."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, running means over time, the sum rule, and the system."""
+        yield from super().declared()
         time, history = self.histories
-        yield data_coordinate("order", np.arange(1, len(self.exponents) + 1))
-        yield data_coordinate("time", time, "s")
-        yield data_coordinate("state", self.system.states)
-        yield data_variable("order", "exponent", self.exponents, "1/s")
-        yield data_variable("order", "half_width", self.half_width, "1/s")
-        yield data_variable("start order", "exponent_of_start", self.by_start, "1/s")
-        yield data_variable("start order", "half_width_of_start", self.by_start_half_width, "1/s")
-        yield data_variable("start time order", "running_mean", history, "1/s")
-        yield data_variable("start state", "start_state", self.starts)
-        rule = {} if np.isnan(self.divergence) else {"divergence": self.divergence, "sum_error": self.sum_error}
-        yield from about(
-            self.system, self.outcome, sum=self.sum, **rule, confidence=CONFIDENCE, interval=self.interval,
-            samples=self.samples, transient=self.transient, tolerance=self.tolerance,
-            averaging="windowed" if self.windowed else "plain",
-        )  # fmt: skip
+        yield Coordinate("order", np.arange(1, len(self.exponents) + 1), "order")
+        yield Coordinate("time", time, "time", "s")
+        yield Coordinate("state", self.system.states, "state")
+        yield Variable("running_mean", history, "start time order", "1/s")
+        if not np.isnan(self.divergence):
+            yield from attributes(divergence=self.divergence, sum_error=self.sum_error)
+        yield from attributes(confidence=CONFIDENCE, averaging="windowed" if self.windowed else "plain")
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Running means of the exponents over time."""
@@ -366,8 +364,8 @@ def _carry_on(motion: Motion, run: Run, samples: int, traced: bool) -> Run:
 
 
 def _parts(samples: int) -> list[int]:
-    """Samples in parts, between which the share done is told."""
-    return [min(TOLD, samples - i) for i in range(0, samples, TOLD)]
+    """Samples in parts, between which the share done is reported."""
+    return [min(REPORTED, samples - i) for i in range(0, samples, REPORTED)]
 
 
 def _later(run: Run, first: int) -> Run:

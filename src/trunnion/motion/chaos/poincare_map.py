@@ -8,7 +8,6 @@ periods to close, a quasi-periodic one closed curves, a chaotic one a cloud with
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -28,10 +27,13 @@ from trunnion.motion.chaos.chaos_subject import (
 )
 from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import DatasetItem, Result, about, data_variable
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, internal, labelled, variable
+from trunnion.results.of_systems import about, states
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.steady.shooting.integration_outcomes import outcome_of
 from trunnion.steady.shooting.repetition import Repetition, modulo, repetition
 from trunnion.systems.events import Event
@@ -42,25 +44,22 @@ MOST_STEPS = 10_000_000
 """Of the integrator between two looks at a section."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class PoincareMap(Result):
-    """Points of a motion on a section.
+    """Points of a motion on a section."""
 
-    points (points, n); time (points,) [s] of each, after the transient; size (n,): how far each state moves
-    between the points, against which returns are measured; turns (k, n): what may be added to a state without
-    changing any rate, 2π of an angle, say: points count modulo these; section: what the points have in common, in
-    words.
-    """
-
-    system: System
-    points: Array
-    time: Array
-    size: Array
-    turns: Array
-    section: str
-    transient: int
-    tolerance: float
-    outcome: Outcome
+    system: System = internal("that was followed")
+    points: Array = internal("after the transient", axes="point state")
+    time: Array = variable("point", "s", "after the transient")
+    size: Array = internal("how far each state moves between the points; returns are measured against it", axes="state")
+    turns: Array = internal(
+        "what may be added to a state without changing any rate, 2π of an angle, say: points count modulo these",
+        axes="turn state",
+    )
+    section: str = attribute("what the points have in common")
+    transient: int = attribute("periods or returns left out before")
+    tolerance: float = attribute("error allowed per step")
+    outcome: Outcome = internal("how it ended")
 
     @cached_property
     def repetition(self) -> Repetition:
@@ -68,11 +67,13 @@ class PoincareMap(Result):
         return repetition(self.points, self.size, np.asarray(self.system.scale), self.turns)
 
     @property
+    @computed(attribute())
     def repeat(self) -> int:
         """After how many points the map repeats; 0 if it does not, or not within 64 points, or still settles."""
         return self.repetition.after
 
     @property
+    @computed(attribute())
     def settling(self) -> bool:
         """Whether the map does not repeat but comes closer to it: give a longer ``transient``."""
         return self.repetition.settling
@@ -82,15 +83,11 @@ class PoincareMap(Result):
         """The points modulo their turns; angles lie between −π and π."""
         return modulo(self.points, self.turns, np.asarray(self.system.scale))
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Every state and the time over the points."""
-        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield data_variable("point", name, self.points[:, i], unit)
-        yield data_variable("point", "time", self.time, "s")
-        yield from about(
-            self.system, self.outcome, section=self.section, repeat=self.repeat, settling=int(self.settling),
-            transient=self.transient, tolerance=self.tolerance,
-        )  # fmt: skip
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, every state by its name, and the system."""
+        yield from states(self.system, "point", self.points)
+        yield from super().declared()
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "", points: int | None = None) -> Axes:
         """One state over another; see ``pictures.chaos.poincare_map``."""

@@ -22,7 +22,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Loaded
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_response import ORDERS, PeriodicResponse, periodic_response
@@ -32,19 +32,14 @@ from trunnion.numerics.curves import extremes, fourier
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.response.speed_sweep import sweep_speeds
-from trunnion.results.declared import (
-    DatasetItem,
-    Result,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-)
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.of_systems import ending
+from trunnion.results.result import Result
 from trunnion.results.speeds import show_acceleration, show_speed
 from trunnion.results.units import angle_words, order_words
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import Verdict
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE
@@ -104,32 +99,30 @@ class ResonancePassage:
         return "reached" if self.ending is None else self.ending.kind
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class LinearityCheck(Result):
-    """Linear and nonlinear response of a line at one speed.
+    """Linear and nonlinear response of a line at one speed; NaN where no nonlinear motion was found.
 
-    linear, nonlinear: both analyses (``linear`` None where no nonlinear motion was found that tells how a clutch is to
-    be linearised). order (order,) in cycles per turn of the input, fixed frequencies as frequency over speed;
-    linear_torque, nonlinear_torque (order, spring) [N m], complex, phases counting from zero rotation of the input.
-    stand_ins: shafts that stand for clutches; passage: what ``acceleration`` asked for. NaN where no nonlinear motion
-    was found.
+    Phases of torques count from zero rotation of the input; an order of a fixed frequency is that over the speed.
     """
 
-    linear: OrderResponse | None
-    nonlinear: PeriodicResponse
-    order: Array
-    linear_torque: Complex
-    nonlinear_torque: Complex
-    stand_ins: tuple[LinearShaft, ...]
-    allowed: float
-    passage: ResonancePassage | None
+    linear: OrderResponse | None = internal("None where no nonlinear motion tells how a clutch is to be linearised")
+    nonlinear: PeriodicResponse = internal("the periodic motion")
+    order: Array = coordinate("order", "1", "cycles per turn of the input")
+    linear_torque: Complex = variable("order spring", "N*m", "by linear theory")
+    nonlinear_torque: Complex = variable("order spring", "N*m", "of the periodic motion")
+    stand_ins: tuple[LinearShaft, ...] = internal("shafts that stand for clutches")
+    allowed: float = attribute("largest relative difference with which linear theory holds")
+    passage: ResonancePassage | None = internal("what ``acceleration`` asked for")
 
     @property
+    @computed(coordinate("spring"))
     def springs(self) -> tuple[str, ...]:
         """Names of shafts, meshes and couplings; massless shafts in series count as one."""
         return self.nonlinear.shafts
 
     @property
+    @computed(variable("", "rad/s"))
     def speed(self) -> float:
         """Input speed [rad/s]."""
         return self.nonlinear.speed
@@ -140,6 +133,7 @@ class LinearityCheck(Result):
         return self.nonlinear.unit
 
     @property
+    @computed(variable("order spring", "N*m"))
     def difference(self) -> Array:
         """|linear − nonlinear| (order, spring) [N m], phases counted."""
         return np.abs(self.linear_torque - self.nonlinear_torque)
@@ -151,6 +145,7 @@ class LinearityCheck(Result):
         return np.asarray(size.max(axis=0, initial=0.0))
 
     @cached_property
+    @computed(variable("spring", "1"))
     def relative_difference(self) -> Array:
         """Largest difference over the largest order, spring by spring (spring,).
 
@@ -163,22 +158,26 @@ class LinearityCheck(Result):
         return np.asarray(self.difference.max(axis=0, initial=0.0) / np.where(against > 0, against, 1.0))
 
     @property
+    @computed(variable("", "1"))
     def departure(self) -> float:
         """The largest relative difference of any spring; NaN where one of the two responses does not exist."""
         return float(np.max(self.relative_difference, initial=0.0))
 
     @property
+    @computed(attribute())
     def holds(self) -> bool:
         """Whether linear theory holds: the motion exists, is not unstable, and departs by ``allowed`` at most."""
         return bool(self.departure <= self.allowed and self.nonlinear.verdict is not Verdict.UNSTABLE)
 
     @property
+    @computed(variable("response spring", "N*m"))
     def peak_torque(self) -> Array:
         """Largest |torque| (2, spring) [N m] over the cycle: linear, nonlinear."""
         linear = self.linear.peak_torque[0] if self.linear is not None else np.full(len(self.springs), np.nan)
         return np.stack([linear, self.nonlinear.peak_torque])
 
     @property
+    @computed(variable("response spring", "N*m"))
     def vibratory_torque(self) -> Array:
         """Half of the peak-to-peak torque (2, spring) [N m]: linear, nonlinear."""
         linear = self.linear.vibratory_torque[0] if self.linear is not None else np.full(len(self.springs), np.nan)
@@ -199,21 +198,16 @@ class LinearityCheck(Result):
         said = self.linear.remarks if self.linear is not None else ()
         return by_gravity([*_findings(self, unit), *said])
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Both responses by order and spring, their difference, and their sums over the cycle."""
-        yield data_coordinate("order", self.order, "1", "cycles per turn of the input")
-        yield data_coordinate("spring", self.springs)
-        yield data_coordinate("response", ("linear", "nonlinear"))
-        yield from data_variables("order spring", self, linear_torque="N*m", nonlinear_torque="N*m", difference="N*m")
-        yield data_variable("spring", "relative_difference", self.relative_difference, "1")
-        yield from data_variables("response spring", self, peak_torque="N*m", vibratory_torque="N*m")
-        yield from data_variables("", self, departure="1", speed="rad/s")
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, the passage and the ending."""
+        yield from super().declared()
+        yield Coordinate("response", ("linear", "nonlinear"), "response")
         if self.passage is not None:
-            yield data_variable("spring", "passing_vibration", self.passage.vibration, "N*m")
-            yield data_variable("spring", "passing_speed", self.passage.vibration_speed, "rad/s")
-            yield data_variable("spring", "passing_linear", self.passage.linear, "N*m")
-            yield from data_attributes(passing_outcome=self.passage.kind)
-        yield from data_attributes(holds=int(self.holds), allowed=self.allowed, because="; ".join(self.because))
+            yield Variable("passing_vibration", self.passage.vibration, "spring", "N*m")
+            yield Variable("passing_speed", self.passage.vibration_speed, "spring", "rad/s")
+            yield Variable("passing_linear", self.passage.linear, "spring", "N*m")
+            yield Attribute("passing_outcome", self.passage.kind)
+        yield from attributes(because="; ".join(self.because))
         yield from ending(self.nonlinear.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str | None = None, unit: str | None = None) -> Axes:
@@ -285,7 +279,8 @@ def _loads_by_speed(result: LinearityCheck) -> Iterator[str]:
     for station, place in topo.disks:
         name = line.names[place]
         element = line.elements[place]
-        if not (isinstance(element, Loaded) and element.loads[2]) or name not in linear.inertias:
+        assert isinstance(element, Rotor)
+        if not element.loaded_by_square or name not in linear.inertias:
             continue
         fluctuation = float(linear.speed_fluctuation[0, linear.inertias.index(name)])
         share = fluctuation / (abs(float(topo.speed_ratio[station])) * result.speed)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +11,10 @@ from trunnion.arrays import Array, Integers
 from trunnion.motion.orbits.exact_map import OscillatorMap
 from trunnion.motion.orbits.exact_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import DatasetItem, Result, data_coordinate, data_variable
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 LEAST, MOST, SAME = 20, 2000, 1e-9
@@ -24,31 +25,27 @@ BYTES_A_START = 64.0
 """What one start holds."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Basins(Result):
-    """Which motion is reached from where: numbers (starts of x, starts of x′) into ``attractors``, −1 for none."""
+    """Which motion is reached from where."""
 
-    position: Array
-    velocity: Array
-    number: Integers
-    attractors: tuple[PiecewiseOrbit, ...]
+    position: Array = coordinate("position", words="starts of x")
+    velocity: Array = coordinate("velocity", words="starts of x′")
+    number: Integers = variable("position velocity", "", "number of the attractor, -1 for none", name="attractor")
+    attractors: tuple[PiecewiseOrbit, ...] = internal("motions that are reached")
 
     @property
+    @computed(variable("attractor_number", "1", name="share"), after="number")
     def shares(self) -> Array:
         """Share of the starts that each attractor draws (attractors,)."""
         return np.array([np.mean(self.number == i) for i in range(len(self.attractors))])
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """The number of the attractor over the starts, and what each attractor does."""
-        yield data_coordinate("position", self.position)
-        yield data_coordinate("velocity", self.velocity)
-        yield data_variable("position velocity", "attractor", self.number, about="number of the attractor, -1 for none")
-        yield data_variable("attractor_number", "share", self.shares, "1")
-        for name in ("peak_to_peak", "mean"):
-            yield data_variable("attractor_number", name, np.array([getattr(orbit, name) for orbit in self.attractors]))
-        yield data_variable(
-            "attractor_number", "contact", np.array([orbit.contact for orbit in self.attractors], dtype=str)
-        )
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, and what every attractor does."""
+        yield from super().declared()
+        for name, kind in (("peak_to_peak", None), ("mean", None), ("contact", str)):
+            values = np.array([getattr(orbit, name) for orbit in self.attractors], dtype=kind)
+            yield Variable(name, values, "attractor_number")
 
     def plot(self, axes: Axes | None = None, *, length: str = "") -> Axes:
         """Map of the starts; see ``pictures.frequency_response``."""

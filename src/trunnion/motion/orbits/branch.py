@@ -13,7 +13,7 @@ Bifurcation and Chaos 1, 1991):
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -22,11 +22,14 @@ from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, SolutionCurve, follow, locate
 from trunnion.numerics.continuation.newton import solve
 from trunnion.numerics.curves import at_place, places_at
-from trunnion.results.declared import DatasetItem, Result, data_coordinate, data_variable, data_variables, ending
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import coordinate, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.parameter_names import Names
 from trunnion.results.quantity_axes import QuantityAxis
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.results.verdict import Verdict, flag_attributes, verdicts
 
 Progress = Callable[[float], None]
@@ -97,33 +100,30 @@ class SpecialPoint:
     peak_to_peak: Array
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class PeriodicBranch(Result):
-    """Periodic motions along a branch.
+    """Periodic motions along a branch."""
 
-    parameter (points,); start (points, n); multipliers (points, n), NaN in place of those that a free–free line
-    sets aside; verdict (points,) codes; peak_to_peak (points, curves): of the shaft torques [N m] of a line, or of the
-    states of a system, named by ``curves``; largest: their largest absolute values; amplitude (points, n): of the
-    fundamental of every state; special: folds and other special points in order; outcome: where the branch ended and
-    why.
-    """
-
-    label: str
-    unit: str
-    period: Array
-    parameter: Array
-    start: Array
-    multipliers: Complex
-    verdict: Codes
-    peak_to_peak: Array
-    largest: Array
-    amplitude: Array
-    curves: tuple[str, ...]
-    curve_unit: str
-    special: tuple[SpecialPoint, ...]
-    outcome: Outcome
-    problem: BranchProblem = field(repr=False)
-    unknowns: Array = field(repr=False)
+    label: str = internal("of the parameter")
+    unit: str = internal("of the parameter, SI")
+    period: Array = variable("point", "s")
+    parameter: Array = variable("point", "{self.unit}", "{self.label}")
+    start: Array = internal("state at the beginning of each motion", axes="point state")
+    multipliers: Complex = variable(
+        "point multiplier_number", "1", "NaN in place of those that a free–free line sets aside", name="multiplier"
+    )
+    verdict: Codes = variable("point", more=flag_attributes())
+    peak_to_peak: Array = variable(
+        "point curve", "{self.curve_unit}", "of the shaft torques of a line, or of the states of a system"
+    )
+    largest: Array = variable("point curve", "{self.curve_unit}", "largest absolute value")
+    amplitude: Array = internal("of the fundamental of every state", axes="point state")
+    curves: tuple[str, ...] = coordinate("curve")
+    curve_unit: str = internal("of the curves, SI")
+    special: tuple[SpecialPoint, ...] = internal("folds and other special points in order")
+    outcome: Outcome = internal("where the branch ended and why")
+    problem: BranchProblem = internal("whose zeros are the branch", repr=False)
+    unknowns: Array = internal("points of the curve", axes="point unknown", repr=False)
 
     @property
     def stable(self) -> Flags:
@@ -151,16 +151,11 @@ class PeriodicBranch(Result):
         guesses = [at_place(self.unknowns, place) for place in places_at(self.parameter, value)]
         return [_motion_at(self.problem, guess, value) for guess in guesses]
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Size, period and multipliers over the points of the branch, and its special points."""
-        yield data_coordinate("curve", self.curves)
-        yield data_variable("point", "parameter", self.parameter, self.unit, self.label)
-        yield data_variable("point", "period", self.period, "s")
-        yield from data_variables("point curve", self, peak_to_peak=self.curve_unit, largest=self.curve_unit)
-        yield data_variable("point multiplier_number", "multiplier", self.multipliers, "1")
-        yield data_variable("point", "verdict", self.verdict, **flag_attributes())
-        yield data_variable("special", "special_kind", np.array([p.kind for p in self.special], dtype=str))
-        yield data_variable("special", "special_parameter", np.array([p.parameter for p in self.special]), self.unit)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, special points and the ending."""
+        yield from super().declared()
+        yield Variable("special_kind", np.array([p.kind for p in self.special], dtype=str), "special")
+        yield Variable("special_parameter", np.array([p.parameter for p in self.special]), "special", self.unit)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, curve: str = "", unit: str = "", jumps: bool = True) -> Axes:
@@ -225,12 +220,12 @@ def follow_both_ways(
     curves: list[SolutionCurve] = []
     ways = [(d, end) for d, end in ((-1.0, low), (1.0, high)) if (end - begin) * d > 0]
     for i, (direction, end) in enumerate(ways):
-        told = _part(report_progress, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
+        report = _part(report_progress, FOLLOWING * i / len(ways), FOLLOWING * (i + 1) / len(ways))
         curves.append(
             follow(
                 problem.equations, first, scale=problem.scale, bounds=(low, high), direction=direction,
                 first_step=STEP, largest_step=STEP, smallest_step=LEAST_STEP, most_points=most_points,
-                tolerance=tolerance, on_point=_watched(stop, told, begin, end),
+                tolerance=tolerance, on_point=_watched(stop, report, begin, end),
             )
         )  # fmt: skip
         if curves[-1].ending is Ending.STOPPED:
@@ -258,7 +253,7 @@ def _part(report_progress: Progress, first: float, last: float) -> Progress:
 def _watched(
     stop: Callable[[CurvePoint], bool] | None, report_progress: Progress, begin: float, end: float
 ) -> Callable[[CurvePoint], bool]:
-    """``stop``, telling of every point how far the curve has come; it turns back at folds, what is told does not."""
+    """``stop``, telling of every point how far the curve has come, which only rises where it turns back."""
     farthest = 0.0
 
     def on_point(point: CurvePoint) -> bool:
@@ -327,8 +322,8 @@ def _special_points(
             found += [(met, "grazing")] if met is not None else []
         for kind, test in tests:
             ends, alike = (test(values[i]), test(values[i + 1])), len(values[i]) == len(values[i + 1])
-            told = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
-            if not told or (kind == "branch point" and i in folds):
+            crosses = alike and ends[0] * ends[1] < 0 and max(abs(ends[0]), abs(ends[1])) > NOISE
+            if not crosses or (kind == "branch point" and i in folds):
                 continue
             met = _located(problem, here, there, lambda p, f=test: f(problem.multipliers(p)))  # type: ignore[misc]
             if met is not None and (kind != "Neimark–Sacker" or _on_circle(problem.multipliers(met))):

@@ -9,7 +9,7 @@ derivative there; ``clearance`` and, of a line, ``slowest_crossing`` say how nea
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
@@ -30,17 +30,12 @@ from trunnion.numerics.continuation.newton import Root
 from trunnion.numerics.curves import fourier
 from trunnion.numerics.piecewise_linear import piecewise, staged_flow
 from trunnion.numerics.piecewise_linear.staged_flow import kernel
-from trunnion.results.declared import (
-    DatasetItem,
-    Result,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-)
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
 from trunnion.results.speeds import frequency_unit, show_speed
+from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import MEANING
 from trunnion.steady.shooting.periodic_orbit import Orbit
 from trunnion.steady.shooting.shooting_problem import (
@@ -66,20 +61,16 @@ SINGULAR = 1e-12
 """Smallest singular value over the largest below which the condition of closing determines nothing."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Displacement(Generic[Number]):
-    """What the x of an oscillator does in a forcing period; numbers, or arrays (points,) of several motions.
+    """What the x of an oscillator does in a forcing period; numbers, or arrays (points,) of several motions."""
 
-    lowest, highest, mean of x; impacts: entries into contact, with Σ m v²/2 (impact_energy) and Σ m |v|
-    (impact_impulse) of them.
-    """
-
-    lowest: Number
-    highest: Number
-    mean: Number
-    impacts: Number
-    impact_energy: Number
-    impact_impulse: Number
+    lowest: Number = internal("x")
+    highest: Number = internal("x")
+    mean: Number = internal("of x")
+    impacts: Number = internal("entries into contact")
+    impact_energy: Number = internal("Σ m v²/2 of them")
+    impact_impulse: Number = internal("Σ m |v| of them")
 
     @property
     def peak_to_peak(self) -> Number:
@@ -87,12 +78,12 @@ class Displacement(Generic[Number]):
         return self.highest - self.lowest
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class TorqueRange:
-    """torque_low and torque_high [N m] of the springs of a line in one motion (spring,) or several (points, spring)."""
+    """Torques of the springs of a line in one motion (spring,) or several (points, spring)."""
 
-    torque_low: Array
-    torque_high: Array
+    torque_low: Array = internal("lowest", "N*m", "… spring")
+    torque_high: Array = internal("highest", "N*m", "… spring")
 
     @property
     def torque_peak_to_peak(self) -> Array:
@@ -100,22 +91,18 @@ class TorqueRange:
         return self.torque_high - self.torque_low
 
 
-@dataclass(frozen=True, repr=False)
-class PiecewiseOrbit(Displacement[float], Orbit, Result):
-    """A periodic motion of an oscillator and what it does in a forcing period.
+@labelled
+class PiecewiseOrbit(Result, Displacement[float], Orbit):
+    """A periodic motion of an oscillator and what it does in a forcing period; states are x and x′ at phase zero."""
 
-    start (2,): x and x′ at phase zero; periods: forcing periods until it closes; multipliers (2,);
-    crossings (count, 4): time, x, x′ and regime begun; sides touched; clearance: least distance of an extremum from a
-    breakpoint.
-    """
-
-    oscillator: PiecewiseOscillator
-    periods: int
-    crossings: Array
-    sides: str
-    clearance: float
+    oscillator: PiecewiseOscillator = internal("that moves")
+    periods: int = attribute("of the forcing until it closes")
+    crossings: Array = internal("time, x, x′ and the regime begun", axes="crossing 4")
+    sides: str = internal("that it touches")
+    clearance: float = variable("", "", "least distance of an extremum from a breakpoint")
 
     @property
+    @computed(attribute())
     def contact(self) -> str:
         """none, one-sided or two-sided."""
         return contact_state(self.sides)
@@ -137,18 +124,16 @@ class PiecewiseOrbit(Displacement[float], Orbit, Result):
         cuts = np.unique(np.concatenate([[0.0], self.crossings[:, 0], [self.periods * o.period]]))
         return fourier(x, cuts, highest)[:, 0]
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """The motion over its period, its crossings and multipliers, and the numbers read off it."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, the motion over its period, its crossings, the numbers read off it and the ending."""
+        yield from super().declared()
         times, motion = self.motion() if self.outcome.ok else (np.zeros(0), np.zeros((0, 2)))
-        yield data_coordinate("time", times, "s")
-        yield data_variable("time", "x", motion[:, 0])
-        yield data_variable("time", "v", motion[:, 1])
-        yield data_variable("crossing", "crossing_time", self.crossings[:, 0], "s")
-        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
-        yield from data_variables("", self, **dict.fromkeys((*NUMBERS, "clearance"), ""))
-        yield from data_attributes(
-            oscillator=self.oscillator.name, verdict=str(self.verdict), contact=self.contact, periods=self.periods
-        )
+        yield Coordinate("time", times, "time", "s")
+        yield Variable("x", motion[:, 0], "time")
+        yield Variable("v", motion[:, 1], "time")
+        yield Variable("crossing_time", self.crossings[:, 0], "crossing", "s")
+        yield from (Variable(name, getattr(self, name)) for name in NUMBERS)
+        yield Attribute("oscillator", self.oscillator.name)
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -164,34 +149,36 @@ class PiecewiseOrbit(Displacement[float], Orbit, Result):
         )
 
 
-@dataclass(frozen=True, repr=False)
-class ExactOrbit(TorqueRange, Orbit, Result):
+@labelled
+class ExactOrbit(Result, TorqueRange, Orbit):
     """A periodic motion of a line with stages and what it does in its period.
 
-    value: speed or common frequency of the excitation [rad/s], whichever turns the line's excitation; start (2m,):
-    twists [rad], then rates [rad/s], at t = 0; period [s], ``periods`` times that of the excitation; multipliers and
-    monodromy without the rotation of a free–free line; events: its changes of stage; twist_low, twist_high,
-    twist_mean [rad], torque_mean [N m] (spring,); contacts: sides, impacts and their energy, per spring with stages;
-    clearance [rad]: least distance of an extremum of a twist from an end of its stage, before it or behind it, inf
-    without one; slowest_crossing [rad/s]: smallest rate at a change of stage, inf without one; continuum: the clutches
-    with sliders that never slip, which make this motion one of a continuum; the multipliers of those sliders, exactly
-    1, are set aside.
+    States are twists [rad], then rates [rad/s], at t = 0; multipliers and monodromy leave out the rotation of a
+    free–free line and the sliders of ``continuum``, whose multipliers are exactly 1.
     """
 
-    line: StagedLine
-    value: float
-    periods: int
-    events: StageEvents = field(repr=False)
-    twist_low: Array
-    twist_high: Array
-    twist_mean: Array
-    torque_mean: Array
-    contacts: tuple[SpringContact, ...]
-    clearance: float
-    slowest_crossing: float
-    continuum: tuple[StuckClutch, ...]
+    torque_low: Array = variable("spring", "N*m", "lowest")
+    torque_high: Array = variable("spring", "N*m", "highest")
+    period: float = variable("", "s")
+    line: StagedLine = internal("that moves")
+    value: float = attribute("speed or common frequency of the excitation, whichever turns it", "rad/s")
+    periods: int = internal("of the excitation until it closes")
+    events: StageEvents = internal("changes of stage", repr=False)
+    twist_low: Array = variable("spring", "rad", "lowest")
+    twist_high: Array = variable("spring", "rad", "highest")
+    twist_mean: Array = variable("spring", "rad")
+    torque_mean: Array = variable("spring", "N*m")
+    contacts: tuple[SpringContact, ...] = internal("sides, impacts and their energy, per spring with stages")
+    clearance: float = variable(
+        "", "rad", "least distance of an extremum of a twist from an end of its stage, inf without one"
+    )
+    slowest_crossing: float = variable("", "rad/s", "smallest rate at a change of stage, inf without one")
+    continuum: tuple[StuckClutch, ...] = internal(
+        "the clutches with sliders that never slip, which make this motion one of a continuum"
+    )
 
     @property
+    @computed(coordinate("spring"))
     def springs(self) -> tuple[str, ...]:
         """Names of the springs."""
         return self.line.springs
@@ -207,28 +194,21 @@ class ExactOrbit(TorqueRange, Orbit, Result):
         run = staged_flow.move(flow, self.start, 0.0, self.period, times=times)
         return times, run.states, flow.torque(run.states, run.shown_stages)[:, : len(self.springs)]
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Twist and torque over the period, extremes and means of every spring, changes of stage and multipliers."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, twist and torque over the period, changes of stage and the ending."""
+        yield from super().declared()
         count = len(self.springs)
         times, states, torque = np.zeros(0), np.zeros((0, count)), np.zeros((0, count))
         if self.outcome.ok:
             times, states, torque = self.motion()
-        yield data_coordinate("time", times, "s")
-        yield data_coordinate("spring", self.springs)
-        yield data_variable("time spring", "twist", states[:, :count], "rad")
-        yield data_variable("time spring", "torque", torque, "N*m")
-        yield from data_variables(
-            "spring", self, twist_low="rad", twist_high="rad", twist_mean="rad", torque_low="N*m", torque_high="N*m",
-            torque_mean="N*m", torque_peak_to_peak="N*m",
-        )  # fmt: skip
-        yield data_variable("event", "event_time", self.events.time, "s")
-        yield data_variable(
-            "event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str)
-        )
-        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
-        yield from data_variables("", self, period="s", clearance="rad", slowest_crossing="rad/s")
-        yield from data_attributes(driveline=self.line.name, verdict=str(self.verdict), value=self.value)
-        yield from data_attributes(continuum="; ".join(map(str, self.continuum)))
+        yield Coordinate("time", times, "time", "s")
+        yield Variable("twist", states[:, :count], "time spring", "rad")
+        yield Variable("torque", torque, "time spring", "N*m")
+        yield Variable("torque_peak_to_peak", self.torque_peak_to_peak, "spring", "N*m")
+        yield Variable("event_time", self.events.time, "event", "s")
+        yield Variable("event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str), "event")
+        yield Attribute("driveline", self.line.name)
+        yield Attribute("continuum", "; ".join(map(str, self.continuum)))
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -433,7 +413,7 @@ def orbit_near(line: StagedLine, start: Array, value: float, periods: int, settl
 
 
 def _closed(place: LineMap, start: Array, settle: bool) -> ExactOrbit:
-    """The motion near ``start`` (2m,). Which sliders stick is told by the motion once it has settled, and again by
+    """The motion near ``start`` (2m,). Which sliders stick shows in the motion once it has settled, and again by
     every motion that closes."""
     begin, fixed = start[place.kept], tuple[int, ...]()
     if place.sliders:

@@ -11,7 +11,7 @@ sweep up, sweep down  settled motion step by step, as a bench would find it
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from inspect import signature
 from time import perf_counter
 from typing import Any
@@ -38,9 +38,12 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales
 from trunnion.motion.perturbation.slow_flow import ApproximateResponse, ResponseCurves, largest_stable
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.curves import at_place, places_at
-from trunnion.results.declared import DatasetItem, Described, data_attributes, data_variable, data_variables, ending
+from trunnion.results.described import Described
+from trunnion.results.fields import attribute, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.results.variables import Attribute, Variable
 from trunnion.results.verdict import Verdict
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 from trunnion.systems.second_order import SecondOrder
@@ -66,26 +69,22 @@ BALANCED = 20
 SWEPT, SAMPLES = 101, 1024
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class FrequencyResponse(ResponseCurves, Described):
-    """Half peak-to-peak over frequency by one method.
+    """Half peak-to-peak over frequency by one method."""
 
-    frequency (points,) [rad/s] in order along the curve; half_peak_to_peak (points,) of x or of ``curve``, a state or a
-    shaft's torque; stable (points,); marks: (kind, frequency, half peak-to-peak) of folds, flips, grazing, or of jumps
-    of a sweep; seconds it took; detail: the method's own result; unit: what frequencies read in, of a driveline the
-    unit of its description.
-    """
-
-    method: str
-    frequency: Array
-    half_peak_to_peak: Array
-    stable: Flags
-    marks: tuple[tuple[str, float, float], ...]
-    outcome: Outcome
-    seconds: float
-    detail: Any
-    curve: str = "x"
-    unit: str = "rad/s"
+    method: str = attribute("by which it was found")
+    frequency: Array = variable("point", "rad/s", "of the excitation, in order along the curve")
+    half_peak_to_peak: Array = variable("point", "", "of {self.curve}")
+    stable: Flags = internal("where the motion is stable", axes="point")
+    marks: tuple[tuple[str, float, float], ...] = internal(
+        "(kind, frequency, half peak-to-peak) of folds, flips, grazing, or of jumps of a sweep"
+    )
+    outcome: Outcome = internal("how it ended")
+    seconds: float = internal("that it took", "s")
+    detail: Any = internal("the method's own result")
+    curve: str = attribute("what is looked at: x, a state or the torque of a shaft", default="x")
+    unit: str = internal("of frequencies in print, of a driveline that of its description", default="rad/s")
 
     @property
     def peak(self) -> tuple[float, float]:
@@ -110,12 +109,12 @@ class FrequencyResponse(ResponseCurves, Described):
         size = self.half_peak_to_peak
         return sorted(((float(at_place(size, p)), bool(self.stable[int(p)])) for p in places), reverse=True)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Half peak-to-peak and stability over the points of the curve, and its marks."""
-        yield from data_variables("point", self, frequency="rad/s", half_peak_to_peak="", stable="")
-        yield data_variable("mark", "mark_kind", np.array([m[0] for m in self.marks], dtype=str))
-        yield data_variable("mark", "mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "rad/s")
-        yield from data_attributes(method=self.method, curve=self.curve)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, stability, marks and the ending."""
+        yield from super().declared()
+        yield Variable("stable", self.stable, "point")
+        yield Variable("mark_kind", np.array([m[0] for m in self.marks], dtype=str), "mark")
+        yield Variable("mark_frequency", np.array([m[1] for m in self.marks], dtype=float), "mark", "rad/s")
         yield from ending(self.outcome)
 
     def describe(self, unit: str | None = None) -> str:
@@ -135,11 +134,11 @@ class FrequencyResponse(ResponseCurves, Described):
         return "\n".join([head, *rows, f"  {self.outcome}"])
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ResponseComparison(ResponseCurves, Described):
-    """Several methods side by side; the first is what the others are measured against."""
+    """Several methods side by side."""
 
-    responses: Mapping[str, FrequencyResponse]
+    responses: Mapping[str, FrequencyResponse] = internal("by method, the others measured against the first")
 
     def __getitem__(self, method: str) -> FrequencyResponse:
         """One of them."""
@@ -166,13 +165,12 @@ class ResponseComparison(ResponseCurves, Described):
             rows.append((name, f"{size:#.5g}", f"{at * factor:#.6g}", folds, *motions, f"{r.seconds:.2g}"))
         return rows
 
-    def declared(self) -> Iterator[DatasetItem]:
+    def declared(self) -> Iterator[Variable | Attribute]:
         """The points of all curves one after the other, each with its method."""
         found = list(self.responses.values())
-        yield data_variable("point", "method", np.array([r.method for r in found for _ in r.frequency], dtype=str))
-        yield data_variable("point", "frequency", np.concatenate([r.frequency for r in found]), "rad/s")
-        yield data_variable("point", "half_peak_to_peak", np.concatenate([r.half_peak_to_peak for r in found]))
-        yield data_variable("point", "stable", np.concatenate([r.stable for r in found]))
+        yield Variable("method", np.array([r.method for r in found for _ in r.frequency], dtype=str), "point")
+        for name, unit in (("frequency", "rad/s"), ("half_peak_to_peak", ""), ("stable", "")):
+            yield Variable(name, np.concatenate([getattr(r, name) for r in found]), "point", unit)
 
     def describe(self, unit: str | None = None) -> str:
         """The table as text."""

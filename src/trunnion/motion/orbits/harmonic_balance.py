@@ -17,7 +17,7 @@ the matrices of the balance are the same for all (``numerics.harmonics``).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol, TypeVar
@@ -38,7 +38,7 @@ from trunnion.numerics.curves import extremes
 from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.threads import on_one_thread
-from trunnion.results.declared import DatasetItem, data_attributes, data_variable
+from trunnion.results.fields import attribute, computed, labelled, variable
 from trunnion.results.outcome import Outcome
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, periodic_orbit
 from trunnion.steady.shooting.shooting_problem import CLEAR, IntegratedShooting
@@ -54,19 +54,16 @@ FAR = 100.0
 """Distance of a spectral radius from 1, over that of the series from the motion, at which its error does not matter."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class SeriesBranch(PeriodicBranch):
-    """A branch of periodic motions as Fourier series.
+    """A branch of periodic motions as Fourier series."""
 
-    rows (points, n, 2H + 1): mean, cosines, sines of every unknown; tail (points,): the largest of the last harmonics
-    over the largest of all; periods: of the forcing in one of the motion.
-    """
-
-    rows: Array
-    tail: Array
-    periods: int
+    rows: Array = variable("point state coefficient", "", "mean, cosines 1…H, sines 1…H", name="series")
+    tail: Array = variable("point", "", "the largest of the last harmonics over the largest of all")
+    periods: int = attribute("of the forcing in one of the motion")
 
     @property
+    @computed(attribute())
     def harmonics(self) -> int:
         """H, per period of the motion."""
         return fourier.order(self.rows)
@@ -75,13 +72,6 @@ class SeriesBranch(PeriodicBranch):
     def branch(self) -> PeriodicBranch:
         """The branch alone, as other methods give it."""
         return PeriodicBranch(**{name: getattr(self, name) for name in PeriodicBranch.__dataclass_fields__})
-
-    def declared(self) -> Iterator[DatasetItem]:
-        """What every branch has, and the series."""
-        yield from super().declared()
-        yield data_variable("point state coefficient", "series", self.rows, about="mean, cosines 1…H, sines 1…H")
-        yield data_variable("point", "tail", self.tail)
-        yield from data_attributes(harmonics=self.harmonics, periods=self.periods)
 
     @property
     def _worst(self) -> str:
@@ -180,21 +170,17 @@ def tail_of(rows: Array) -> float:
     return float(size[max(h - 2, 0) :].max() / max(size.max(), 1e-300))
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class HarmonicBalance(SeriesBranch):
     """A branch of periodic motions as Fourier series; see ``SeriesBranch``."""
 
     @cached_property
+    @computed(variable("point"))
     def defect(self) -> Array:
         """Distance (points,) between start and end of the true motion through the series' start, in units of the
         states' scales; NaN where that motion cannot be computed (at a grazing)."""
         assert isinstance(self.problem, _LineBalance)
         return np.array([self.problem.defect(CurvePoint(z, z, 0)) for z in self.unknowns])
-
-    def declared(self) -> Iterator[DatasetItem]:
-        """What the branch holds, with the series and how far it is off."""
-        yield from super().declared()
-        yield data_variable("point", "defect", self.defect)
 
     def motion(self, point: int, count: int = 1024) -> Array:
         """States (count, n) at equidistant times of the period of one point."""

@@ -28,6 +28,7 @@ from trunnion.numerics.chain.exponential_monodromy import exponential
 from trunnion.numerics.continuation.arclength import CurvePoint, Ending, follow, once
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.curves import extremes
+from trunnion.results.fields import labelled
 from trunnion.results.parameter_names import Names
 from trunnion.steady.shooting.shooting_problem import by_modulus
 from trunnion.systems.second_order import SecondOrder, Spring
@@ -50,7 +51,7 @@ ROUNDING = 1e-12
 GAUSS = np.sqrt(3.0) / 6
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class SpringBalance(SeriesBranch):
     """A branch of the unknowns of a ``SecondOrder`` system as Fourier series; see ``SeriesBranch``."""
 

@@ -37,20 +37,14 @@ from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contact
 from trunnion.motion.simulation.simulate import simulate_system
 from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier
-from trunnion.results.declared import (
-    DatasetItem,
-    DescribedWithFindings,
-    data_attribute,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-)
+from trunnion.results.described import DescribedWithFindings
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import show_speed
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
     kept_speed_orbit,
@@ -127,19 +121,15 @@ def compared(
     )
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
-    """The periodic motion of a line at one speed.
+    """The periodic motion of a line at one speed; stability is that of this motion itself."""
 
-    torque and twist (points, shaft) over one period at ``time`` (points,); torque_peak_to_peak and torque_mean
-    (shaft,) [N m]; multipliers, spectral_radius, growth_rate and verdict of this motion itself; comparison with
-    the linearisations (None where the linear equations do not have what the line has, see ``no_comparison``).
-    """
-
-    line: LineSystem
-    speed: float
-    comparison: LinearComparison | None = None
-    no_comparison: str = "not asked for"
+    residual: float = internal("of the period, in units of the states' scale")
+    line: LineSystem = internal("that moves")
+    speed: float = variable("", "rad/s")
+    comparison: LinearComparison | None = internal("with the linearisations, None where there is none", default=None)
+    no_comparison: str = internal("why there is none", default="not asked for")
 
     @property
     def orbit(self) -> PeriodicOrbit:
@@ -152,6 +142,7 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         return self.period * self.speed / (2 * np.pi)
 
     @cached_property
+    @computed(coordinate("time", "s"))
     def time(self) -> Array:
         """Times (points,) over one period, its end left out [s]: enough to show every swing."""
         count = max(FEWEST_SAMPLES, 1 << int(np.ceil(np.log2(2 * max(self.trajectory.steps, 1)))))
@@ -168,12 +159,14 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         return extremes(lambda times: self.motion_at(times).torque, self.trajectory.time_of_state)
 
     @property
+    @computed(variable("shaft", "N*m"))
     def torque_peak_to_peak(self) -> Array:
         """Largest minus smallest torque of every shaft [N m], found on the dense output to its own error (about ten
         times the tolerance); NaN where no motion was found."""
         return self._torque_extremes.span if self.outcome.ok else np.full(len(self.shafts), np.nan)
 
     @property
+    @computed(variable("shaft", "N*m"))
     def peak_torque(self) -> Array:
         """Largest |torque| of every shaft [N m] over the period; NaN where no motion was found."""
         return self._torque_extremes.largest if self.outcome.ok else np.full(len(self.shafts), np.nan)
@@ -184,6 +177,7 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         return self.torque_peak_to_peak / 2
 
     @cached_property
+    @computed(variable("shaft", "N*m"))
     def torque_mean(self) -> Array:
         """Mean torque of every shaft [N m]; negative when power flows from input to output."""
         return np.asarray(self.order_torque(0)[1][0].real)
@@ -227,22 +221,15 @@ class PeriodicResponse(DescribedWithFindings, OfShafts, IntegratedOrbit):
         """What to read first, speeds in ``unit``."""
         return by_gravity(_findings(self, unit))
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Twist and torque over one period, their orders, and the multipliers."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, the orders of torques and the ending."""
+        yield from super().declared()
         orders, amplitude = self.order_spectrum()
-        yield data_coordinate("time", self.time, "s")
-        yield data_coordinate("shaft", self.shafts)
-        yield data_coordinate("order", orders, "1", "cycles per turn of the input")
-        yield from data_variables("time shaft", self, twist="rad", torque="N*m")
-        yield from data_variables("shaft", self, torque_peak_to_peak="N*m", peak_torque="N*m", torque_mean="N*m")
-        yield data_variable("order shaft", "order_amplitude", amplitude, "N*m")
-        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
-        yield data_variable("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield from data_variables("", self, spectral_radius="1", growth_rate="1/s", period="s", speed="rad/s")
-        yield from data_attributes(driveline=self.system.name, verdict=str(self.verdict))
+        yield Coordinate("order", orders, "order", "1", "cycles per turn of the input")
+        yield Variable("order_amplitude", amplitude, "order shaft", "N*m")
+        yield from attributes(driveline=self.system.name, continuum="; ".join(map(str, self.continuum)))
+        yield from attributes(comparison=str(self.comparison or self.no_comparison))
         yield from ending(self.outcome)
-        yield from data_attributes(continuum="; ".join(map(str, self.continuum)))
-        yield data_attribute("comparison", str(self.comparison or self.no_comparison))
 
     def plot(self, axes: Axes | None = None, *, unit: str = "") -> Axes:
         """Torque of every shaft over one period; see ``pictures.motion``."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, overload
 
@@ -28,18 +28,13 @@ from trunnion.motion.orbits.periodic_branch import line_over
 from trunnion.motion.orbits.spring_contacts import SpringContact
 from trunnion.motion.simulation.exact_motion import start_state
 from trunnion.numerics.memory import require_memory
-from trunnion.results.declared import (
-    DatasetItem,
-    Described,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-)
+from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import frequency_unit, speed_factor
+from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.steady.shooting.shooting_problem import refuse_speed
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
@@ -57,19 +52,15 @@ STEEPENING = 4.0
 """How many times steeper the flank of a resonance may get from step to step of a coarse grid."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Sweep(ABC):
-    """Steady motions over a value, in the order it was swept.
+    """Steady motions over a value, in the order it was swept."""
 
-    value (points,) [rad/s]; settled (points,): whether the motion repeats every period; periods (points,): run until
-    then; state (points, states) at phase zero.
-    """
-
-    value: Array
-    settled: Flags
-    periods: Integers
-    state: Array
-    outcome: Outcome
+    value: Array = internal("that was swept", "rad/s", "point")
+    settled: Flags = internal("whether the motion repeats every period", axes="point")
+    periods: Integers = internal("run until then", axes="point")
+    state: Array = internal("at phase zero", axes="point state")
+    outcome: Outcome = internal("how it ended")
 
     @property
     @abstractmethod
@@ -108,17 +99,16 @@ class Sweep(ABC):
         return f"jumps: {', '.join(f'{a * factor:.6g} → {b * factor:.6g}' for a, b in self.jumps) or 'none'}"
 
 
-@dataclass(frozen=True, repr=False)
-class OscillatorSweep(Displacement[Array], Sweep, Described):
-    """Steady motion of an oscillator over frequency (points,) [rad/s].
+@labelled
+class OscillatorSweep(Described, Displacement[Array], Sweep):
+    """Steady motion of an oscillator over frequency; states are x and x′."""
 
-    contact (points,) of none, one-sided, two-sided; state (points, 2): x and x′.
-    """
-
-    oscillator: PiecewiseOscillator
-    contact: tuple[str, ...]
+    periods: Integers = variable("frequency", "", "run until the motion repeats")
+    oscillator: PiecewiseOscillator = internal("that moves")
+    contact: tuple[str, ...] = variable("frequency", "", "none, one-sided or two-sided")
 
     @property
+    @computed(coordinate("frequency", "rad/s"))
     def frequency(self) -> Array:
         """Frequencies (points,) [rad/s]."""
         return self.value
@@ -128,13 +118,11 @@ class OscillatorSweep(Displacement[Array], Sweep, Described):
         """Peak-to-peak of x (points, 1)."""
         return self.peak_to_peak[:, None]
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Extremes, impacts and contact over frequency."""
-        yield data_coordinate("frequency", self.frequency, "rad/s")
-        yield from data_variables("frequency", self, **dict.fromkeys((*NUMBERS, "settled"), ""))
-        yield data_variable("frequency", "contact", np.array(self.contact, dtype=str))
-        yield data_variable("frequency", "periods", self.periods)
-        yield from data_attributes(oscillator=self.oscillator.name, direction=self._direction)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, extremes and impacts, and the ending."""
+        yield from super().declared()
+        yield from (Variable(name, getattr(self, name), "frequency") for name in (*NUMBERS, "settled"))
+        yield from attributes(oscillator=self.oscillator.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, length: str = "", unit: str | None = None) -> Axes:
@@ -157,18 +145,18 @@ class OscillatorSweep(Displacement[Array], Sweep, Described):
         )
 
 
-@dataclass(frozen=True, repr=False)
-class LineSweep(TorqueRange, Sweep, Described):
-    """Steady motions of a line over its speed, or the common frequency of excitation in time.
+@labelled
+class LineSweep(Described, TorqueRange, Sweep):
+    """Steady motions of a line over its speed, or the common frequency of excitation in time."""
 
-    torque_low, torque_high (points, spring) [N m]; contacts (points of spring contacts), per period of the excitation
-    where settled, else over the periods measured; state (points, 2m).
-    """
-
-    line: StagedLine
-    contacts: tuple[tuple[SpringContact, ...], ...] = field(repr=False)
+    line: StagedLine = internal("that moves")
+    contacts: tuple[tuple[SpringContact, ...], ...] = internal(
+        "of springs with stages, per period of the excitation where settled, else over the periods measured",
+        axes="point staged_spring", repr=False,
+    )  # fmt: skip
 
     @property
+    @computed(coordinate("spring"))
     def springs(self) -> tuple[str, ...]:
         """Names of the springs."""
         return self.line.springs
@@ -202,21 +190,22 @@ class LineSweep(TorqueRange, Sweep, Described):
             )  # fmt: skip
         return self.springs.index(spring)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Extremes of every spring's torque, impacts and contact of those with stages, over speed or frequency."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, torques, impacts and contact over speed or frequency, and the ending."""
         independent_variable = "speed" if self.line.independent_variable == "speed" else "frequency"
         staged = [self.springs[e] for e in self.line.staged]
-        yield data_coordinate(independent_variable, self.value, "rad/s")
-        yield data_coordinate("spring", self.springs)
-        yield data_coordinate("staged_spring", staged)
-        yield from data_variables(f"{independent_variable} spring", self, torque_low="N*m", torque_high="N*m")
+        yield Coordinate(independent_variable, self.value, independent_variable, "rad/s")
+        yield from super().declared()
+        yield Coordinate("staged_spring", staged, "staged_spring")
+        for name in ("torque_low", "torque_high"):
+            yield Variable(name, getattr(self, name), f"{independent_variable} spring", "N*m")
         for name, unit, kind in (("impacts", "", None), ("impact_energy", "J", None), ("contact", "", str)):
             values = np.array([[getattr(contact, name) for contact in row] for row in self.contacts], dtype=kind)
-            yield data_variable(
-                f"{independent_variable} staged_spring", name, values.reshape(len(self.value), len(staged)), unit
-            )
-        yield from data_variables(independent_variable, self, settled="", periods="")
-        yield from data_attributes(driveline=self.line.name, direction=self._direction)
+            values = values.reshape(len(self.value), len(staged))
+            yield Variable(name, values, f"{independent_variable} staged_spring", unit)
+        for name in ("settled", "periods"):
+            yield Variable(name, getattr(self, name), independent_variable)
+        yield from attributes(driveline=self.line.name, direction=self._direction)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, spring: str = "", unit: str | None = None) -> Axes:
@@ -240,10 +229,10 @@ class LineSweep(TorqueRange, Sweep, Described):
             rows.append(f"  {name}: largest torque {swing[best]:.6g} N m peak to peak at {value[best]:.6g} {unit}")
         for row in zip(*self.contacts, strict=True):
             kinds = [contact.contact for contact in row]
-            told = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
+            counts = ", ".join(f"{kinds.count(k)} {k}" for k in CONTACTS if k in kinds)
             worst = int(np.nanargmax([np.nan_to_num(c.impact_energy) for c in row]))
             impact = f"; impacts up to {row[worst].impact_energy:.4g} J a period at {value[worst]:.6g} {unit}"
-            rows.append(f"  contact of {row[0].spring}: {told}{impact if row[worst].impacts else ''}")
+            rows.append(f"  contact of {row[0].spring}: {counts}{impact if row[worst].impacts else ''}")
         return "\n".join([self._head(self.line.name, "steps", unit), *rows, f"  {self._jumps(unit)}; {self.outcome}"])
 
 

@@ -31,10 +31,10 @@ from trunnion.motion.simulation.simulate import prolonged, simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.motion.simulation.strongest_order import StrongestOrder, strongest_order
 from trunnion.results.counts import few
-from trunnion.results.declared import DatasetItem, data_attributes
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_span, about_speed, frequency_unit, rounded_speed
 from trunnion.results.units import order_words
+from trunnion.results.variables import Attribute, attributes
 from trunnion.waiting import time_is_up
 
 WANDERS = 0.02
@@ -132,19 +132,19 @@ class RunUpEnding:
         """Whether the line reached the last speed when it was asked for, and hung nowhere."""
         return self.kind == "reached" and self.time <= self.scheduled and self.hanging is None
 
-    def declared(self) -> Iterator[DatasetItem]:
+    def declared(self) -> Iterator[Attribute]:
         """When, how fast, and where it hung."""
-        yield from data_attributes(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
+        yield from attributes(ended=self.time, scheduled=self.scheduled, end_speed=self.speed)
         if self.hanging is not None:
             hung = self.hanging
-            yield from data_attributes(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
-            yield from data_attributes(drive_torque=self.drive, load_torque=self.load)
+            yield from attributes(hung_speed=hung.speed, hung_since=hung.since, hung_until=hung.until)
+            yield from attributes(drive_torque=self.drive, load_torque=self.load)
         if self.slip is not None:
-            yield from data_attributes(
+            yield from attributes(
                 slipped=self.slip.clutch, slipped_turns=self.slip.turns, slipped_speed=self.slip.speed
             )
         if self.hanging is not None and self.strongest is not None:
-            yield from data_attributes(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
+            yield from attributes(hung_order=self.strongest.order, hung_mode=self.strongest.mode or None)
 
     def outcome(self, failed: Outcome, unit: str) -> Outcome:
         """The outcome, speeds in ``unit``; ``failed`` is the integration's, which counts where it did not get
@@ -315,11 +315,11 @@ def _followed(
         if _stopped(run.whole, schedule, begun.end) or not len(speeds):
             return run, "stalled"
         gain, left = schedule.sense * _gain(times, speeds), schedule.sense * (schedule.last - float(speeds[-1]))
-        held = run.end - schedule.duration
-        watched = held >= WANDERING * schedule.duration and held * float(speeds.mean()) >= WANDERING_TURNS * TURN
+        since = run.end - schedule.duration
+        watched = since >= WANDERING * schedule.duration and since * float(speeds.mean()) >= WANDERING_TURNS * TURN
         if left > PATIENCE * schedule.duration * gain and (watched or not wanders(speeds)):
             return run, "hanging"
-        if held > PATIENCE * schedule.duration + 2 * span and watched:
+        if since > PATIENCE * schedule.duration + 2 * span and watched:
             return run, "undecided"
         span *= 2
 
@@ -368,9 +368,9 @@ def _ending(kind: str, run: LineSimulation, schedule: SpeedSchedule, drive: floa
     times, speeds = mean_speeds(run.whole, 0.0)
     hanging = longest_hanging(times, speeds, schedule)
     if kind == "captured":
-        held = times >= schedule.duration
+        behind = times >= schedule.duration
         since = hanging.since if hanging else schedule.duration
-        hanging = SpeedCapture(since, run.end, float(speeds[held].mean()), *_range(speeds[held]))
+        hanging = SpeedCapture(since, run.end, float(speeds[behind].mean()), *_range(speeds[behind]))
     at = hanging.speed if hanging and kind == "captured" else max(speed, 0.0)
     column = assembly.packed.column
     last, load = (float(load_at_input(assembly.topology, column, assembly.table(1, w))[0]) for w in (schedule.last, at))

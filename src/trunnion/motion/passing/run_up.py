@@ -1,7 +1,7 @@
 """``run_up``: passage through resonance at constant acceleration, against the steady response.
 
 A line that passes a resonance quickly never reaches its steady amplitude; one that passes slowly does, and one
-that is accelerated briskly is twisted by its own inertia. The torque is therefore told apart: what the loads and the
+that is accelerated briskly is twisted by its own inertia. The torque is therefore divided: what the loads and the
 inertia behind a shaft ask for at each speed and acceleration (quasi-static), and what vibrates about that.
 
 The acceleration is that of the drive. Where a line is free–free, nothing turns at a prescribed speed: its disks with a
@@ -36,18 +36,13 @@ from trunnion.motion.simulation.simulate import simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.curves import extremes_in
 from trunnion.results.counts import counted
-from trunnion.results.declared import (
-    DatasetItem,
-    Described,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-)
+from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed
+from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.steady.shooting.free_orbit import is_periodic, kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import periodic_orbit
 from trunnion.waiting import OutOfTime, keeps_time, time_is_up, time_kept
@@ -77,40 +72,37 @@ class SteadyResponse:
     verdict: Codes
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class RunUp(Described):
-    """A passage at constant acceleration.
+    """A passage at constant acceleration, turn by turn of the input, the last with the little that leaves none over.
 
-    speed (turns,) [rad/s]: mean speed in each turn of the input, or in the little more that leaves none over, and time
-    (turns,) [s] of its middle; where the line is free–free, of the whole line, whose vibration does not count; upper
-    and lower (turns, shaft): the largest and smallest torque [N m] within it, found on the dense output; vibration
-    (turns, shaft): the largest distance of the torque from the quasi-static one, which loads and inertia ask for at the
-    speed and acceleration that the line has; lag (turns,) [rad/s]: by how much it turned slower than asked, which only
-    a line that is free–free can; inertia_torque (shaft,) [N m]: what accelerates the inertia behind each shaft at the
-    full acceleration, were it rigid and its joints straight; steady: the steady response in the same range (None if not
-    asked for); ending: how a free–free line came to the last speed, None where the speed is prescribed; ended:
-    what a time limit left out, as a clause, "" where nothing.
+    The speed of a free–free line is that of the whole line, whose vibration does not count; the quasi-static torque is
+    what loads and inertia ask for at the speed and acceleration that the line has.
     """
 
-    simulation: LineSimulation
-    schedule: SpeedSchedule
-    time: Array
-    speed: Array
-    upper: Array
-    lower: Array
-    vibration: Array
-    lag: Array
-    inertia_torque: Array
-    steady: SteadyResponse | None
-    ending: RunUpEnding | None
-    ended: str = ""
+    simulation: LineSimulation = internal("the motion")
+    schedule: SpeedSchedule = internal("the speed asked for")
+    time: Array = variable("turn", "s", "middle of the turn")
+    speed: Array = variable("turn", "rad/s", "mean")
+    upper: Array = variable("turn shaft", "N*m", "largest torque", name="torque_upper")
+    lower: Array = variable("turn shaft", "N*m", "smallest torque", name="torque_lower")
+    vibration: Array = variable("turn shaft", "N*m", "largest distance of the torque from the quasi-static one")
+    lag: Array = variable("turn", "rad/s", "by how much a free–free line turned slower than asked")
+    inertia_torque: Array = variable(
+        "shaft", "N*m", "accelerates the inertia behind it at the full acceleration, were it rigid and joints straight"
+    )
+    steady: SteadyResponse | None = internal("response in the same range, None if not asked for")
+    ending: RunUpEnding | None = internal("of a free–free line, None where the speed is prescribed")
+    ended: str = attribute("what a time limit left out, as a clause", default="")
 
     @property
+    @computed(attribute())
     def acceleration(self) -> float:
         """Magnitude asked for [rad/s²]."""
         return self.schedule.acceleration
 
     @property
+    @computed(attribute())
     def ramp(self) -> float:
         """Time over which it sets in [s]."""
         return self.schedule.ramp
@@ -133,6 +125,7 @@ class RunUp(Described):
         return failed if self.ending is None else self.ending.outcome(failed, unit)
 
     @property
+    @computed(coordinate("shaft"))
     def shafts(self) -> tuple[str, ...]:
         """Names of the shafts."""
         return self.simulation.shafts
@@ -143,11 +136,13 @@ class RunUp(Described):
         return np.maximum(np.abs(self.upper), np.abs(self.lower))
 
     @property
+    @computed(variable("shaft", "N*m"))
     def peak_torque(self) -> Array:
         """Largest |torque| of every shaft over the whole passage [N m]."""
         return np.asarray(self.largest.max(axis=0))
 
     @property
+    @computed(variable("shaft", "rad/s"))
     def peak_speed(self) -> Array:
         """Mean input speed [rad/s] of the turn in which each shaft has it."""
         return self.speed[self.largest.argmax(axis=0)]
@@ -160,11 +155,13 @@ class RunUp(Described):
         return np.asarray(np.nanmax(self.steady.largest, axis=0))
 
     @property
+    @computed(variable("shaft", "N*m"))
     def peak_vibration(self) -> Array:
         """Largest distance of every shaft's torque (shaft,) [N m] from the quasi-static one."""
         return np.asarray(self.vibration.max(axis=0))
 
     @property
+    @computed(variable("shaft", "rad/s"))
     def vibration_speed(self) -> Array:
         """Mean input speed [rad/s] of the turn in which each shaft has it."""
         return self.speed[self.vibration.argmax(axis=0)]
@@ -176,26 +173,17 @@ class RunUp(Described):
             return np.full(len(self.shafts), np.nan)
         return np.asarray(np.nanmax(self.steady.swing, axis=0))
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Extremes and vibration of every torque turn by turn and in all, and the steady response."""
-        yield data_coordinate("shaft", self.shafts)
-        yield data_variable("turn shaft", "torque_upper", self.upper, "N*m")
-        yield data_variable("turn shaft", "torque_lower", self.lower, "N*m")
-        yield from data_variables("turn", self, time="s", speed="rad/s")
-        yield from data_variables("shaft", self, peak_torque="N*m", peak_speed="rad/s", inertia_torque="N*m")
-        yield data_variable("turn shaft", "vibration", self.vibration, "N*m")
-        yield from data_variables("shaft", self, peak_vibration="N*m", vibration_speed="rad/s")
-        yield data_variable("turn", "lag", self.lag, "rad/s")
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, the steady response and the ending."""
         if self.steady is not None:
-            yield data_coordinate("steady_speed", self.steady.speed, "rad/s")
-            yield data_variable("steady_speed shaft", "steady_torque", self.steady.largest, "N*m")
-            yield data_variable("steady_speed shaft", "steady_swing", self.steady.swing, "N*m")
-            yield data_variable("steady_speed", "steady_verdict", self.steady.verdict)
-        yield from data_attributes(acceleration=self.acceleration, ramp=self.ramp)
+            yield Coordinate("steady_speed", self.steady.speed, "steady_speed", "rad/s")
+            yield Variable("steady_torque", self.steady.largest, "steady_speed shaft", "N*m")
+            yield Variable("steady_swing", self.steady.swing, "steady_speed shaft", "N*m")
+            yield Variable("steady_verdict", self.steady.verdict, "steady_speed")
         if self.ending is not None:
             yield from self.ending.declared()
+        yield from super().declared()
         yield from ending(self.outcome)
-        yield from data_attributes(ended=self.ended)
 
     def plot(self, axes: Axes | None = None, *, shaft: str = "", unit: str = "") -> Axes:
         """Envelope against the steady response; see ``pictures.motion.run_up``."""
@@ -427,8 +415,8 @@ def _quasi_static(assembly: Assembly, asked: SpeedSchedule, own: _FreeInputSpeed
 
     def torque(times: Array) -> Array:
         speed, rate = (asked.profile.at(times), asked.rate(times)) if own is None else own.at(times)
-        held = np.stack([np.interp(speed, speeds, column) for column in static.T], axis=1)
-        return held + rate[:, None] * inertia
+        loads = np.stack([np.interp(speed, speeds, column) for column in static.T], axis=1)
+        return loads + rate[:, None] * inertia
 
     return torque
 

@@ -8,7 +8,6 @@ run, and names them.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,14 +20,8 @@ from trunnion.equations.line_system import line_system
 from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
-from trunnion.results.declared import (
-    DatasetItem,
-    Described,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-)
+from trunnion.results.described import Described
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.speeds import about_span, acceleration_span, rounded_speed, show_acceleration
 
 REACHED = "reached"
@@ -36,15 +29,14 @@ EDGE = 0.01
 """Distance of the last safe acceleration from the next one that is not, relative."""
 
 
-@dataclass(frozen=True)
+@labelled
 class TrialRunUp:
-    """A run at ``acceleration`` [rad/s²]: its kind of ending, the speed at which it ended or hung [rad/s], and the
-    largest torque over its limit."""
+    """A run at one acceleration."""
 
-    acceleration: float
-    kind: str
-    speed: float
-    share: float
+    acceleration: float = variable("", "rad/s^2")
+    kind: str = variable("", "", "of ending", name="outcome")
+    speed: float = variable("", "rad/s", "at which it ended or hung", name="end_speed")
+    share: float = variable("", "1", "largest torque over its limit")
 
     @property
     def safe(self) -> bool:
@@ -52,19 +44,18 @@ class TrialRunUp:
         return self.kind == REACHED and self.share <= 1
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class SafeAccelerations(Described):
-    """How fast and how slowly a line may pass a speed range.
+    """How fast and how slowly a line may pass a speed range."""
 
-    trials: every run that was made, by rising acceleration; last: the speed to be reached [rad/s]; unit: what speeds
-    read in.
-    """
-
-    trials: tuple[TrialRunUp, ...]
-    last: float
-    unit: str
+    trials: tuple[TrialRunUp, ...] = members(
+        TrialRunUp, "acceleration", "every run that was made, by rising acceleration", only="share kind speed"
+    )
+    last: float = internal("speed to be reached", "rad/s")
+    unit: str = internal("of speeds in print")
 
     @property
+    @computed(coordinate("acceleration", "rad/s^2"))
     def acceleration(self) -> Array:
         """What was tried (trial,) [rad/s²]."""
         return np.array([one.acceleration for one in self.trials])
@@ -86,7 +77,7 @@ class SafeAccelerations(Described):
 
     @property
     def stretch(self) -> tuple[TrialRunUp, ...]:
-        """The quietest safe run, and its neighbours up to the next one on each side that is not safe; empty without."""
+        """The safe run with the least torque and its neighbours, up to one on each side that is not safe; or empty."""
         safe = [i for i, one in enumerate(self.trials) if one.safe]
         if not safe:
             return ()
@@ -98,28 +89,22 @@ class SafeAccelerations(Described):
         return self.trials[low : high + 1]
 
     @property
+    @computed(variable("", "rad/s^2"))
     def slowest(self) -> float:
         """The slowest of the stretch [rad/s²]; NaN where nothing tried is safe."""
         return self.stretch[0].acceleration if self.stretch else np.nan
 
     @property
+    @computed(variable("", "rad/s^2"))
     def fastest(self) -> float:
         """The fastest of the stretch [rad/s²]; NaN where nothing tried is safe."""
         return self.stretch[-1].acceleration if self.stretch else np.nan
 
     @property
+    @computed(attribute(name="says"))
     def sentence(self) -> str:
         """What may be done, speeds in the unit of the line's description."""
         return self.describe()
-
-    def declared(self) -> Iterator[DatasetItem]:
-        """Ending and share of the limit of every acceleration tried, and the ends of the quietest safe stretch."""
-        yield data_coordinate("acceleration", self.acceleration, "rad/s^2")
-        yield data_variable("acceleration", "share", self.share, "1")
-        yield data_variable("acceleration", "outcome", np.array(self.outcome, dtype=str))
-        yield data_variable("acceleration", "end_speed", [one.speed for one in self.trials], "rad/s")
-        yield from data_variables("", self, slowest="rad/s^2", fastest="rad/s^2")
-        yield from data_attributes(says=self.sentence)
 
     def describe(self, unit: str | None = None) -> str:
         """What may be done, speeds in ``unit``, by default that of the line's description."""
@@ -133,7 +118,7 @@ class SafeAccelerations(Described):
         if reaching:
             best = min(reaching, key=lambda one: one.share)
             at = show_acceleration(best.acceleration, unit)
-            words.append(f"the quietest that reaches {last}, {at}, comes to {best.share:.3g} of the limit")
+            words.append(f"the best that reaches {last}, {at}, comes to {best.share:.3g} of the limit")
         return "; ".join([*words, *self._ended(unit)])
 
     def _safe(self, last: str, unit: str) -> str:

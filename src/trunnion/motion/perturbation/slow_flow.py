@@ -17,9 +17,12 @@ from scipy.integrate import solve_ivp
 from trunnion.arrays import Array, Flags
 from trunnion.errors import InputError
 from trunnion.numerics.curves import at_place, places_at
-from trunnion.results.declared import DatasetItem, Result, data_attributes, data_variables, ending
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
 
 POINTS = 1500
@@ -54,20 +57,20 @@ class ResponseCurves:
         return drawing(self, "plot")(self, axes, length=length, unit=unit, marks=marks, jumps=jumps, top=top)
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ApproximateResponse(ResponseCurves, Result):
-    """A frequency response in order along its curve: frequency [rad/s], amplitude (half peak-to-peak), mean, stable.
+    """A frequency response in order along its curve.
 
     A point of NaN parts stretches between which the curve is outside the range.
     """
 
-    method: str
-    frequency: Array
-    amplitude: Array
-    mean: Array
-    stable: Flags
-    note: str
-    outcome: Outcome
+    method: str = attribute("by which it was found")
+    frequency: Array = variable("point", "rad/s", "of the excitation")
+    amplitude: Array = variable("point", "", "half peak-to-peak")
+    mean: Array = variable("point")
+    stable: Flags = internal("where the motion is stable", axes="point")
+    note: str = attribute("what the method leaves out")
+    outcome: Outcome = internal("how it ended")
 
     @property
     def half_peak_to_peak(self) -> Array:
@@ -85,10 +88,10 @@ class ApproximateResponse(ResponseCurves, Result):
         turns = np.flatnonzero(np.diff(self.frequency)[:-1] * np.diff(self.frequency)[1:] < 0) + 1
         return tuple((float(self.frequency[i]), float(self.amplitude[i])) for i in turns)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Frequency, amplitude, mean and stability over the points."""
-        yield from data_variables("point", self, frequency="rad/s", amplitude="", mean="", stable="")
-        yield from data_attributes(method=self.method, note=self.note)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, stability and the ending."""
+        yield from super().declared()
+        yield Variable("stable", self.stable, "point")
         yield from ending(self.outcome)
 
     def __str__(self) -> str:
@@ -195,23 +198,23 @@ class SlowFlow(ABC):
         top = abs(o.force) / (o.damping * low)
         sizes = np.geomspace(1e-6 * top, CEILING * top, points)
         pairs = [self.frequencies(float(a)) for a in sizes]
-        held = [i for i, pair in enumerate(pairs) if pair is not None]
-        if not held:
+        reached = [i for i, pair in enumerate(pairs) if pair is not None]
+        if not reached:
             return ApproximateResponse(
                 self.method, np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool), self.note,
                 Outcome(False, "nothing", "no amplitude is held by any frequency of the range; widen it"),
             )  # fmt: skip
         # The tip, where both frequencies meet, belongs to the curve.
-        last = held[-1]
+        last = reached[-1]
         if last + 1 < len(sizes):
             inside, outside = float(sizes[last]), float(sizes[last + 1])
             for _ in range(60):
                 middle = 0.5 * (inside + outside)
                 inside, outside = (middle, outside) if self.frequencies(middle) is not None else (inside, middle)
             near = inside * (1 - np.geomspace(0.05, 1e-12, 60))
-            sizes = np.append(sizes[held], near[near > sizes[last]])
+            sizes = np.append(sizes[reached], near[near > sizes[last]])
         else:
-            sizes = sizes[held]
+            sizes = sizes[reached]
         both = np.array([self.frequencies(float(a)) or (np.nan, np.nan) for a in sizes])
         curve = np.stack([np.append(both[:, 0], both[::-1, 1]), np.append(sizes, sizes[::-1])], axis=1)
         kept = _parted(curve[np.isfinite(curve[:, 0])], low, high)

@@ -7,7 +7,7 @@ rounding, and the changes of stage are located to rounding (``numerics/staged_fl
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -22,8 +22,11 @@ from trunnion.errors import InputError
 from trunnion.laws.stages import STICKS
 from trunnion.motion.simulation.simulate import positive_time
 from trunnion.numerics.piecewise_linear.staged_flow import StagedSegment, kernel, move
-from trunnion.results.declared import DatasetItem, Result, data_attribute, data_coordinate, data_variable, ending
+from trunnion.results.fields import computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.regimes import SLACK
 
 MOST_EVENTS = 100_000
@@ -49,43 +52,45 @@ class StageEvents:
         return len(self.time)
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class ExactMotion(Result):
     """A motion of a line with stages.
 
-    springs: names of all shafts and meshes (spring,); time (points,) [s]; twist [rad], rate [rad/s] and torque [N m]
-    (points, spring), positive with the twist as in ``simulate``, a mesh as a shaft behind its rigid pair; stage
-    (points, spring); events; start and final (2m,): twists, then rates, where ``line.turns`` those of the first
-    inertia's rotation after the springs' in each half, sliders between them; end: time reached [s]; outcome.
+    States are twists, then rates, where ``line.turns`` those of the first inertia's rotation after the springs' in each
+    half, sliders between them. Twist and torque are positive as in ``simulate``, a mesh a shaft behind its rigid pair.
     """
 
-    line: StagedLine
-    start: Array
-    start_time: float
-    time: Array
-    state: Array = field(repr=False)
-    stage: Integers = field(repr=False)
-    events: StageEvents = field(repr=False)
-    final: Array
-    end: float
-    outcome: Outcome
+    line: StagedLine = internal("that moved")
+    start: Array = internal("first state", axes="state")
+    start_time: float = internal("first time", "s")
+    time: Array = coordinate("time", "s")
+    state: Array = internal("at every time", axes="time state", repr=False)
+    stage: Integers = internal("of springs, then of sliders", axes="time spring", repr=False)
+    events: StageEvents = internal("changes of stage", repr=False)
+    final: Array = internal("last state", axes="state")
+    end: float = internal("time reached", "s")
+    outcome: Outcome = internal("how it ended")
 
     @property
+    @computed(coordinate("spring"), after="time")
     def springs(self) -> tuple[str, ...]:
         """Names of the springs."""
         return self.line.springs
 
     @property
+    @computed(variable("time spring", "rad"))
     def twist(self) -> Array:
         """Twist of every spring (points, spring) [rad]."""
         return self.state[:, : len(self.springs)]
 
     @property
+    @computed(variable("time spring", "rad/s", name="twist_rate"))
     def rate(self) -> Array:
         """Twist rate of every spring (points, spring) [rad/s]."""
         return self.state[:, self.line.size :][:, : len(self.springs)]
 
     @property
+    @computed(variable("time spring", "N*m"))
     def torque(self) -> Array:
         """Torque of every spring (points, spring) [N m]."""
         return self.line.flow().torque(self.state, self.stage)[:, : len(self.springs)]
@@ -120,21 +125,15 @@ class ExactMotion(Result):
         out[np.flatnonzero(inside)[order]] = found.states
         return out
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Twist, its rate, torque and stage of every spring over time, and the located changes of stage."""
-        yield data_coordinate("time", self.time, "s")
-        yield data_coordinate("spring", self.springs)
-        yield data_variable("time spring", "twist", self.twist, "rad")
-        yield data_variable("time spring", "twist_rate", self.rate, "rad/s")
-        yield data_variable("time spring", "torque", self.torque, "N*m")
-        yield data_variable("time spring", "stage", self.stage[:, : len(self.springs)])
-        yield data_variable("event", "event_time", self.events.time, "s")
-        yield data_variable(
-            "event", "event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str)
-        )
-        yield data_variable("event", "event_stage", self.events.stage)
-        yield data_variable("event", "event_side", self.events.side)
-        yield data_attribute("driveline", self.line.name)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, stages, the located changes of stage and the ending."""
+        yield from super().declared()
+        yield Variable("stage", self.stage[:, : len(self.springs)], "time spring")
+        yield Variable("event_time", self.events.time, "event", "s")
+        yield Variable("event_spring", np.array([self.line.rows[i] for i in self.events.spring], dtype=str), "event")
+        yield Variable("event_stage", self.events.stage, "event")
+        yield Variable("event_side", self.events.side, "event")
+        yield Attribute("driveline", self.line.name)
         yield from ending(self.outcome)
 
     def __str__(self) -> str:

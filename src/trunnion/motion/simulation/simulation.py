@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -20,43 +20,33 @@ from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import Trajectory, joined
-from trunnion.results.declared import (
-    DatasetItem,
-    Described,
-    Result,
-    data_attribute,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-    parameters_of,
-)
+from trunnion.results.described import Described
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import about, ending, states
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
+from trunnion.results.result import Result
 from trunnion.results.speeds import rounded_speed
+from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.systems.system import System
 
 GAUSS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Simulation:
-    """A motion in time.
+    """A motion in time; ``at`` gives the state anywhere between."""
 
-    system, trajectory: what was integrated, and the steps taken; outcome: how it ended; tolerance; guards: names of the
-    events, own guards first; times: those asked for, None for every step. ``at`` gives the state anywhere between.
-    """
-
-    system: System
-    trajectory: Trajectory
-    outcome: Outcome
-    tolerance: float
-    guards: tuple[str, ...]
-    times: Array | None
+    system: System = internal("that was integrated", repr=False)
+    trajectory: Trajectory = internal("the steps taken", repr=False)
+    outcome: Outcome = internal("how it ended")
+    tolerance: float = attribute("error allowed per step")
+    guards: tuple[str, ...] = internal("names of the events, own guards first")
+    times: Array | None = internal("those asked for, None for every step", "s")
 
     @cached_property
+    @computed(coordinate("time", "s"))
     def time(self) -> Array:
         """Times (points,) [s] where asked for; by default at every step."""
         run, wanted = self.trajectory, self.times
@@ -83,6 +73,7 @@ class Simulation:
         return self.trajectory.time
 
     @property
+    @computed(attribute())
     def steps(self) -> int:
         """Steps taken."""
         return self.trajectory.steps
@@ -128,11 +119,12 @@ class Simulation:
         return replace(self, trajectory=replace(self.trajectory, coefficients=self.trajectory.coefficients[:0]))
 
 
-@dataclass(frozen=True, repr=False)
-class SystemSimulation(Simulation, Result):
+@labelled
+class SystemSimulation(Result, Simulation):
     """A motion of a system, its states (points, n) over time."""
 
     @property
+    @computed(variable("time"))
     def regime(self) -> Integers:
         """Number of the regime (points,)."""
         return self.regime_at(self.time)
@@ -143,11 +135,13 @@ class SystemSimulation(Simulation, Result):
         return tuple(self.guards[int(i)] for i in self.trajectory.event_which)
 
     @property
+    @computed(variable("event state", name="state_before"))
     def event_before(self) -> Array:
         """States (events, n) before each event."""
         return self.trajectory.event_before
 
     @property
+    @computed(variable("event state", name="state_after"))
     def event_after(self) -> Array:
         """States (events, n) behind each event."""
         return self.trajectory.event_after
@@ -163,22 +157,15 @@ class SystemSimulation(Simulation, Result):
         found = extremes_in(run.at, run.time_of_state, self.time[[0, -1]]).of(0)
         return found.low, found.high
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Every state and the regime over time, and the located events."""
-        yield data_coordinate("time", self.time, "s")
-        yield data_coordinate("state", self.system.states)
-        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield data_variable("time", name, self.state[:, i], unit)
-        yield data_variable("time", "regime", self.regime)
-        yield data_variable("event", "event_time", self.event_time, "s")
-        yield data_variable("event", "event_name", np.array(self.event_name, dtype=str))
-        yield data_variable("event state", "state_before", self.event_before)
-        yield data_variable("event state", "state_after", self.event_after)
-        yield data_attribute("system", self.system.name)
-        yield from ending(self.outcome)
-        tangents = "exact" if self.system.exact_tangents else "differenced"
-        yield from data_attributes(tolerance=self.tolerance, steps=self.steps, tangents=tangents)
-        yield from parameters_of(self.system)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, every state by its name, the located events, and the system."""
+        yield from states(self.system, "time", self.state)
+        yield from super().declared()
+        yield Coordinate("state", self.system.states, "state")
+        yield Variable("event_time", self.event_time, "event", "s")
+        yield Variable("event_name", np.array(self.event_name, dtype=str), "event")
+        yield Attribute("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None, *, states: tuple[str, ...] = ()) -> Axes:
         """Time histories; see ``pictures.motion``."""
@@ -225,16 +212,19 @@ class OfShafts(ABC):
         return self.motion_at(self.time)
 
     @property
+    @computed(variable("time shaft", "rad"))
     def twist(self) -> Array:
         """Twist [rad] of every shaft, (points, shaft)."""
         return self.motion.twist
 
     @property
+    @computed(variable("time shaft", "N*m"))
     def torque(self) -> Array:
         """Torque [N m] of every shaft (points, shaft), positive with the twist."""
         return self.motion.torque
 
     @property
+    @computed(coordinate("shaft"))
     def shafts(self) -> tuple[str, ...]:
         """Names of the shafts; massless shafts in series count as one."""
         return self.line.shafts
@@ -245,21 +235,20 @@ class OfShafts(ABC):
         return speed_unit(self.line.assembly.line)
 
 
-@dataclass(frozen=True, repr=False)
-class LineSimulation(Simulation, OfShafts, Described):
+@labelled
+class LineSimulation(Described, Simulation, OfShafts):
     """A motion of a line.
 
-    time (points,) [s]; rotation (points, coordinate): deviation [rad] from the uniform rotation of ``profile``, and
-    rate [rad/s]; twist [rad] and torque [N m] of every shaft (points, shaft), positive with the twist; pieces: one
-    motion per straight piece of the speed profile.
+    rotation (points, coordinate): deviation [rad] from the uniform rotation of ``profile``, and rate [rad/s]; twist
+    [rad] and torque [N m] of every shaft (points, shaft), positive with the twist.
 
     ``rotation`` of the input, its ``input_speed`` and the ``turns`` it made are those of the profile where a
     ConstantSpeed prescribes them, and those of its own rotation where the line is free–free.
     """
 
-    line: LineSystem
-    profile: SpeedProfile
-    pieces: tuple[Simulation, ...]
+    line: LineSystem = internal("that moved")
+    profile: SpeedProfile = internal("of the input speed")
+    pieces: tuple[Simulation, ...] = internal("one motion per straight piece of the speed profile")
 
     @classmethod
     def of(cls, line: LineSystem, profile: SpeedProfile, pieces: Sequence[Simulation]) -> Self:
@@ -375,6 +364,7 @@ class LineSimulation(Simulation, OfShafts, Described):
         return int(self.line.assembly.topology.unknown_of[0])
 
     @property
+    @computed(variable("time", "rad/s"))
     def input_speed(self) -> Array:
         """Input speed [rad/s] at ``time``."""
         return self.input.speed(self.time)
@@ -398,34 +388,29 @@ class LineSimulation(Simulation, OfShafts, Described):
         dense output, whose error is about ten times the tolerance."""
         return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Deviations and rates of every inertia, twist and torque of every shaft, the input's course, over time."""
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, deviations and rates of every inertia, the input's rotation and the ending."""
+        yield from super().declared()
         n = len(self.line.names)
-        yield data_coordinate("time", self.time, "s")
-        yield data_coordinate("coordinate", self.line.names)
-        yield data_coordinate("shaft", self.shafts)
-        yield data_variable("time coordinate", "rotation", self.state[:, :n], "rad")
-        yield data_variable("time coordinate", "rate", self.state[:, n : 2 * n], "rad/s")
+        yield Coordinate("coordinate", self.line.names, "coordinate")
+        yield Variable("rotation", self.state[:, :n], "time coordinate", "rad")
+        yield Variable("rate", self.state[:, n : 2 * n], "time coordinate", "rad/s")
         if self.line.sliders:
-            yield data_coordinate("slider", [slider.name for slider in self.line.sliders])
-            yield data_variable("time slider", "deflection", self.state[:, 2 * n :], "rad")
-        yield from data_variables("time shaft", self, twist="rad", torque="N*m")
+            yield Coordinate("slider", [slider.name for slider in self.line.sliders], "slider")
+            yield Variable("deflection", self.state[:, 2 * n :], "time slider", "rad")
         if self.clutches:
-            yield data_coordinate("clutch", self.clutches)
-            yield data_variable("time clutch", "slip", self.slip, "rad/s", "positive where the output leads")
+            yield Coordinate("clutch", self.clutches, "clutch")
+            yield Variable("slip", self.slip, "time clutch", "rad/s", "positive where the output leads")
             if self.is_dense:
                 heat, angle = self.slip_heat
-                yield data_variable("clutch", "slip_heat", heat, "J", "of the whole run")
-                yield data_variable("clutch", "slip_angle", angle, "rad", "by which it slipped, either way")
-        yield data_variable("time", "input_speed", self.input_speed, "rad/s")
-        yield data_variable("time", "input_angle", self.input.angle(self.time), "rad")
+                yield Variable("slip_heat", heat, "clutch", "J", "of the whole run")
+                yield Variable("slip_angle", angle, "clutch", "rad", "by which it slipped, either way")
+        yield Variable("input_angle", self.input.angle(self.time), "time", "rad")
         if self.starts_free:
-            yield data_variable(
-                "time", "reference_speed", self.profile.at(self.time), "rad/s", "that rotations deviate from"
-            )
-        yield data_attribute("driveline", self.system.name)
+            words = "that rotations deviate from"
+            yield Variable("reference_speed", self.profile.at(self.time), "time", "rad/s", words)
+        yield Attribute("driveline", self.system.name)
         yield from ending(self.outcome)
-        yield from data_attributes(tolerance=self.tolerance, steps=self.steps)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
         """Torques over time; see ``pictures.motion``."""

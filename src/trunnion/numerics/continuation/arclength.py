@@ -65,14 +65,14 @@ def once(tell: Callable[[P, CurvePoint], T]) -> Callable[[P, CurvePoint], T]:
     """A method that tells something of a point of a curve, computed once for each point of each problem."""
     place = f"_{tell.__name__}"
 
-    def told(self: P, point: CurvePoint) -> T:
+    def cached(self: P, point: CurvePoint) -> T:
         known: dict[bytes, T] = vars(self).setdefault(place, {})
         key = point.z.tobytes()
         if key not in known:
             known[key] = tell(self, point)
         return known[key]
 
-    return told
+    return cached
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ class Grid:
     def nodes(self) -> tuple[Array, Array]:
         """u and v of every node, rows slow."""
         b = self.box
-        u, v = _places(b.u0, b.u1, self.along_u), _places(b.v0, b.v1, self.along_v)
+        u, v = chebyshev_places(b.u0, b.u1, self.along_u), chebyshev_places(b.v0, b.v1, self.along_v)
         return np.tile(u, len(v)), np.repeat(v, len(u))
 
     def refined(self, of_u: bool, of_v: bool) -> tuple[Grid, Flags]:
@@ -48,7 +48,8 @@ class Grid:
         return finer, known.ravel()
 
 
-def _places(low: float, high: float, degree: int) -> Array:
+def chebyshev_places(low: float, high: float, degree: int) -> Array:
+    """The nodes of one direction, from ``high`` to ``low``."""
     return np.asarray((low + high) / 2 + (high - low) / 2 * np.cos(np.pi * np.arange(degree + 1) / degree))
 
 

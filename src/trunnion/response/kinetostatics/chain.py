@@ -18,10 +18,12 @@ from typing import Any
 import numpy as np
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
+from trunnion.driveline.elements import ConstantSpeed, Element, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
+from trunnion.driveline.machines import Motor
 from trunnion.driveline.parameters import PackedLine, pack
+from trunnion.driveline.quantities import SPEED, shown
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.shafts import Elastic
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -32,6 +34,7 @@ from trunnion.errors import InputError
 from trunnion.laws import double_cardan, hooke
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.joint import JointLaw
+from trunnion.laws.torque_curve import PowerCurve
 
 UNCHANGED = FourierLaw((), (), ())
 """The law of a joint that passes rotation unchanged."""
@@ -156,13 +159,16 @@ class KinematicChain:
         return self.path(self.behind[self.output])
 
 
-def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str | None = None) -> KinematicChain:
+def chain(
+    line: Driveline, lengths: dict[str, float] | None = None, branch: str | None = None, speed: float | None = None
+) -> KinematicChain:
     """Sort ``line`` into steps and members.
 
     Parameters
     ----------
     lengths : joint-to-joint distance [m] by Shaft name, where the Shaft is not a tube of known length.
     branch : name of an element on the branch whose end is asked about; default the last.
+    speed : of the input [rad/s], at which machines have the tangents of their torques; without it they have none.
 
     Raises
     ------
@@ -175,7 +181,7 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
                 element=name,
                 remedy="replace it by a Disk with the load_torque it exerts",
             )
-    stations, draft = stations_of(line, even=True), _ChainDraft(line, lengths or {})
+    stations, draft = stations_of(line, even=True), _ChainDraft(line, lengths or {}, speed)
     knots = [station.element for station in stations.stations if station.link is LinkKind.SUM]
     knots += [compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None]
     if knots:
@@ -184,8 +190,8 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
             remedy="leave out one leg, or one way round, and write a Ratio in its place",
         )  # fmt: skip
     step_of: list[int] = []
-    for station, speed in zip(stations.stations, stations.speed_ratio, strict=True):
-        step_of.append(draft.add(station, speed, step_of[station.before] if station.before >= 0 else -1))
+    for station, ratio in zip(stations.stations, stations.speed_ratio, strict=True):
+        step_of.append(draft.add(station, ratio, step_of[station.before] if station.before >= 0 else -1))
     for s, i, number in stations.inertias:
         draft.put(step_of[s], line.elements[i], number)
     members = tuple(member if member.length > 0 else replace(member, length=np.nan) for member in draft.members)
@@ -195,8 +201,8 @@ def chain(line: Driveline, lengths: dict[str, float] | None = None, branch: str 
 
 
 class _ChainDraft:
-    def __init__(self, line: Driveline, lengths: dict[str, float]) -> None:
-        self.line, self.lengths = line, lengths
+    def __init__(self, line: Driveline, lengths: dict[str, float], speed: float | None) -> None:
+        self.line, self.lengths, self.speed = line, lengths, speed
         self.steps: list[ChainStep] = []
         self.members: list[Member] = []
 
@@ -252,13 +258,31 @@ class _ChainDraft:
         """One of an element's inertias, with the loads of a disk, at the station behind a step."""
         here = self.steps[step]
         here = replace(here, inertia=here.inertia + element.inertia_values[number])
-        if isinstance(element, Loaded):
-            constant, viscous, quadratic = element.loads
+        if isinstance(element, Rotor):
+            load = self._load(step, element)
             here = replace(
-                here, load=here.load + constant, viscous_load=here.viscous_load + viscous,
-                quadratic_load=here.quadratic_load + quadratic,
+                here, load=here.load + load.constant, viscous_load=here.viscous_load + load.viscous,
+                quadratic_load=here.quadratic_load + load.quadratic,
             )  # fmt: skip
         self.steps[step] = here
+
+    def _load(self, step: int, rotor: Rotor) -> PowerCurve:
+        """What it resists with; of another curve the tangent at the speed of the turn, nothing where none is asked for.
+        Where a motor drives the turn, whatever that takes, its own torque is none of the loads."""
+        drives = isinstance(rotor, Motor) and (rotor.set or step == 0)
+        if drives or (rotor.tangent and self.speed is None):
+            return PowerCurve()
+        load = rotor.load
+        if isinstance(load, PowerCurve):
+            return load
+        at = (self.speed or 0.0) * abs(float(self.steps[step].speed))
+        value, slope = float(load.value(at)), float(load.slope(at))
+        if np.isnan(value):
+            raise InputError(
+                f"is a curve that does not cover {shown(at, SPEED, 'rpm', 5)} of its shaft", key="curve",
+                element=rotor.name or rotor.kind, remedy="add points, or ask for another speed",
+            )  # fmt: skip
+        return PowerCurve(value - slope * at, slope)
 
     def _cross(
         self, parent: int, name: str, speed: Fraction, *, angle: float, plane: float = 0.0,

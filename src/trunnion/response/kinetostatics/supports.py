@@ -1,7 +1,7 @@
 """Forces in bearings and joint centres, from the statics of all shafts of a train together.
 
 Every shaft is a rigid bar on a fixed axis e. On it act the secondary couples of its forks, a force at each of
-its joint centres, and its bearings. What holds it is told by the number of its bearings:
+its joint centres, and its bearings. What holds it follows from the number of its bearings:
 
 - two: radial forces (along u and v) in both, and one thrust along e;
 - one: a radial force; the shaft passes thrust on to its neighbours (a centre bearing in rubber);

@@ -86,7 +86,7 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
-    train = chain(line, _lengths(line, lengths), branch)
+    train = chain(line, _lengths(line, lengths), branch, drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)

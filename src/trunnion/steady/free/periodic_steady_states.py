@@ -102,7 +102,7 @@ class SteadyStateSlopes:
 
     def speed_grows(self, i: int) -> bool | None:
         """Whether a change of the speed does, where the torque of the drives stays the same: the motion takes the less
-        of it the faster it is. None where that cannot be told."""
+        of it the faster it is. None where that cannot be computed."""
         rise = self.solved.torque_rise(float(self.speed[i]))
         return rise < 0 if rise else None
 
@@ -255,7 +255,7 @@ class SteadyStatesBySpeed:
         return replace(one, found=False) if any(b.low < speed < b.high for b in self.broken) else one
 
     def torque_rise(self, speed: float) -> float:
-        """How much more torque [N m] the drives give at a speed greater by ``BESIDE``; 0 where that cannot be told."""
+        """How much more torque [N m] the drives give at a speed greater by ``BESIDE``; 0 where that is unknown."""
         one = self.known[speed]
         further = self.balance.solve(np.array([speed * (1 + BESIDE)]), one.h, one.rows[None])
         return float(further.torque[0] - one.torque) if further.found[0] else 0.0

@@ -8,22 +8,16 @@ is only an indication: joint phases then move with the motion.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
-from trunnion.results.declared import (
-    DatasetItem,
-    Result,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-)
+from trunnion.results.fields import coordinate, internal, labelled, variable
+from trunnion.results.result import Result
 from trunnion.results.units import angle_words
+from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.orders.spectrum import order_spectrum
 
 LINEAR_RANGE = 0.1
@@ -39,28 +33,25 @@ NOTHING = 1e-12
 """Share of its amplitude below which a mean is rounding."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class LinearResponse(Result):
     """Linear steady response of a line over one period of everything (ten turns where there is none).
 
-    tau (time,) input angle [rad]; twist (time, shaft) [rad] and torque (time, shaft) [N m], positive with the
-    twist, static part included; rotation (time, coordinate) deviation from the base motion [rad];
-    joint_rotation (joint,): largest deviation at each joint's input [rad]; twist_amplitude [rad] and torque_amplitude
-    [N m] (shaft,): half peak to peak, without a common period a bound; torque_mean (shaft,) [N m], negative when power
-    flows from input to output. NaN where no steady state exists: an undamped resonance.
+    Static parts are included; amplitudes are half peak to peak, without a common period a bound. NaN where no steady
+    state exists: an undamped resonance.
     """
 
-    tau: Array
-    twist: Array
-    torque: Array
-    rotation: Array
-    joint_rotation: Array
-    twist_amplitude: Array
-    torque_amplitude: Array
-    torque_mean: Array
-    shafts: tuple[str, ...]
-    joints: tuple[str, ...]
-    names: tuple[str, ...]
+    tau: Array = coordinate("input_angle", "rad")
+    twist: Array = variable("input_angle shaft", "rad")
+    torque: Array = variable("input_angle shaft", "N*m", "positive with the twist")
+    rotation: Array = variable("input_angle coordinate", "rad", "deviation from the base motion")
+    joint_rotation: Array = variable("joint", "rad", "largest deviation at the joint's input")
+    twist_amplitude: Array = internal("of every shaft", "rad", "shaft")
+    torque_amplitude: Array = internal("of every shaft", "N*m", "shaft")
+    torque_mean: Array = internal("negative when power flows from input to output", "N*m", "shaft")
+    shafts: tuple[str, ...] = coordinate("shaft")
+    joints: tuple[str, ...] = coordinate("joint")
+    names: tuple[str, ...] = coordinate("coordinate")
 
     @property
     def largest_joint_rotation(self) -> float:
@@ -72,16 +63,10 @@ class LinearResponse(Result):
         """Whether the deviations stay within ``LINEAR_RANGE``, so that the amplitudes can be trusted."""
         return bool(self.largest_joint_rotation <= LINEAR_RANGE)
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Twist and torque of every shaft and the deviation of every inertia over the period."""
-        yield data_coordinate("input_angle", self.tau, "rad")
-        yield data_coordinate("shaft", self.shafts)
-        yield data_coordinate("joint", self.joints)
-        yield data_coordinate("coordinate", self.names)
-        yield from data_variables("input_angle shaft", self, twist="rad", torque="N*m")
-        yield data_variable("input_angle coordinate", "rotation", self.rotation, "rad")
-        yield data_variable("joint", "joint_rotation", self.joint_rotation, "rad")
-        yield from data_attributes(linear_range=LINEAR_RANGE, within_linear_range=int(self.linear))
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, and whether that is within the linear range."""
+        yield from super().declared()
+        yield from attributes(linear_range=LINEAR_RANGE, within_linear_range=self.linear)
 
     def __str__(self) -> str:
         rows = [

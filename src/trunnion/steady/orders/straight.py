@@ -86,12 +86,12 @@ def coupled_response(
     if not linearised:
         return _one_by_one(matrix, right)
     # To first order about the first case, whose matrix stands for all.
-    held = np.broadcast_to(matrix[:, :1], matrix.shape)
-    first = _one_by_one(held, np.broadcast_to(right[:, :1], right.shape))
+    first_matrix = np.broadcast_to(matrix[:, :1], matrix.shape)
+    first = _one_by_one(first_matrix, np.broadcast_to(right[:, :1], right.shape))
     taken = (matrix @ first[..., None])[..., 0]
     rest = right - taken
     rest[np.abs(rest).max(axis=2) <= ROUNDING * (np.abs(matrix) @ np.abs(first)[..., None])[..., 0].max(axis=2)] = 0.0
-    return first + _one_by_one(held, rest)
+    return first + _one_by_one(first_matrix, rest)
 
 
 def _one_by_one(matrix: Complex, right: Complex) -> Complex:
@@ -154,13 +154,13 @@ def _driven_away(topo: Topology, plan: Plan, matrices: TreeMatrices, torque: Com
     drags = np.abs(drag).max(axis=0) > DRAGGED * np.abs(damping.own).max(axis=0)
     resists = np.where(drags, drag, inertia)[:, some]
     # Of a line without a torque on the whole it does not matter what is held.
-    held = stiffness.of(some)
-    held.own = held.own.copy()
-    held.own[0] += np.abs(held.own).max(axis=0)
+    fixed = stiffness.of(some)
+    fixed.own = fixed.own.copy()
+    fixed.own[0] += np.abs(fixed.own).max(axis=0)
 
     def twists(acting: Complex) -> Complex:
         left = acting - resists * np.tensordot(turn, acting, 1) / np.tensordot(turn, resists, 1)
-        x = held.solved(left)
+        x = fixed.solved(left)
         return np.asarray(x - whole[:, :1] * np.tensordot(turn, x, 1) / (turn @ turn))
 
     right = torque.T[..., None].astype(complex)

@@ -121,12 +121,13 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDistur
     others = np.zeros(line.system.size - 2 * n)  # sliders of clutches keep their deflection
     faster = np.concatenate([np.zeros(n), turn, others])
     column = line.assembly.packed.column
-    loads = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load")]
-    drags = [c for _, i, _ in topo.resisting if (c := column(i, "drag_area")) >= 0]
+    columns = [column(i, key) for _, i in topo.disks for key in ("viscous_load", "quadratic_load", "drag_area")]
+    loads = [place for place in columns if place >= 0]
+    curved = any(rotor.loaded_by_speed and not isinstance(rotor, Loaded) for _, rotor in topo.rotors)
     unsteady = [one.columns[0] for one in line.torques]
 
     def at(system: System, x: Array) -> NeutralDisturbances:
-        by_speed = _any(line, system, [*loads, *drags])
+        by_speed = curved or _any(line, system, loads)
         steady = not (by_speed or _nonuniform(line, system) or _any(line, system, unsteady))
         speed = system.parameters[SPEED]
         moved = np.concatenate([turn * speed, np.zeros(n), others])
@@ -151,8 +152,7 @@ def _nonuniform(line: LineSystem, system: System) -> bool:
 
 def loaded_by_speed(assembly: Assembly) -> bool:
     """Whether any load of the line depends on the speed."""
-    disks = [element for element in assembly.line.elements if isinstance(element, Loaded)]
-    return any(disk.loads[1] or disk.loads[2] for disk in disks)
+    return any(rotor.loaded_by_speed for _, rotor in assembly.topology.rotors)
 
 
 def torque_scale(line: LineSystem) -> float:

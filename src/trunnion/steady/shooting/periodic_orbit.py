@@ -11,7 +11,6 @@ from the difference of Φ at two tolerances, and checked by Liouville's identity
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Self
 
@@ -25,20 +24,14 @@ from trunnion.numerics.curves import extremes, fourier
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory
 from trunnion.numerics.spectrum import spectral_radius
 from trunnion.results.counts import counted
-from trunnion.results.declared import (
-    DatasetItem,
-    Result,
-    data_attributes,
-    data_coordinate,
-    data_variable,
-    data_variables,
-    ending,
-    parameters_of,
-)
 from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.of_systems import about, states
 from trunnion.results.outcome import Outcome
 from trunnion.results.quantity_axes import state_axes
+from trunnion.results.result import Result
 from trunnion.results.units import with_error
+from trunnion.results.variables import Attribute, Variable
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.steady.shooting.integration_outcomes import outcome_of
 from trunnion.steady.shooting.repetition import repetition
@@ -71,46 +64,43 @@ LONGEST = 10.0
 """How many times longer or shorter than its guess the period of an autonomous motion may be."""
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class Orbit:
-    """A periodic motion, whatever map it closes under.
+    """A periodic motion, whatever map it closes under."""
 
-    start: its state at the beginning; period [s]; multipliers by falling modulus, without the 1 of each of the sliders
-    that never slip; monodromy; verdict; iterations of the shooting; outcome: whether it was found, else numbers are
-    NaN.
-    """
-
-    start: Array
-    period: float
-    multipliers: Complex
-    monodromy: Array = field(repr=False)
-    verdict: Verdict
-    iterations: int
-    outcome: Outcome
+    start: Array = internal("state at the beginning", axes="state")
+    period: float = internal("of the motion", "s")
+    multipliers: Complex = variable(
+        "multiplier_number", "1", "by falling modulus, without the 1 of each slider that never slips", name="multiplier"
+    )
+    monodromy: Array = internal("matrix", axes="state state", repr=False)
+    verdict: Verdict = attribute()
+    iterations: int = internal("of the shooting")
+    outcome: Outcome = internal("whether it was found, else numbers are NaN")
 
 
-@dataclass(frozen=True, repr=False)
+@labelled
 class IntegratedOrbit(Orbit):
     """The orbit of a system with n states, integrated.
 
-    multiplier_error (n,): bound on the error of each multiplier; spectral_radius and error_estimate leave out the
-    trivial multiplier of an autonomous system that moves (one at rest has none: outcome "at rest"), and the
-    ``speed_multiplier`` of a free line none of whose torques depends on the speed (NaN elsewhere); liouville_defect:
-    |ln det Φ − ∫tr ∂f/∂x dt|, NaN where a jump takes part; residual: of the period, in units of the states' scale;
-    values: what was unknown besides the start, as the period of an autonomous system or the torque of a free line;
-    stuck: names of the sliders that never slip.
+    spectral_radius and error_estimate leave out the trivial multiplier of an autonomous system that moves (one at rest
+    has none: outcome "at rest"), and the ``speed_multiplier`` of a free–free line none of whose torques depends on the
+    speed.
     """
 
-    system: System
-    multiplier_error: Array
-    spectral_radius: float
-    error_estimate: float
-    liouville_defect: float
-    residual: float
-    trajectory: Trajectory
-    values: tuple[float, ...]
-    speed_multiplier: float
-    stuck: tuple[str, ...]
+    period: float = variable("", "s")
+    system: System = internal("that moves", repr=False)
+    multiplier_error: Array = variable("multiplier_number", "1", "bound on the error of each multiplier")
+    spectral_radius: float = variable("", "1")
+    error_estimate: float = internal("of the spectral radius", "1")
+    liouville_defect: float = internal("|ln det Φ - ∫ tr ∂f/∂x dt|, NaN where a jump takes part")
+    residual: float = attribute("of the period, in units of the states' scale")
+    trajectory: Trajectory = internal("over one period", repr=False)
+    values: tuple[float, ...] = internal(
+        "what was unknown besides the start, as the period of an autonomous system or the torque of a free–free line"
+    )
+    speed_multiplier: float = internal("NaN of all but such a free–free line")
+    stuck: tuple[str, ...] = internal("names of the sliders that never slip")
 
     @classmethod
     def of(cls, orbit: IntegratedOrbit, **more: Any) -> Self:
@@ -118,6 +108,7 @@ class IntegratedOrbit(Orbit):
         return cls(**{name: getattr(orbit, name) for name in IntegratedOrbit.__dataclass_fields__}, **more)
 
     @property
+    @computed(variable("", "1/s"))
     def growth_rate(self) -> float:
         """Growth of the fastest disturbance [1/s]; negative when it decays."""
         return float(np.log(self.spectral_radius) / self.period) if self.spectral_radius > 0 else -np.inf
@@ -128,9 +119,12 @@ class IntegratedOrbit(Orbit):
         return f"spectral radius {with_error(self.spectral_radius, self.error_estimate, beside=1.0)}"
 
 
-@dataclass(frozen=True, repr=False)
-class PeriodicOrbit(IntegratedOrbit, Result):
+@labelled
+class PeriodicOrbit(Result, IntegratedOrbit):
     """A periodic motion of a system; see ``IntegratedOrbit``."""
+
+    error_estimate: float = variable("", "1", "of the spectral radius")
+    liouville_defect: float = attribute("|ln det Φ - ∫ tr ∂f/∂x dt|, NaN where a jump takes part")
 
     @property
     def regime_changes(self) -> int:
@@ -138,6 +132,7 @@ class PeriodicOrbit(IntegratedOrbit, Result):
         return len(self.trajectory.event_time)
 
     @cached_property
+    @computed(coordinate("time", "s"))
     def time(self) -> Array:
         """Times (points,) over one period, both ends included [s]; where none was found, of the last trial's steps."""
         if not self.outcome.ok:
@@ -166,22 +161,12 @@ class PeriodicOrbit(IntegratedOrbit, Result):
         """Largest minus smallest value of every state (n,), found on the dense output."""
         return extremes(self.trajectory.at, self.trajectory.time_of_state).span
 
-    def declared(self) -> Iterator[DatasetItem]:
-        """Every state over one period, and the multipliers."""
-        yield data_coordinate("time", self.time, "s")
-        for i, (name, unit) in enumerate(zip(self.system.states, self.system.units, strict=True)):
-            yield data_variable("time", name, self.state[:, i], unit)
-        yield data_variable("multiplier_number", "multiplier", self.multipliers, "1")
-        yield data_variable("multiplier_number", "multiplier_error", self.multiplier_error, "1")
-        yield from data_variables("", self, spectral_radius="1", error_estimate="1", growth_rate="1/s", period="s")
-        yield from data_attributes(system=self.system.name, verdict=str(self.verdict))
-        yield from ending(self.outcome)
-        yield from data_attributes(
-            residual=self.residual,
-            liouville_defect=self.liouville_defect,
-            tangents="exact" if self.system.exact_tangents else "differenced",
-        )
-        yield from parameters_of(self.system)
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """What the fields hold, every state by its name over one period, and the system."""
+        yield from states(self.system, "time", self.state)
+        yield from super().declared()
+        yield Attribute("tangents", "exact" if self.system.exact_tangents else "differenced")
+        yield from about(self.system, self.outcome)
 
     def plot(self, axes: Axes | None = None, *, x: str = "", y: str = "") -> Axes:
         """Portrait of the orbit; see ``pictures.motion``."""

@@ -141,7 +141,7 @@ def _assumed(base: StabilityChart, printed: StabilityChart) -> ComparisonTable:
     angles = [
         [share(_over_group(label, 120, beta)) for beta in BETAS] for label in (DAMPING_OF_SHAFT_2, STIFFNESS_OF_SHAFT_2)
     ]
-    told = [f"{', '.join(f'{b:g}' for b in BETAS)} rad give {percents(found)} unstable" for found in angles]
+    computed = [f"{', '.join(f'{b:g}' for b in BETAS)} rad give {percents(found)} unstable" for found in angles]
     return ComparisonTable(
         "What is assumed",
         (
@@ -151,8 +151,8 @@ def _assumed(base: StabilityChart, printed: StabilityChart) -> ComparisonTable:
                 f"Figure 3 is {shares[1]} % for {shares[0]} %, and {differ:.2g} % of its points change"),
             TableRow("Figure 4, α", f"20 times {PRINTED_ALPHA[0]:g}", "20",
                 "a reading of its own among the conclusions"),
-            TableRow("Figure 5, β and largest α", "not stated", f"{BETA:g} rad, {MOST:g}", told[0]),
-            TableRow("Figure 7, β and largest μ", "not stated", f"{BETA:g} rad, {MOST:g}", told[1]),
+            TableRow("Figure 5, β and largest α", "not stated", f"{BETA:g} rad, {MOST:g}", computed[0]),
+            TableRow("Figure 7, β and largest μ", "not stated", f"{BETA:g} rad, {MOST:g}", computed[1]),
         ),
     )  # fmt: skip
 

@@ -1,0 +1,107 @@
+"""The mean speeds at which a free–free line turns by itself: where the torques of its disks and machines balance.
+
+Power is passed on whole, so a load M on a shaft that turns R times as fast as the input asks for |R| M there. Where a
+disk or a motor has a ``drive_share`` its controller keeps any speed, and no balance tells one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+from trunnion.driveline.chain import ElementChain
+from trunnion.driveline.elements import ConstantSpeed, Rotor
+from trunnion.driveline.parts import Dragged, Geared, Jointed, Loose, Part, Prescribed, Sprung, Tied
+from trunnion.driveline.quantities import DAMPING, SPEED, shown
+from trunnion.errors import InputError
+from trunnion.laws.balance import TorqueBalance, balances
+from trunnion.laws.torque_curve import TorqueCurve
+
+LOWEST, HIGHEST = 0.01, 1e5
+"""Input speeds [rad/s] between which balances are looked for."""
+
+
+def speed_ratios(line: ElementChain) -> list[Fraction]:
+    """Mean speed over the input's of the shaft in front of every element."""
+    found: list[list[Fraction]] = []
+    for i, element in enumerate(line.elements):
+        parent = line.parents[i]
+        own = [Fraction(1) if parent is None else found[parent][line.hangs_on[i]]]
+        for part in element.parts():
+            if (turned := _turned(part, own)) is not None:
+                own.append(turned)
+        found.append(own)
+    return [own[0] for own in found]
+
+
+def _turned(part: Part, own: Sequence[Fraction]) -> Fraction | None:
+    """Speed of the new shaft that a part makes; None where it makes none."""
+    match part:
+        case Geared(ratio, to):
+            return own[to] / ratio
+        case Loose(to, speed):
+            return own[to] * speed
+        case Tied(of):
+            return sum((share * own[to] for to, share in of), Fraction(0))
+        case Sprung(to) | Dragged(to) | Jointed(_, to):
+            return own[to]
+        case Prescribed():
+            return None
+    return None
+
+
+def is_left_free(line: ElementChain) -> bool:
+    """Whether nothing prescribes or controls the speed of a line."""
+    rigid = any(isinstance(element, ConstantSpeed) for element in line.elements)
+    return not rigid and not any(getattr(element, "drive_share", 0.0) for element in line.elements)
+
+
+def geared_curves(line: ElementChain) -> list[tuple[float, TorqueCurve]]:
+    """What resists, with the speed ratio of its shaft."""
+    ratios = zip(speed_ratios(line), line.elements, strict=True)
+    return [(abs(float(ratio)), one.load) for ratio, one in ratios if ratio and isinstance(one, Rotor)]
+
+
+def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:
+    """All input speeds [rad/s] at which the torques of a line that is left free balance, rising."""
+    return balances(geared_curves(line), LOWEST, HIGHEST)
+
+
+def own_speed(line: ElementChain) -> float:
+    """The input speed [rad/s] at which a line that is left free settles.
+
+    Raises
+    ------
+    InputError : no balance, none that is stable, or several.
+    """
+    found = mean_speeds(line)
+    stable = [one.speed for one in found if one.stable]
+    if len(stable) == 1:
+        return stable[0]
+    if len(stable) > 1:
+        names = ", ".join(map(_rpm, stable))
+        raise InputError(
+            f"balances the torques of the line at {names}, each stable", element="operation", key="speed",
+            remedy=f'choose one: pass speed={stable[-1]!r} (rad/s), say',
+        )  # fmt: skip
+    if not found:
+        raise InputError(
+            "is not given, and the torques of the line balance at no speed", element="operation", key="speed",
+            remedy="give what drives drive_share = 1, or check the signs: a load resists where positive",
+        )  # fmt: skip
+    one = found[-1]
+    raise InputError(
+        f"is not given, and the line lasts at no speed: at {_rpm(one.speed)} its torques balance, but their slope, "
+        f"{shown(one.slope, DAMPING, digits=4)} at the input, drives it away", element="operation", key="speed",
+        remedy="take a drive whose torque falls with the speed more steeply than the load's, or drive_share = 1",
+    )  # fmt: skip
+
+
+def balances_in_words(line: ElementChain) -> str:
+    """ "1432.1 rpm (stable) and 310 rpm (unstable)"; empty where there are none."""
+    found = [f"{_rpm(one.speed)} ({'stable' if one.stable else 'unstable'})" for one in reversed(mean_speeds(line))]
+    return " and ".join(found)
+
+
+def _rpm(speed: float) -> str:
+    return shown(speed, SPEED, "rpm", 7)

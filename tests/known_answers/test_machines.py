@@ -1,0 +1,200 @@
+"""Machines with a torque over speed against nonlinear equations of motion, written out and differenced."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+import trunnion as tn
+
+STIFFNESS, DAMPING, MOTOR, LOAD = 2e4, 6.0, 0.4, 3.0
+POINTS = ((0.0, 620.0), (60.0, 560.0), (110.0, 700.0), (140.0, 610.0), (157.0, 0.0))
+Torque = Callable[[float], float]
+
+
+def line(drive: tn.Element, load: tn.Element) -> tn.Driveline:
+    """A drive, a shaft, gears that halve and reverse the speed, a load."""
+    return tn.Driveline([drive, tn.Shaft(stiffness=STIFFNESS, damping=DAMPING, name="shaft"), tn.Ratio(ratio=-2), load])
+
+
+def kloss(speed: float, top: float, slip: float, synchronous: float) -> float:
+    s = 1 - speed / synchronous
+    return 2 * top * s * slip / (s**2 + slip**2)
+
+
+def set_kloss(at: float, torque: float) -> Torque:
+    """V/f control: the curve moved along the speed as it is, its slip in rad/s kept."""
+    width, top = 0.2 * 157.0, 900.0
+
+    def moved(speed: float, synchronous: float) -> float:
+        x = synchronous - speed
+        return 2 * top * x * width / (x**2 + width**2)
+
+    there = brentq(lambda w: moved(at, w) - torque, at, at + width, xtol=1e-13)
+    return lambda speed: moved(speed, there)
+
+
+def by_points(speed: float) -> float:
+    from scipy.interpolate import PchipInterpolator
+
+    return float(PchipInterpolator(*np.transpose(POINTS))(speed))
+
+
+def square(speed: float) -> float:
+    return 0.09 * speed**2
+
+
+MOTOR_OF_KLOSS = {"breakdown_torque": 900.0, "breakdown_slip": 0.2, "synchronous_speed": 157.0}
+FAN = tn.Fan(inertia=LOAD, quadratic_load=0.09)
+TABLE = [{"speed": w, "torque": t} for w, t in POINTS]
+RATED = tn.Pump(inertia=LOAD, rated_power=30e3, rated_speed=74.0, load_torque=50.0)
+CASES: dict[str, tuple[tn.Element, tn.Element, float | None, Callable[[float, float], Torque], Torque]] = {
+    "mains": (
+        tn.Motor(inertia=MOTOR, **MOTOR_OF_KLOSS), FAN, None, lambda w, t: lambda v: kloss(v, 900, 0.2, 157), square,
+    ),
+    "voltage over frequency": (
+        tn.Motor(inertia=MOTOR, **MOTOR_OF_KLOSS, drive_share=1), FAN, 110.0, set_kloss, square,
+    ),
+    "points": (tn.Motor(inertia=MOTOR, curve=TABLE), FAN, None, lambda w, t: by_points, square),
+    "controller": (
+        tn.Motor(inertia=MOTOR, gain=35.0, torque_limit=400.0, drive_share=1), FAN, 130.0,
+        lambda w, t: lambda v: float(np.clip(t + 35.0 * (w - v), -400, 400)), square,
+    ),
+    "controller at its own speed": (
+        tn.Motor(inertia=MOTOR, gain=35.0, set_speed=140.0, torque_limit=400.0), FAN, None,
+        lambda w, t: lambda v: float(np.clip(35.0 * (140.0 - v), -400, 400)), square,
+    ),
+    "constant power": (
+        tn.Motor(inertia=MOTOR, gain=9.0, drive_share=1), tn.Generator(inertia=LOAD, power=20e3), 100.0,
+        lambda w, t: lambda v: t + 9.0 * (w - v), lambda v: 20e3 / v,
+    ),
+    "asynchronous generator": (
+        tn.Disk(inertia=MOTOR, load_torque=-200.0),
+        tn.Generator(inertia=LOAD, breakdown_torque=900.0, breakdown_slip=0.2, synchronous_speed=70.0), 0.0,
+        lambda w, t: lambda v: 200.0, lambda v: -kloss(v, 900, 0.2, 70),
+    ),
+    "rated pump": (
+        tn.Motor(inertia=MOTOR, **MOTOR_OF_KLOSS), RATED, None, lambda w, t: lambda v: kloss(v, 900, 0.2, 157),
+        lambda v: 50.0 + (30e3 / 74.0 - 50.0) * (v / 74.0) ** 2,
+    ),
+}  # fmt: skip
+"""Drive, load, speed asked for, the drive's torque by its speed once it runs at one with a torque, the load's."""
+
+
+def jacobian(speed: float, drive: Torque, load: Torque) -> np.ndarray:
+    """Of θ₁, φ, ω₁, φ̇ by central differences of the nonlinear equations; φ the shaft's end, half of which turns the
+    load."""
+
+    def rate(x: np.ndarray) -> np.ndarray:
+        twist = STIFFNESS * (x[0] - x[1]) + DAMPING * (x[2] - x[3])
+        return np.array([
+            x[2], x[3], (drive(x[2]) - twist) / MOTOR, (twist - load(x[3] / 2) / 2) / (LOAD / 4),
+        ])  # fmt: skip
+
+    at = np.array([drive(speed) / STIFFNESS, 0.0, speed, speed])
+    np.testing.assert_allclose(rate(at)[2:], 0.0, atol=1e-6)
+    steps = np.diag([1e-6, 1e-6, 1e-4, 1e-4])
+    return np.stack([(rate(at + step) - rate(at - step)) / (2 * step.sum()) for step in steps], axis=1)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_slopes_are_those_of_the_nonlinear_equations(name: str) -> None:
+    """Multipliers over the period, of lines at the speed asked for or at that which an own root finder finds."""
+    drive, load, asked, driven, resisted = CASES[name]
+    built = line(drive, load)
+    if asked is None:
+        asked = float(brentq(lambda w: driven(w, 0.0)(w) - resisted(w / 2) / 2, 110.0, 156.9, xtol=1e-13))
+        found = tn.stability(built)
+        assert found.speed == pytest.approx(asked, rel=1e-10)
+    elif not asked:
+        asked = float(brentq(lambda w: driven(w, 0.0)(w) - resisted(w / 2) / 2, 140.0, 165.0, xtol=1e-13))
+        found = tn.stability(built, asked)
+    else:
+        found = tn.stability(built, asked)
+    system = jacobian(asked, driven(asked, resisted(asked / 2) / 2), resisted)
+    wanted = np.linalg.eigvals(expm(system * 2 * np.pi * 0.5 / asked))
+    for one in found.multipliers:
+        assert np.abs(wanted - one).min() < 2e-7
+    assert len(found.multipliers) == len(wanted)
+
+
+def test_a_propeller_is_what_its_numbers_say() -> None:
+    """Against the disk that one writes by hand; at constant speed of advance a more of its torque over speed damps."""
+    engine = tn.Disk(inertia=9.0, drive_share=1)
+    blades = {"order": 4, "phase": 0.3}
+    by_hand = tn.Disk(
+        inertia=75.0, quadratic_load=20.0, excitation=[blades | {"quadratic_amplitude": 1.6}], name="propeller"
+    )
+    made = tn.Propeller(
+        inertia=60.0,
+        entrained_inertia=15.0,
+        quadratic_load=20.0,
+        excitation=[blades | {"share": 0.08}],
+        name="propeller",
+    )
+    speeds = np.linspace(10.0, 60.0, 11)
+    one, other = (tn.order_response(line(engine, end), speeds) for end in (by_hand, made))
+    np.testing.assert_allclose(one.torque, other.torque, rtol=1e-12)
+    np.testing.assert_allclose(one.mean_torque, other.mean_torque, rtol=1e-12)
+    # The slope: 2c₂ω of the square, (2 + 0.9)c₂ω with the flow held, as a disk with a viscous load for the rest.
+    flow, at = line(engine, made.but(damping_factor=2.9)), 40.0
+    rest = line(engine, by_hand.but(viscous_load=0.9 * 20.0 * at / 2, load_torque=-0.9 * 20.0 * (at / 2) ** 2))
+    np.testing.assert_allclose(tn.order_response(flow, [at]).torque, tn.order_response(rest, [at]).torque, rtol=1e-12)
+    held, square = (np.abs(tn.order_response(one, [at]).torque).max() for one in (flow, line(engine, made)))
+    assert held < 0.99 * square
+
+
+def test_the_mean_speed_is_where_the_nonlinear_line_settles() -> None:
+    """Two machines that each have a balance, run from below and above through their own nonlinear equations."""
+    motor, fan = tn.Motor(inertia=MOTOR, curve=TABLE), FAN
+    settled = tn.stability(line(motor, fan)).speed
+    for start in (30.0, 156.0):
+        run = solve_ivp(
+            lambda t, x: [(by_points(x[0]) - square(x[0] / 2) / 2) / (MOTOR + LOAD / 4)], (0.0, 6.0), [start], rtol=1e-9
+        )
+        assert run.y[0, -1] == pytest.approx(settled, rel=1e-6)
+
+
+def test_a_share_is_of_the_own_torque() -> None:
+    """Ripple of a motor that sits on one shaft with a brake: of its own mean torque, not of what is left of both."""
+    brake = tn.Disk(inertia=0.1, load_torque=150.0)
+    motor = tn.Motor(inertia=MOTOR, gain=9.0, drive_share=1, excitation=[{"order": 6, "share": 0.02}], name="motor")
+    both = tn.Driveline(
+        [motor, brake, tn.Shaft(stiffness=STIFFNESS, damping=DAMPING), tn.Disk(inertia=LOAD, load_torque=50)]
+    )
+    listed = both.replace("motor", excitation=[{"order": 6, "amplitude": 0.02 * 200.0}])
+    np.testing.assert_allclose(
+        tn.order_response(both, [80.0]).torque, tn.order_response(listed, [80.0]).torque, rtol=1e-12
+    )
+
+
+def test_a_table_beside_the_file(tmp_path: Path) -> None:
+    """Read with its units; complaints name row and column, never what stands there."""
+    text = 'format = 1\n[[element]]\ntype = "Motor"\ninertia = 0.4\ncurve = "motor.csv"\n[[element]]\ntype = "Shaft"\n'
+    (tmp_path / "line.toml").write_text(
+        text + 'stiffness = 1e4\n[[element]]\ntype = "Fan"\ninertia = 1.0\nload_torque = 3.0\n'
+    )
+    table = tmp_path / "motor.csv"
+    table.write_text("speed [rpm];torque [kN*m]\n# nameplate\n0;0.2\n1500;0.09\n")
+    motor = tn.load(tmp_path / "line.toml").elements[0]
+    assert motor.curve == tn.read_curve(table)
+    assert [one.speed for one in motor.curve] == pytest.approx([0.0, tn.rpm(1500)])
+    assert [one.torque for one in motor.curve] == [200.0, 90.0]
+    for bad, words in (
+        ("speed,torque [N*m]\n0,1\n1,2\n", "motor.csv.speed has no unit"),
+        ("speed [N*m],torque [N*m]\n0,1\n1,2\n", "motor.csv.speed has no unit of a speed"),
+        ("speed [rpm],torque [N*m]\n0,1\n0,2\n", "motor.csv.speed does not rise in speed"),
+        ("speed [rpm],torque [N*m]\n0,1\n9,nan\n", "motor.csv: row 3.torque is not a number"),
+        ("speed [rpm],torque [N*m]\n0,1\n", "motor.csv.speed must have two points"),
+        ("speed [rpm]\n0\n", "motor.csv.torque is missing among the columns"),
+    ):
+        table.write_text(bad)
+        with pytest.raises(tn.InputError) as caught:
+            tn.load(tmp_path / "line.toml")
+        assert words in str(caught.value) and "curve" in str(caught.value)
