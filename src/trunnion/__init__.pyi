@@ -8,6 +8,7 @@ from trunnion.design.optimisation.optimise import optimise as optimise
 from trunnion.design.remedies.remedies import remedies as remedies
 from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
+from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
@@ -20,10 +21,12 @@ from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
 from trunnion.driveline import Engine as Engine
 from trunnion.driveline import Excitation as Excitation
 from trunnion.driveline import Fan as Fan
+from trunnion.driveline import FrictionTorque as FrictionTorque
 from trunnion.driveline import GearPair as GearPair
 from trunnion.driveline import Generator as Generator
 from trunnion.driveline import HookeJoint as HookeJoint
 from trunnion.driveline import IdealJoint as IdealJoint
+from trunnion.driveline import LevelCrossing as LevelCrossing
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Motor as Motor
@@ -36,6 +39,7 @@ from trunnion.driveline import Pump as Pump
 from trunnion.driveline import Ratio as Ratio
 from trunnion.driveline import Ripple as Ripple
 from trunnion.driveline import RzeppaJoint as RzeppaJoint
+from trunnion.driveline import Scenario as Scenario
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
 from trunnion.driveline import Slider as Slider
@@ -57,6 +61,7 @@ from trunnion.driveline import dumps as dumps
 from trunnion.driveline import hz as hz
 from trunnion.driveline import load as load
 from trunnion.driveline import loads as loads
+from trunnion.driveline import read_torque as read_torque
 from trunnion.driveline import rpm as rpm
 from trunnion.driveline.cardan_angles import cardan_line as cardan_line
 from trunnion.driveline.curve_points import read_curve as read_curve
@@ -111,6 +116,7 @@ from trunnion.motion.perturbation.multiple_scales import multiple_scales as mult
 from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
+from trunnion.motion.transients.transient import transient as transient
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission

@@ -336,6 +336,15 @@ ROWS: dict[str, Row] = {
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
     "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED}, said=_IN_ROWS, inert=_PASSIVE),
+    "transients": _row(
+        refused={
+            **_ONE_DRIVE,
+            **_AT_ONE_SPEED,
+            "excitation that varies with speed or load": "its amplitude would change on the way",
+        },
+        said=_IN_ROWS,
+        inert=_PASSIVE,
+    ),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(
         refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE

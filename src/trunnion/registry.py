@@ -207,6 +207,18 @@ ANALYSES = (
         view="stability",
     ),
     Analysis(
+        "transient",
+        "What happens when torques act over time, speed or angle: starts, blows, faults, brakes, from rest too.",
+        features="transients",
+        pictures={
+            "Transient.plot": "trunnion.pictures.transients:history",
+            "Transient.plot_plane": "trunnion.pictures.transients:plane",
+            "Transient.plot_order_map": "trunnion.pictures.transients:orders",
+        },
+        command="trunnion.cli.transients:transient",
+        view="motion",
+    ),
+    Analysis(
         "periodic_response",
         "The true periodic motion, its torques, orders and stability, beside what linear theory says.",
         features="periodic motion",

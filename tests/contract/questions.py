@@ -199,6 +199,11 @@ QUESTIONS = {
         lambda line: tn.simulate(line, 0.05, speed=SPEED),
         lambda: tn.simulate(in_rpm(), speed=MIDDLE, turns=20),
     ),
+    "transient": Question(
+        lambda line: tn.transient(line, 0.05, speed=SPEED),
+        lambda: tn.transient(in_rpm(), 0.2, torque=[tn.AppliedTorque(on="load", time=[0, 1], torque=[0, -5])]),
+        quick=("load torque", "dry friction"),
+    ),
     "periodic_response": Question(
         lambda line: tn.periodic_response(line, SPEED),
         lambda: tn.periodic_response(in_rpm(), MIDDLE),

@@ -133,6 +133,13 @@ def free(**engine):
     )
 
 
+OF_A_MOTOR = {"breakdown_torque": 9.0, "breakdown_slip": 0.2, "synchronous_speed": 100.0}
+
+
+def torque(**given):
+    return tn.AppliedTorque(on="pump", **given)
+
+
 def unbalanced():
     """A straight line that nothing holds at a speed, excited by its rotation, whose drive is stronger than its load."""
     engine = Disk(inertia=1.0, load_torque=-30.0, excitation=[{"order": 2, "amplitude": 5.0}], name="engine")
@@ -437,6 +444,171 @@ PYTHON = [
         lambda: tn.run_up(free(load_torque=-9.0), 30, 40, acceleration=5),
         "driveline.drive_share: is free–free, and no disk has a share",
         "drive_share = 1",
+    ),
+    (
+        lambda: torque(time=[0, 1, 0.5], torque=[0, 1, 2]),
+        "torque on pump.time = [0, 1, 0.5]: does not rise at point 3",
+        "put the lowest",
+    ),
+    (
+        lambda: torque(time=[0, 1, 1, 1], torque=[0, 1, 2, 3]),
+        "torque on pump.time = [0, 1, 1, 1]: does not rise at point 3",
+        "twice where the torque jumps",
+    ),
+    (
+        lambda: torque(speed=[0, 9, 9], torque=[0, 1, 2]),
+        "torque on pump.speed = [0, 9, 9]: does not rise at point 3",
+        "put the lowest first, each once",
+    ),
+    (
+        lambda: torque(time=["0 s", "1 rpm"], torque=[0, 1]),
+        "torque on pump.time = ['0 s', '1 rpm']: rpm is not the unit of a time (s)",
+        "such as",
+    ),
+    (lambda: torque(time=[0.0], torque=[1]), "torque on pump.time = [0.0]: has one point only", "two or more"),
+    (
+        lambda: torque(time=[0, 1], torque=[1]),
+        "torque on pump.torque = [1]: has 1 values for 2 points",
+        "one torque for each",
+    ),
+    (lambda: torque(), "torque on pump.torque: goes over nothing", "give one of time, speed and angle"),
+    (
+        lambda: torque(time=[0, 1], speed=[0, 1], torque=[1, 2]),
+        "torque on pump.torque = [1, 2]: goes over time and speed",
+        "or two, and a table",
+    ),
+    (
+        lambda: torque(time=[0, 1], table=[[1, 2]]),
+        "torque on pump.table = [[1, 2]]: goes over two variables",
+        "give two of",
+    ),
+    (
+        lambda: torque(time=[0, 1], speed=[0, 1], table=[[1, 2]]),
+        "torque on pump.table = [[1, 2]]: has not 2 rows of 2 torques",
+        "one row for each time",
+    ),
+    (
+        lambda: torque(time=[0, 1], speed=[0, 1], table=[[1, 2], [1, 2]], between="cubic"),
+        "torque on pump.between = 'cubic': is of one variable",
+        "lines",
+    ),
+    (
+        lambda: torque(time=[0, 1], table=1.0),
+        "torque on pump.table = 1: is not a list of rows of torques",
+        "write table",
+    ),
+    (
+        lambda: torque(speed=[0, 1], torque=[1, 2], between="steps"),
+        "torque on pump.between = 'steps': goes over time alone",
+        "lines",
+    ),
+    (
+        lambda: torque(speed=[0, 1], torque=[1, 2], between="line"),
+        "torque on pump.between = 'line': is no way between points",
+        "lines",
+    ),
+    (
+        lambda: torque(time=[0, 1], torque=[1, 2], factor=[1, 2]),
+        "torque on pump.factor = [1, 2]: is of motors",
+        "multiply",
+    ),
+    (
+        lambda: torque(breakdown_torque=9.0),
+        "torque on pump.breakdown_slip: is missing beside breakdown_torque",
+        "needed are",
+    ),
+    (
+        lambda: torque(**OF_A_MOTOR, torque=[1.0]),
+        "torque on pump.torque = [1.0]: stands beside breakdown_torque",
+        "leave one",
+    ),
+    (
+        lambda: torque(**OF_A_MOTOR | {"breakdown_slip": 1.5}),
+        "torque on pump.breakdown_slip = 1.5: must lie between 0 and 1",
+        "0.2",
+    ),
+    (
+        lambda: torque(**OF_A_MOTOR | {"synchronous_speed": -1.0}),
+        "torque on pump.synchronous_speed = -1: must be positive",
+        "",
+    ),
+    (
+        lambda: torque(**OF_A_MOTOR, factor=[0.5]),
+        "torque on pump.factor = [0.5]: has 1 values for 0 points of time",
+        "one share",
+    ),
+    (lambda: tn.FrictionTorque(on="pump", torque=-1.0), "friction on pump.torque = -1: must not be negative", ""),
+    (
+        lambda: tn.FrictionTorque(on="pump", torque=2.0, static=1.0),
+        "friction on pump.static = 1: is less than in motion",
+        "2 N*m",
+    ),
+    (lambda: tn.LevelCrossing(of="pump"), "crossing of pump.speed: watches nothing", "give one of"),
+    (
+        lambda: tn.LevelCrossing(of="pump", speed=1.0, angle=2.0),
+        "crossing of pump.angle = 2: watches speed and angle",
+        "give one of",
+    ),
+    (
+        lambda: tn.LevelCrossing(of="pump", speed=1.0, direction="up"),
+        "crossing of pump.direction = 'up': is not a direction",
+        "rising",
+    ),
+    (lambda: tn.Scenario(name="a", duration=0.0), "scenario a.duration = 0: must be positive", "4 s"),
+    (
+        lambda: free().but(scenarios=2 * [tn.Scenario(name="a", duration=1.0)]),
+        "driveline.scenario = 'a': names two scenarios",
+        "rename",
+    ),
+    (
+        lambda: free().but(
+            scenarios=[tn.Scenario(name="a", duration=1.0, crossing=[tn.LevelCrossing(of="pomp", speed=1)])]
+        ),
+        "scenario a, crossing.of = 'pomp': is not a Disk",
+        "pump",
+    ),
+    (
+        lambda: tn.transient(free(), 1.0, crossing=[tn.LevelCrossing(of="pump", torque=1)], speed=9.0),
+        "crossing.of = 'pump': is no spring",
+        "Shaft",
+    ),
+    (lambda: free().scenario("start"), "scenario = 'start': is not a scenario of this driveline", "write [[scenario]]"),
+    (lambda: tn.transient(free(), speed=9.0), "duration: must be a positive time", "name of a scenario"),
+    (lambda: tn.transient(free(), 1.0, torque=["x"], speed=9.0), "torque = 'x': is not a list of", "tn.AppliedTorque"),
+    (
+        lambda: tn.transient(free(), tn.Scenario(name="a", duration=1.0), torque=[torque(**OF_A_MOTOR)], speed=9.0),
+        "scenario = 'a': says what acts by itself",
+        "give a duration",
+    ),
+    (
+        lambda: tn.transient(free(), 2.0, torque=[torque(time=[0, 1], torque=[0, 1])], speed=9.0),
+        "torque on pump.time: says nothing from t = 0 to 2 s, for its table goes from 0 to 1 s",
+        "hold = true",
+    ),
+    (
+        lambda: tn.transient(line(), 1.0, speed=0.0),
+        "speed = 0: is prescribed by a ConstantSpeed and must be positive",
+        "leave out the ConstantSpeed",
+    ),
+    (
+        lambda: tn.transient(
+            line(ConstantSpeed(), Disk(name="fixed", inertia=1.0), Shaft(stiffness=1e4), Disk(inertia=1)),
+            1.0,
+            torque=[tn.AppliedTorque(on="fixed", time=[0, 1], torque=[1, 1])],
+            speed=9.0,
+        ),
+        "torque.on = 'fixed': moves nothing",
+        "a disk behind a spring",
+    ),
+    (
+        lambda: tn.transient(
+            free(drive_share=1).replace("pump", drive_share=1.0),
+            1.0,
+            speed=9.0,
+            torque=[tn.AppliedTorque(on="engine", time=[0, 1], torque=[1, 1])],
+        ),
+        "pump.drive_share: shares the drive with engine",
+        "give pump a torque too",
     ),
     (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),

@@ -38,7 +38,7 @@ LAYERS = (
     {"response"},
     # Motions that do not repeat, or not linearly; they are compared with the responses below.
     {"motion", "motion/simulation", "motion/perturbation"},
-    {"motion/orbits"},
+    {"motion/orbits", "motion/transients"},
     {"motion/passing", "motion/chaos"},
     {"motion/linearity"},
     # Judging and changing lines takes everything below. ``design`` itself holds the envelope of all load cases.

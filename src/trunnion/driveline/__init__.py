@@ -24,6 +24,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -32,10 +33,15 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.torque_file import read_torque
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
     "STARTERS",
+    "AppliedTorque",
+    "LevelCrossing",
+    "FrictionTorque",
+    "Scenario",
     "ConstantSpeed",
     "Differential",
     "Disk",
@@ -87,6 +93,7 @@ __all__ = [
     "json_schema",
     "load",
     "loads",
+    "read_torque",
     "rpm",
     "starter",
 ]

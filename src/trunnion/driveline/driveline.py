@@ -19,6 +19,7 @@ from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
+from trunnion.driveline.scenarios import Scenario, Scenarios, wrong_scenarios
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
 from trunnion.driveline.stages import PiecewiseShaft
@@ -42,6 +43,7 @@ class Driveline(ElementChain):
     operation : where it runs.
     limits : what its parts may bear, for ``assess``.
     tolerances : how far its numbers scatter, for ``tolerance_study`` and ``certify_stability``.
+    scenarios : what happens to it when, for ``transient``.
     document : title block of the report that is handed in.
 
     Raises
@@ -60,6 +62,7 @@ class Driveline(ElementChain):
     operation: Operation | None = None
     limits: Limits = ()
     tolerances: Tolerances = ()
+    scenarios: Scenarios = ()
     document: TitleBlock | None = None
 
     def __init__(
@@ -73,6 +76,7 @@ class Driveline(ElementChain):
         operation: Operation | None = None,
         limits: Iterable[Limit] = (),
         tolerances: Iterable[Tolerance] = (),
+        scenarios: Iterable[Scenario] = (),
         document: TitleBlock | None = None,
     ) -> None:
         data: dict[str, Any] = {
@@ -84,6 +88,7 @@ class Driveline(ElementChain):
             "operation": operation,
             "limits": limits,
             "tolerances": tolerances,
+            "scenarios": scenarios,
             "document": document,
         }
         super().__init__(**data)
@@ -112,6 +117,7 @@ class Driveline(ElementChain):
         wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
         wrong += _wrong_wheels(self)
         wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.tolerances), self.parts)]
+        wrong += wrong_scenarios(self.scenarios, self.parts)
         if wrong:
             raise InputError.together(wrong)
         return self
@@ -125,6 +131,15 @@ class Driveline(ElementChain):
     def tolerances_by_path(self) -> dict[str, tuple[object, ...]]:
         """Tolerances by path ("Shaft 1.stiffness"), each as ``tolerance_study`` takes it."""
         return tolerances_of(self.tolerances, self.parts)
+
+    def scenario(self, name: str) -> Scenario:
+        """The scenario called ``name``; InputError with the nearest name where there is none."""
+        for one in self.scenarios:
+            if one.name == name:
+                return one
+        known = [one.name for one in self.scenarios]
+        remedy = nearest(name, known) if known else "write [[scenario]] in its file"
+        raise InputError("is not a scenario of this driveline", key="scenario", value=name, remedy=remedy)
 
     def with_load(self, case: str) -> Driveline:
         """The same line under the torques of one of its load cases; disks not named there keep theirs.

@@ -339,6 +339,7 @@ NOT_FEATURES = {
     "Driveline.document": "the title block of the report that is handed in",
     "Driveline.limits": "what elements may bear, which assess compares with",
     "Driveline.tolerances": "how far numbers scatter, which tolerance_study and certify_stability go by",
+    "Driveline.scenarios": "what happens to the line when, which transient follows",
     **dict.fromkeys((f"TitleBlock.{key}" for key in TitleBlock.model_fields), "in the title block of the report"),
     **dict.fromkeys((f"Limit.{key}" for key in Limit.model_fields), "a limit, which assess compares with"),
     "Operation.speed": "the default of every speed asked for",

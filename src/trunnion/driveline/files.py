@@ -41,9 +41,11 @@ from trunnion.driveline.quantities import SPEED, QuantityKind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import Scenario
 from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.torque_file import with_torque_files
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.reading import below
 from trunnion.writing import written_whole
@@ -78,6 +80,7 @@ TOP_KEYS = (
     "operation",
     "limit",
     "tolerance",
+    "scenario",
     "element",
 )
 
@@ -171,6 +174,8 @@ def dumps(line: Driveline) -> str:
     blocks += [_block("[[limit]]", _table(limit)) for limit in line.limits]
     for tolerance in line.tolerances:
         blocks += _tolerance_blocks(tolerance)
+    for scenario in line.scenarios:
+        blocks += _scenario_blocks(scenario, line.operation.speed_unit if line.operation else None)
     for element in line.as_stated.elements:
         blocks += _element_blocks(element)
     return "\n".join(blocks)
@@ -304,10 +309,18 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
         read("limits", table["limit"], lambda value: _each(value, "limit", Limit))
     if "tolerance" in table:
         read("tolerances", table["tolerance"], lambda value: _each(value, "tolerance", Tolerance))
+    if "scenario" in table:
+        read("scenarios", table["scenario"], lambda value: _scenarios(value, place_of))
     if wrong:
         wrong += problems_of([lambda: Driveline([Disk(inertia=1.0)], **rest)])  # its own keys
         raise InputError.together(wrong)
     return Driveline(**found, **rest)
+
+
+def _scenarios(tables: Any, place_of: Place | None) -> list[Scenario]:
+    if place_of is not None and isinstance(tables, list):
+        tables = [with_torque_files(table, place_of) if isinstance(table, dict) else table for table in tables]
+    return _each(tables, "scenario", Scenario)
 
 
 def _check_format(table: dict[str, Any]) -> None:
@@ -467,6 +480,14 @@ def _table(record: Record, *without: str, speed_unit: str | None = None) -> dict
     """What it states, as a file does; speeds in their own unit."""
     stated = {key: value for key, value in record.stated.items() if key not in without}
     return {key: _written(value, record.quantity_of(key), speed_unit) for key, value in stated.items()}
+
+
+def _scenario_blocks(scenario: Scenario, unit: str | None) -> list[str]:
+    nested = ("torque", "friction", "crossing")
+    blocks = [_block("[[scenario]]", _table(scenario, *nested, speed_unit=unit))]
+    for key in nested:
+        blocks += [_block(f"[[scenario.{key}]]", _table(one, speed_unit=unit)) for one in getattr(scenario, key)]
+    return blocks
 
 
 def _tolerance_blocks(tolerance: Tolerance) -> list[str]:

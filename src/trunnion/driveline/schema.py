@@ -19,6 +19,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
@@ -140,6 +141,11 @@ def json_schema() -> dict[str, Any]:
                 "items": {"$ref": "#/$defs/Tolerance"},
                 "description": "how far numbers scatter, for tolerance_study",
             },
+            "scenario": {
+                "type": "array",
+                "items": {"$ref": "#/$defs/Scenario"},
+                "description": "what happens to the line when, for transient",
+            },
             "element": {
                 "type": "array",
                 "minItems": 1,
@@ -162,6 +168,10 @@ def json_schema() -> dict[str, Any]:
             "SwitchedOff": _model(SwitchedOff),
             "Limit": _model(Limit),
             "Tolerance": _tolerance(),
+            "Scenario": _model(Scenario),
+            "AppliedTorque": _applied_torque(),
+            "FrictionTorque": _model(FrictionTorque),
+            "LevelCrossing": _model(LevelCrossing),
             "Excitation": _model(Excitation),
             "PressureCurve": _model(PressureCurve),
             "TransmissionError": _model(TransmissionError),
@@ -171,6 +181,12 @@ def json_schema() -> dict[str, Any]:
             "TorquePoint": _model(TorquePoint),
         },
     }
+
+
+def _applied_torque() -> dict[str, Any]:
+    schema = _model(AppliedTorque)
+    schema["properties"]["file"] = {"type": "string", "description": "CSV table beside the file, instead of its points"}
+    return schema
 
 
 def _tolerance() -> dict[str, Any]:

@@ -29,13 +29,16 @@ _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64,
 
 # The head of the numbers.
 UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE, LAWS, SLIDERS = range(11)
-HEAD = 11
+# How many torques are applied from outside, and where they stand among the numbers.
+APPLIED, APPLIED_AT = 11, 12
+HEAD = 13
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 # LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
 # SHARE: of the station's deviation in that of the mean rotation, by which meshes run; 0 where the input is prescribed.
-INERTIA, LOAD, VISCOUS, QUADRATIC, BY_SPEED, BY_SQUARE, SHARE = range(10, 17)
-PER_STATION = 17
+# STANDS: other than 0 where friction keeps the station, the first of its group, at rest.
+INERTIA, LOAD, VISCOUS, QUADRATIC, BY_SPEED, BY_SQUARE, SHARE, STANDS = range(10, 18)
+PER_STATION = 18
 # Per compliance.
 NEAR, FAR, NEAR_COORDINATE, FAR_COORDINATE, STIFFNESS, DAMPING = range(6)
 LAW, STRIDE, STAGES, ERRORS, WAVES = range(6, 11)
@@ -56,6 +59,14 @@ PER_HARMONIC = 5
 OF, SPRING, REACH, STEP = range(4)
 PER_SLIDER = 4
 SLIPS_BACK, STICKS, SLIPS_ON = range(3)
+# Per torque applied from outside: its station; WAY, its sign in the station's rotation; SENSE, in which the station's
+# speed and angle count as positive; two variables, each one of NONE, TIME, SPEED and TURNED, with the value that it is
+# counted from; then the powers u^i v^j, i, j < POWERS, of the two, and those of v in the denominator.
+PLACE, WAY, SENSE, FIRST, FROM_FIRST, SECOND, FROM_SECOND, NUMERATOR = range(8)
+NONE, TIME, SPEED, TURNED = range(4)
+POWERS = 4
+DENOMINATOR = NUMERATOR + POWERS * POWERS
+PER_APPLIED = DENOMINATOR + POWERS
 # Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
 # the number of its harmonics and SIZE their place among the numbers: order, amplitude and phase of each.
 ROOT, SHAFT, CROSS, RATIO, FOURIER = range(5)
@@ -161,6 +172,43 @@ def mesh_wave(p, q, theta):
 
 
 @njit(cache=True, nogil=True)
+def variable(which, t, angle, speed):
+    """The value of one variable of an applied torque."""
+    if which == TIME:
+        return t
+    if which == SPEED:
+        return speed
+    return angle if which == TURNED else 0.0
+
+
+@njit(cache=True, nogil=True)
+def applied(p, q, t, angle, speed):
+    """The applied torque at p[q:] without its WAY, and its slopes by angle and speed of its station, both counted in
+    its SENSE."""
+    first, second = int(p[q + FIRST]), int(p[q + SECOND])
+    u = variable(first, t, angle, speed) - p[q + FROM_FIRST]
+    v = variable(second, t, angle, speed) - p[q + FROM_SECOND]
+    above, by_u, by_v = 0.0, 0.0, 0.0
+    for i in range(POWERS - 1, -1, -1):
+        row, slope = 0.0, 0.0
+        for j in range(POWERS - 1, -1, -1):
+            slope = slope * v + row
+            row = row * v + p[q + NUMERATOR + i * POWERS + j]
+        by_u = by_u * u + above
+        above = above * u + row
+        by_v = by_v * u + slope
+    below, slope = 0.0, 0.0
+    for j in range(POWERS - 1, -1, -1):
+        slope = slope * v + below
+        below = below * v + p[q + DENOMINATOR + j]
+    torque = above / below
+    by_u, by_v = by_u / below, (by_v - torque * slope) / below
+    by_angle = (by_u if first == TURNED else 0.0) + (by_v if second == TURNED else 0.0)
+    by_speed = (by_u if first == SPEED else 0.0) + (by_v if second == SPEED else 0.0)
+    return torque, by_angle, by_speed
+
+
+@njit(cache=True, nogil=True)
 def stage_at(p, q, twist, rate):
     """The stage whose guards are all on the side where it lasts, or nearest to it."""
     best, depth = 0, -math.inf
@@ -228,6 +276,20 @@ def line(t, y_, p_, k, regime, out_):
         push = p[q + AMPLITUDE] * math.cos(argument)
         torque[i] += r[s] * push
         by_angle[i] += r1[s] * push - r[s] * r[s] * order * p[q + AMPLITUDE] * math.sin(argument)
+    for h in range(int(p[APPLIED])):
+        q = int(p[APPLIED_AT]) + h * PER_APPLIED
+        s = int(p[q + PLACE])
+        i = int(p[HEAD + s * PER_STATION + COORDINATE])
+        if i < 0:
+            continue
+        sense, reference = p[q + SENSE], int(p[HEAD + s * PER_STATION + REFERENCE])
+        angle = sense * (p[HEAD + s * PER_STATION + MEAN] * theta + d[s])
+        push, turned_by, sped_by = applied(p, q, t, angle, sense * v[s])
+        way = p[q + WAY]
+        push, turned_by, sped_by = way * push, way * sense * turned_by, way * sense * sped_by
+        torque[i] += r[s] * push
+        by_angle[i] += r1[s] * push + r[s] * (turned_by * r[s] + sped_by * r1[s] * v[reference])
+        by_rate[i] += r[s] * sped_by * r[s]
     for e in range(joined):
         q = compliance + e * PER_COMPLIANCE
         near, far = int(p[q + NEAR]), int(p[q + FAR])
@@ -261,6 +323,8 @@ def line(t, y_, p_, k, regime, out_):
         i = int(p[q + COORDINATE])
         if i >= 0 and int(p[q + REFERENCE]) == s:
             speed = v[s]
+            if p[q + STANDS] != 0.0:
+                inertia[i] = math.inf
             acceleration[i] = (torque[i] - half_slope[i] * speed * speed) / inertia[i]
             out[i] = y[n + i]
             out[n + i] = acceleration[i] - p[q + MEAN] * alpha

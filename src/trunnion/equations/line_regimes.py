@@ -44,6 +44,15 @@ def guards_kernel() -> ModuleType:
     return kernel_file(str(here.with_name("line_guards_kernel.py")), str(here.with_name("line_kernel.py")))
 
 
+def watch_kernel() -> ModuleType:
+    """The compiled function of what can be watched along a motion."""
+    here = Path(__file__)
+    integration = here.parents[1] / "numerics" / "integration" / "integration_kernel.py"
+    return kernel_file(
+        str(here.with_name("line_watch_kernel.py")), str(integration), str(here.with_name("line_kernel.py"))
+    )
+
+
 def slip_kernel() -> ModuleType:
     """The compiled right-hand side of lines with slip clutches, what switches there, and what observes them."""
     names = ("slip_kernel.py", "line_kernel.py", "line_guards_kernel.py")

@@ -132,7 +132,7 @@ class LineSystem(Portable):
             parameter_units=dict(zip(packed.labels, packed.units, strict=True)),
             period=self._period,
             start=np.zeros(2 * n + len(friction_sliders)),
-            scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * self.speed], n), reach]),
+            scale=np.concatenate([np.repeat([ANGLE_SCALE, ANGLE_SCALE * (self.speed or 1.0)], n), reach]),
             numbers_of=self._numbers,
             regimes=line_regimes(self.assembly),
             speed_unit=speed_unit(self.assembly.line),
@@ -140,7 +140,7 @@ class LineSystem(Portable):
 
     def _period(self, values: Mapping[str, float]) -> float | None:
         """The period of everything [s]; None where the excitations have none of usable length in common."""
-        if self.period_turns is None:
+        if self.period_turns is None or not values[SPEED]:
             return None
         speed, labels, topo = values[SPEED], self.assembly.packed.labels, self.assembly.topology
         turn = 2 * np.pi / speed
@@ -177,12 +177,13 @@ class LineSystem(Portable):
         drive: float = 0.0,
         known: LineCoefficients | None = None,
         case: int = 0,
+        applied: Array | None = None,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
-        number ``case``, where they are at hand.
+        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -222,9 +223,12 @@ class LineSystem(Portable):
             added[s] += joint.turned
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
+        if applied is not None:
+            behind.append(applied.ravel())
         behind.append(clutch_numbers(clutches, strides[len(friction_sliders) :]))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
+        head += [0, 0] if applied is None else [len(applied), begin]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
@@ -305,12 +309,17 @@ class LineSystem(Portable):
         """The same of states x (time, state) at times t (time,), under ``numbers`` as of ``numbers``."""
         return self._observed(t, x, numbers, regime)[0]
 
+    def moving(self, t: Array, x: Array, numbers: Array, regime: Integers | None = None) -> tuple[LineMotion, Array]:
+        """The same, and the speed [rad/s] of every station (time, station)."""
+        motion, _, speed = self._observed(t, x, numbers, regime)
+        return motion, speed
+
     def slip(self, t: Array, x: Array, numbers: Array, regime: Integers | None = None) -> tuple[Array, Array]:
         """Slip speed [rad/s] and torque [N m] of every slip clutch (time, clutch), likewise."""
-        motion, slip = self._observed(t, x, numbers, regime)
+        motion, slip, _ = self._observed(t, x, numbers, regime)
         return slip, motion.torque[:, [clutch.compliance for clutch in self.clutches]]
 
-    def _observed(self, t: Array, x: Array, numbers: Array, regime: Integers | None) -> tuple[LineMotion, Array]:
+    def _observed(self, t: Array, x: Array, numbers: Array, regime: Integers | None) -> tuple[LineMotion, Array, Array]:
         topo, states = self.assembly.topology, np.ascontiguousarray(x)
         twist, torque = np.empty((len(t), len(topo.compliances))), np.empty((len(t), len(topo.compliances)))
         rotation, speed = np.empty((2, len(t), len(topo.stations)))
@@ -320,7 +329,7 @@ class LineSystem(Portable):
             core, known = slip_kernel(), np.full(len(t), -1) if regime is None else regime
             rate = core.slipping_line.address
             core.observe_clutches(rate, t, states, numbers.copy(), known, stages, torque, slip)
-        return LineMotion(twist, torque, rotation), slip
+        return LineMotion(twist, torque, rotation), slip, speed
 
     def varied(self, parameter: str | Parameter) -> Callable[..., System]:
         """The system as a function of one parameter of the line ("speed", "HookeJoint 1.angle", a group), and of the
@@ -336,19 +345,20 @@ class LineSystem(Portable):
 
         return at
 
-    def rest(self) -> Array:
-        """The state without twist: every disk where rigid shafts would hold it at t = 0."""
-        return self._static_state(self.untwisted(self.assembly.table(1, self.speed)))
+    def rest(self, angle: float = 0.0) -> Array:
+        """The state without twist: every disk where rigid shafts would hold it, the input at ``angle`` [rad]."""
+        return self._static_state(self.untwisted(self.assembly.table(1, self.speed)), angle)
 
-    def twisted(self) -> Array:
+    def twisted(self, angle: float = 0.0) -> Array:
         """State of the line with rigid shafts, each twisted by the torque it carries on average; sliders at rest."""
-        return self._static_state(self.assembly.coefficients(self.assembly.table(1, self.speed), free_play=True))
+        table = self.assembly.table(1, self.speed)
+        return self._static_state(self.assembly.coefficients(table, free_play=True), angle)
 
-    def _static_state(self, coefficients: LineCoefficients) -> Array:
-        """State at t = 0 of the line with rigid shafts, twisted as the coefficients say."""
+    def _static_state(self, coefficients: LineCoefficients, angle: float) -> Array:
+        """State of the line with rigid shafts, the input at ``angle``, twisted as the coefficients say."""
         topo = self.assembly.topology
         plain = self.untwisted(self.assembly.table(1, self.speed)).straight
-        loaded, straight = (base_motion(topo, co, np.zeros(1)) for co in (coefficients, plain))
+        loaded, straight = (base_motion(topo, co, np.full(1, angle)) for co in (coefficients, plain))
         d, v = (loaded.angle - straight.angle)[0, 0, topo.firsts], (loaded.speed - straight.speed)[0, 0, topo.firsts]
         return np.concatenate([d, v * self.speed, np.zeros(len(self.sliders))])
 

@@ -1,4 +1,4 @@
-"""The true motion: periodic response beside linear theory, run-up, rattle, Poincaré map, exponents, chaos."""
+"""True motion: periodic response beside linear theory, run-up, transients, rattle, Poincaré map, exponents, chaos."""
 
 from __future__ import annotations
 
@@ -26,13 +26,14 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.motion.orbits.frequency_response import methods_of
 from trunnion.pictures.picture import Axis, single
 
-PERIODIC, RUN_UP, RATTLE = "periodic response", "run-up", "rattle over speed"
+PERIODIC, RUN_UP, TRANSIENT, RATTLE = "periodic response", "run-up", "transient", "rattle over speed"
 POINCARE, EXPONENTS, CHAOS = "Poincaré map", "Lyapunov exponents", "is it chaos?"
-MOTIONS = {PERIODIC: "periodic", RUN_UP: "run-up", RATTLE: "rattle", POINCARE: "section", EXPONENTS: "exponents",
-           CHAOS: "chaos"}  # fmt: skip
+MOTIONS = {PERIODIC: "periodic", RUN_UP: "run-up", TRANSIENT: "transient", RATTLE: "rattle", POINCARE: "section",
+           EXPONENTS: "exponents", CHAOS: "chaos"}  # fmt: skip
 ASKS = {
     "periodic": ("speed",),
     "run-up": ("rate", "spring"),
+    "transient": ("scenario",),
     "rattle": ("spring", "points"),
     "section": ("of", "speed", "returns"),
     "exponents": ("of", "speed"),
@@ -121,6 +122,7 @@ class MotionView(View):
         "rate": 100.0,
         "points": 40,
         "spring": "",
+        "scenario": "",
         "returns": 400,
     }
 
@@ -130,6 +132,7 @@ class MotionView(View):
         "speed": lambda: optional("Speed", start=0.0, width=170),
         "rate": lambda: number("Acceleration [rad/s²]", 100.0, start=0.01, width=170),
         "spring": lambda: select("Torque of", options=[]),
+        "scenario": lambda: select("Scenario of the file", options=[]),
         "points": lambda: count("Points of a sweep", 40, 2, 400),
         "returns": lambda: count("Points of the map", 400, 10, 20_000),
     }
@@ -138,6 +141,7 @@ class MotionView(View):
         """The unit of speeds, the shafts."""
         label_speed(self.widgets["speed"], line)
         self.choose("spring", springs_of(line))
+        self.choose("scenario", [one.name for one in line.scenarios])
         self.show_question()
 
     def show_question(self) -> None:
@@ -153,6 +157,10 @@ class MotionView(View):
         match self.settings["what"]:
             case "run-up":
                 return self._run_up(line)
+            case "transient":
+                shown = {"unit": unit_of(line)[0]}
+                call = Call("tn.transient", (LINE, str(self.settings["scenario"])))
+                return [ViewStep("transient", call, "plotted", shown, drawing=shown, title=TRANSIENT)]
             case "rattle":
                 return self._rattle(line)
             case "section":

@@ -9,13 +9,15 @@ the mean rotation of the whole line, which the vibration of a light input does n
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
+from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.errors import InputError
-from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.simulation import LineSimulation
+from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 
 FEWEST_PER_TURN, PER_STEP = 64, 4
 """Samples: what swings faster than two of them would fold back on the orders shown. An integrator takes several steps
@@ -38,7 +40,45 @@ class OrderMap:
     unit: str = "rad/s"
 
 
-def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.0) -> OrderMap:
+class TurningRun(Protocol):
+    """What an order map reads of a run: ``LineSimulation`` or ``Transient``."""
+
+    @property
+    def whole(self) -> InputRotation:
+        """How the whole line turned."""
+        ...
+
+    @property
+    def cuts(self) -> Array:
+        """Times between which the motion is smooth."""
+        ...
+
+    @property
+    def starts_free(self) -> bool:
+        """Whether nothing prescribes how the line turns."""
+        ...
+
+    @property
+    def profile(self) -> SpeedProfile:
+        """The speed prescribed, where one is."""
+        ...
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        ...
+
+    @property
+    def unit(self) -> str:
+        """Unit that speeds are printed in."""
+        ...
+
+    def torque_at(self, time: ArrayLike) -> Array:
+        """Torque (m, spring) [N m] at times (m,)."""
+        ...
+
+
+def order_map(run: TurningRun, *, window: int = WINDOW, highest: float = 12.0) -> OrderMap:
     """Torque amplitudes of a simulated run by order and time: a run-up shows its orders as lines of constant height.
 
     Each window of ``window`` turns is weighted by a Hann window and transformed over the rotation; windows overlap by
@@ -46,7 +86,7 @@ def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.
 
     Parameters
     ----------
-    run : a ``LineSimulation``, from ``simulate``.
+    run : a ``LineSimulation``, from ``simulate``, or a ``Transient``.
     window : turns of one window, a whole number from 1; orders are resolved to 1/``window``.
     highest : highest order shown, in cycles per turn of the input.
 
@@ -99,7 +139,7 @@ def order_map(run: LineSimulation, *, window: int = WINDOW, highest: float = 12.
     return OrderMap(middle, speed, np.arange(kept) / window, amplitude, run.shafts, run.unit)
 
 
-def _per_turn(run: LineSimulation, highest: float) -> int:
+def _per_turn(run: TurningRun, highest: float) -> int:
     """Samples a turn that show all that the motion holds in its busiest turn."""
     edges = run.whole.turns[0]
     steps = int(np.diff(np.searchsorted(run.cuts, edges)).max())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,8 +13,7 @@ from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
-from trunnion.motion.simulation.input_rotation import TURN
-from trunnion.motion.simulation.simulation import LineSimulation
+from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 
 MOST_TURNS, PER_TURN = 16, 128
 """Turns that are looked at, the last ones of the stretch, and samples of each."""
@@ -39,7 +39,30 @@ class StrongestOrder:
     mode_frequency: float = 0.0
 
 
-def strongest_order(run: LineSimulation, since: float, until: float) -> StrongestOrder | None:
+class ShakenRun(Protocol):
+    """What is read of a run: ``LineSimulation`` or ``Transient``."""
+
+    @property
+    def line(self) -> LineSystem:
+        """The line that moved."""
+        ...
+
+    @property
+    def whole(self) -> InputRotation:
+        """How the whole line turned."""
+        ...
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of the springs."""
+        ...
+
+    def motion_at(self, time: Any) -> Any:
+        """Twists and torques (m, spring) at times (m,)."""
+        ...
+
+
+def strongest_order(run: ShakenRun, since: float, until: float) -> StrongestOrder | None:
     """The order that has the largest share in what springs store and give back in a stretch of a run, by its true
     rotation; None where the stretch has less than two turns."""
     low, high = (float(a) for a in run.whole.angle([since, until]))

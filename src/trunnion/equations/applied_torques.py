@@ -1,0 +1,252 @@
+"""Torques applied to disks from outside, piece by piece: between two knots of its tables each is a ratio of polynomials
+of one or two of time, speed and angle, which the compiled right-hand side reads.
+
+A motion is integrated from knot to knot: where a table bends or jumps the integration ends and begins again, at times
+that are known beforehand and where a speed or an angle comes to a knot, which is located. Within a piece nothing jumps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from trunnion.arrays import Array
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_regimes import line_kernel
+from trunnion.errors import InputError
+from trunnion.laws.torque_curve import KlossCurve
+
+POWERS = 4
+"""Powers of each variable, of which the kernel knows as many."""
+
+
+class TorquePiece(NamedTuple):
+    """One piece: where its two variables are counted from, the powers u^i v^j above, and those of v below."""
+
+    first: float
+    second: float
+    above: Array
+    below: Array
+
+
+@dataclass(frozen=True)
+class TorqueAxis:
+    """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them."""
+
+    variable: str
+    knots: Array
+    hold: bool
+
+    def piece(self, value: float) -> int:
+        """The piece that holds ``value``, at a knot the one above: −1 below the first knot, m − 1 above the last."""
+        return int(np.searchsorted(self.knots, value, side="right")) - 1
+
+    def inner(self, piece: int) -> int:
+        """The nearest piece between two knots."""
+        return int(np.clip(piece, 0, max(len(self.knots) - 2, 0)))
+
+    def ends(self, piece: int) -> tuple[float, float]:
+        """Lower and upper end of a piece."""
+        low = self.knots[piece] if piece >= 0 else -np.inf
+        return float(low), float(self.knots[piece + 1]) if piece + 1 < len(self.knots) else np.inf
+
+    def powers(self, piece: int) -> Array:
+        """Constant and slope (2, 2) of what goes straight between the two ends of a piece, of its values there."""
+        if piece < 0:
+            return np.array([[1.0, 0.0], [0.0, 0.0]])
+        if piece >= len(self.knots) - 1:
+            return np.array([[0.0, 1.0], [0.0, 0.0]])
+        slope = 1 / (self.knots[piece + 1] - self.knots[piece])
+        return np.array([[1.0, 0.0], [-slope, slope]])
+
+    def beyond(self, piece: int) -> bool:
+        """Whether a piece lies where the torque says nothing."""
+        return not self.hold and not 0 <= piece < len(self.knots) - 1
+
+
+@dataclass(frozen=True)
+class PlacedTorque:
+    """A torque at a station of a line, in whose ``sense`` it and its disk's speed and angle count."""
+
+    stated: AppliedTorque
+    station: int
+    sense: float
+    axes: tuple[TorqueAxis, ...]
+
+    def cell(self, pieces: Sequence[int]) -> TorquePiece:
+        """The polynomials of a piece of every axis."""
+        if self.stated.is_motor:
+            return self._motor(pieces)
+        if self.stated.table:
+            return self._bilinear(pieces)
+        return self._curve(pieces[0])
+
+    def _curve(self, piece: int) -> TorquePiece:
+        axis, torque, above = self.axes[0], np.array(self.stated.torque), np.zeros((POWERS, POWERS))
+        below, knots = _one(), axis.knots
+        if self.stated.between == "steps":
+            above[0, 0] = torque[piece] if piece >= 0 else 0.0
+            return TorquePiece(0.0, 0.0, above, below)
+        if not 0 <= piece < len(knots) - 1:
+            above[0, 0] = torque[0 if piece < 0 else -1]
+            return TorquePiece(0.0, 0.0, above, below)
+        low, high = knots[piece], knots[piece + 1]
+        if self.stated.between == "cubic":
+            above[:, 0] = PchipInterpolator(knots, torque).c[::-1, piece]
+        else:
+            above[:2, 0] = torque[piece], (torque[piece + 1] - torque[piece]) / (high - low)
+        return TorquePiece(float(low), 0.0, above, below)
+
+    def _bilinear(self, pieces: Sequence[int]) -> TorquePiece:
+        above, inner = np.zeros((POWERS, POWERS)), [a.inner(piece) for a, piece in zip(self.axes, pieces, strict=True)]
+        corners = np.array(self.stated.table)[inner[0] : inner[0] + 2, inner[1] : inner[1] + 2]
+        one, other = (axis.powers(piece) for axis, piece in zip(self.axes, pieces, strict=True))
+        above[:2, :2] = one @ corners @ other.T
+        first, second = (float(axis.knots[place]) for axis, place in zip(self.axes, inner, strict=True))
+        return TorquePiece(first, second, above, _one())
+
+    def _motor(self, pieces: Sequence[int]) -> TorquePiece:
+        one = self.stated
+        curve = KlossCurve(one.breakdown_torque, one.breakdown_slip, one.synchronous_speed)
+        torque, under = (poly.coef for poly in curve.ratio(0.0))
+        above, below = np.zeros((POWERS, POWERS)), np.zeros(POWERS)
+        below[: len(under)] = under
+        share, since = np.array([1.0, 0.0]), 0.0
+        if one.factor:
+            axis, factor, piece = self.axes[0], np.array(one.factor), pieces[0]
+            if one.between == "steps":
+                share[0] = factor[piece] if piece >= 0 else 0.0
+            elif 0 <= piece < len(axis.knots) - 1:
+                since = float(axis.knots[piece])
+                share = np.array([factor[piece], (factor[piece + 1] - factor[piece]) / (axis.knots[piece + 1] - since)])
+            else:
+                share[0] = factor[0 if piece < 0 else -1]
+        above[:2, : len(torque)] = np.outer(share, torque)
+        return TorquePiece(since, 0.0, above, below)
+
+    def value(self, time: float, speed: float, angle: float) -> float:
+        """The torque [N m] at a time, where its disk has this speed and angle, both in its own sense."""
+        given = {"time": time, "speed": speed, "angle": angle, "": 0.0}
+        cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
+        u = given[self.axes[0].variable if self.axes else ""] - cell.first
+        v = given[self.second] - cell.second
+        powers = np.arange(POWERS)
+        return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
+
+    @property
+    def second(self) -> str:
+        """Its second variable: of a motor its speed, else that of the second axis; "" where there is none."""
+        if self.stated.is_motor:
+            return "speed"
+        return self.axes[1].variable if len(self.axes) > 1 else ""
+
+    def row(self, pieces: Sequence[int]) -> Array:
+        """What the kernel reads of a piece."""
+        core, cell = line_kernel(), self.cell(pieces)
+        codes = {"": core.NONE, "time": core.TIME, "speed": core.SPEED, "angle": core.TURNED}
+        first = self.axes[0].variable if self.axes else ""
+        head = [self.station, self.sense, self.sense, codes[first], cell.first, codes[self.second], cell.second]
+        return np.concatenate([head, cell.above.ravel(), cell.below])
+
+
+@dataclass(frozen=True)
+class PlacedFriction:
+    """Dry friction at a station, on the unknown rotation ``unknown``; ``turning`` is the sense of the station's speed
+    over that of the first of its group."""
+
+    stated: FrictionTorque
+    station: int
+    unknown: int
+    first: int
+    turning: float
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Times at which it bends."""
+        one = self.stated
+        return tuple(t for t in (one.since, one.since + one.rise) if t > 0)
+
+    def share(self, time: float) -> tuple[float, float]:
+        """Share of its full size at and behind a time, and the share's slope [1/s] until the next knot."""
+        one = self.stated
+        if time < one.since:
+            return 0.0, 0.0
+        if one.rise and time < one.since + one.rise:
+            return (time - one.since) / one.rise, 1 / one.rise
+        return 1.0, 0.0
+
+    def row(self, time: float, sense: float) -> Array:
+        """What the kernel reads from ``time`` on while the first of the group turns in ``sense`` (0: stands)."""
+        core = line_kernel()
+        share, slope = self.share(time)
+        above = np.zeros((POWERS, POWERS))
+        above[:2, 0] = self.stated.torque * share, self.stated.torque * slope
+        head = [self.station, -sense * self.turning, 1.0, core.TIME, time, core.NONE, 0.0]
+        return np.concatenate([head, above.ravel(), _one()])
+
+
+def _one() -> Array:
+    below = np.zeros(POWERS)
+    below[0] = 1.0
+    return below
+
+
+def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tuple[PlacedTorque, ...]:
+    """The torques at their stations.
+
+    Raises
+    ------
+    InputError : on a disk that a ConstantSpeed turns.
+    """
+    return tuple(_placed(assembly, one) for one in torques)
+
+
+def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
+    station = disk_station(assembly, one.on, "torque")
+    hold = one.hold or one.between == "steps"
+    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold) for key in one.variables)
+    return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
+
+
+def placed_frictions(assembly: Assembly, frictions: Sequence[FrictionTorque]) -> tuple[PlacedFriction, ...]:
+    """The frictions at their stations.
+
+    Raises
+    ------
+    InputError : on a disk that a ConstantSpeed turns.
+    """
+    topo, found = assembly.topology, []
+    for one in frictions:
+        station = disk_station(assembly, one.on, "friction")
+        first = topo.reference[topo.group_of(station)]
+        turning = float(np.sign(topo.mean_speeds[station] / topo.mean_speeds[first]))
+        found.append(PlacedFriction(one, station, int(topo.unknown_of[station]), first, turning))
+    return tuple(found)
+
+
+def disk_station(assembly: Assembly, name: str, what: str) -> int:
+    """The station of a disk that can move by itself.
+
+    Raises
+    ------
+    InputError : a ConstantSpeed prescribes how it turns.
+    """
+    topo, names = assembly.topology, assembly.line.names
+    station = next(s for s, i in topo.disks if names[i] == name)
+    if topo.unknown_of[station] < 0:
+        raise InputError(
+            "moves nothing, for a ConstantSpeed prescribes how its disk turns", element=what, key="on", value=name,
+            remedy="leave out the ConstantSpeed, or name a disk behind a spring",
+        )  # fmt: skip
+    return station
+
+
+def time_knots(torques: Sequence[PlacedTorque], frictions: Sequence[PlacedFriction]) -> Array:
+    """Times (m,) [s], rising, at which something bends or jumps."""
+    every: Iterator[Array] = (axis.knots for one in torques for axis in one.axes if axis.variable == "time")
+    return np.unique(np.concatenate([*every, *(np.array(one.knots) for one in frictions), np.zeros(0)]))

@@ -1,0 +1,99 @@
+"""What a transient is prepared from: a line as its torques drive it, and the steps that follow it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trunnion.driveline.elements import Disk
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
+from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
+from trunnion.errors import InputError
+from trunnion.motion.transients.stepping import Found, Place, Stepper
+
+if TYPE_CHECKING:
+    from trunnion.driveline.driveline import Driveline
+    from trunnion.equations.line_system import LineSystem
+
+Actions = tuple[tuple[AppliedTorque, ...], tuple[FrictionTorque, ...], tuple[LevelCrossing, ...]]
+"""What acts and what is watched."""
+
+
+def actions_of(
+    torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque], crossing: Sequence[LevelCrossing]
+) -> Actions:
+    """The three of them as they are kept."""
+    return tuple(torque), tuple(friction), tuple(crossing)
+
+
+def driven_line(line: Driveline, asked: Actions) -> Driveline:
+    """The line as its torques drive it: a disk that is given one has no share any more."""
+    kinds = {"torque": AppliedTorque, "friction": FrictionTorque, "crossing": LevelCrossing}
+    for (key, kind), several in zip(kinds.items(), asked, strict=True):
+        for one in several:
+            if not isinstance(one, kind):
+                remedy = f"write [tn.{kind.__name__}(…)]"
+                raise InputError(f"is not a list of {kind.__name__}", key=key, value=one, remedy=remedy)
+    if wrong := [*wrong_places_of(*asked, line.parts)]:
+        raise InputError.together(wrong)
+    given = {one.on for one in asked[0]}
+    sharing = [name for name, e in line.parts if isinstance(e, Disk) and e.drive_share]
+    replaced = [name for name in sharing if name in given]
+    if not replaced:
+        return line
+    left = [name for name in sharing if name not in given]
+    if left:
+        raise InputError(
+            f"shares the drive with {replaced[0]}, which is given a torque instead", element=left[0],
+            key="drive_share", remedy=f"give {left[0]} a torque too, or no drive_share",
+        )  # fmt: skip
+    return line.replace_all({name: {"drive_share": None} for name in replaced})
+
+
+def follow(
+    prepared: LineSystem,
+    place: Place,
+    duration: float,
+    asked: Actions,
+    tolerance: float,
+    most_steps: int,
+    mean_speed: float | None = None,
+) -> Found:
+    """The motion from ``place`` on for ``duration`` [s].
+
+    Raises
+    ------
+    InputError : a tolerance out of range; times beyond a table; what acts on a disk that a ConstantSpeed turns.
+    """
+    if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
+        raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
+    if asked[1] and prepared.clutches:
+        raise InputError(
+            "is not followed in a line with a slip clutch", element="friction", key="on", value=asked[1][0].on,
+            remedy="describe the brake as a torque over time, or the slip clutch as a Clutch",
+        )  # fmt: skip
+    torques = placed_torques(prepared.assembly, asked[0])
+    frictions = placed_frictions(prepared.assembly, asked[1])
+    for one in torques:
+        _require_times(one, place.time, place.time + duration)
+    stepper = Stepper(
+        prepared, torques, frictions, asked[2], tolerance=tolerance, most_steps=most_steps,
+        unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
+    )  # fmt: skip
+    return stepper.run(place, duration)
+
+
+def _require_times(torque: PlacedTorque, since: float, until: float) -> None:
+    for axis in torque.axes:
+        if axis.variable != "time" or axis.hold:
+            continue
+        first, last = float(axis.knots[0]), float(axis.knots[-1])
+        if since < first or until > last * (1 + 1e-12):
+            raise InputError(
+                f"says nothing from t = {since:g} to {until:g} s, for its table goes from {first:g} to {last:g} s",
+                element=f"torque on {torque.stated.on}", key="time",
+                remedy="end the run there, add points, or write hold = true",
+            )  # fmt: skip

@@ -1,0 +1,421 @@
+"""Integration of a line from switch to switch, where torques bend or jump and where dry friction sticks and lets go.
+
+A free–free line is followed from a rotation that goes with it: before each piece the reference turns as the whole line
+does at that moment, Σ Jρφ/Σ Jρ² with its speed and acceleration, so that deviations and their errors stay small
+whatever turns are made, from standstill and through it.
+
+Dry friction on a disk is T_c against its rotation while it turns. Where it comes to rest the disk stands while what
+acts on it stays within the friction at rest, and then sets off the way it is pulled.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from trunnion.arrays import Array, Integers
+from trunnion.driveline.quantities import SPEED
+from trunnion.driveline.scenarios import LevelCrossing
+from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
+from trunnion.equations.line_regimes import line_kernel, watch_kernel
+from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
+from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
+from trunnion.results.outcome import Outcome
+from trunnion.results.speeds import about_speed
+from trunnion.steady.shooting.integration_outcomes import outcome_of
+from trunnion.waiting import time_is_up
+
+FURTHEST = 0.2
+"""Mean deviation [rad] from the rotation that goes with the line, for which the length of pieces is chosen; a piece
+that comes to ten times as much is made again, shorter."""
+FIRST_PIECE = 0.01
+"""Of the run."""
+BESIDE = 1e-9
+"""Share of a piece of a table by which a speed goes beyond its end before the next one is taken: so that a switch
+begins on its own side."""
+
+
+LOCATED = -1
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a motion stands.
+
+    time [s]; angle [rad], speed [rad/s] and acceleration [rad/s²] of the rotation that it is observed from; state (2n +
+    sliders,) and regime, ``LOCATED`` where the state tells it; ``senses``: in which way the groups with friction turn,
+    by their first station, 0 where they stand.
+    """
+
+    time: float
+    state: Array
+    angle: float = 0.0
+    speed: float = 0.0
+    acceleration: float = 0.0
+    regime: int = LOCATED
+    senses: dict[int, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A stretch without a switch: the steps taken, and the numbers that the right-hand side read."""
+
+    line: LineSystem
+    trajectory: Trajectory
+    numbers: Array
+    torques: tuple[PlacedTorque, ...]
+    frictions: tuple[PlacedFriction, ...]
+
+    def regime_at(self, times: Array) -> Integers:
+        """In which the line was at times (m,)."""
+        run = self.trajectory
+        return run.regime[np.minimum(np.searchsorted(run.start[1:], times, side="right"), len(run.regime) - 1)]
+
+    @property
+    def acting(self) -> tuple[PlacedTorque | PlacedFriction, ...]:
+        """All that acts, in the order of the numbers."""
+        return (*self.torques, *self.frictions)
+
+
+class Found(NamedTuple):
+    """What became of a run."""
+
+    pieces: list[Piece]
+    place: Place
+    outcome: Outcome
+    crossed: list[tuple[float, str]]
+
+
+class _Watched(NamedTuple):
+    """One watched value: kind, place, factor, level (since, four powers), direction; whether it ends the piece; what is
+    then done, or None for a crossing of the user's, with its label."""
+
+    kind: int
+    of: int
+    factor: float
+    level: tuple[float, ...]
+    direction: int
+    stops: bool
+    act: Callable[[Place], Place] | None
+    label: str = ""
+
+
+class Stepper:
+    """One line under given torques."""
+
+    def __init__(
+        self,
+        line: LineSystem,
+        torques: Sequence[PlacedTorque],
+        frictions: Sequence[PlacedFriction],
+        crossings: Sequence[LevelCrossing],
+        *,
+        tolerance: float,
+        most_steps: int,
+        unit: str,
+        mean_speed: float | None = None,
+    ) -> None:
+        """``mean_speed`` [rad/s]: the run ends where the whole line has it, Σ Jρφ/Σ Jρ²."""
+        self.mean_speed = mean_speed
+        self.line, self.torques, self.frictions = line, tuple(torques), tuple(frictions)
+        self.crossings, self.tolerance, self.most_steps, self.unit = tuple(crossings), tolerance, most_steps, unit
+        self.core, self.topo = line_kernel(), line.assembly.topology
+        row = line.assembly.table(1, line.speed)[0]
+        co = line.untwisted(row[None])
+        self.free = self.topo.free
+        self.share = line.shares(co.inertia[0]) if self.free else np.zeros(self.topo.size)
+        self.turning = rigid_rotation(self.topo)
+        count = len(self.torques) + len(self.frictions)
+        self.numbers = line.numbers(row, known=co, applied=np.zeros((count, self.core.PER_APPLIED)))
+        self.applied_at = int(self.numbers[self.core.APPLIED_AT])
+        felt, twist = self.topo.on_unknowns(co.inertia[0]), self.topo.elongations
+        stiff = twist.T @ (co.stiffness[0][:, None] * twist)
+        root = np.sqrt(felt)
+        frequencies = np.sqrt(np.maximum(np.linalg.eigvalsh(stiff / np.outer(root, root)), 0.0))
+        elastic = frequencies[frequencies > 1e-6 * max(float(frequencies.max()), 1e-30)]
+        usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
+        n, reach = self.topo.size, [slider.reach for slider in line.sliders]
+        weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
+        self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
+        self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
+
+    # What acts.
+
+    def run(self, place: Place, duration: float) -> Found:
+        """From ``place`` on for ``duration`` [s]."""
+        end = place.time + duration
+        clamping = [t for e in self.line.assembly.line.elements if isinstance(e, SlipClutch) for t in e.clamping_times]
+        knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
+        self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
+        place = replace(place, regime=self._regime(place))
+        place = replace(place, senses=self._settled(place))
+        chunk = FIRST_PIECE * duration if self.free else np.inf
+        pieces: list[Piece] = []
+        crossed: list[tuple[float, str]] = []
+        steps, guess = 0, 0.0
+        while True:
+            if beyond := self._beyond(place):
+                return Found(pieces, place, beyond, crossed)
+            if place.time >= end:
+                return Found(pieces, place, Outcome(True, "reached", f"reached t = {place.time:.6g} s"), crossed)
+            if why := time_is_up():
+                words = f"{why.replace('the search', 'the run')} at t = {place.time:.6g} s; what was computed is kept"
+                return Found(pieces, place, Outcome(False, "out of time", words), crossed)
+            ahead = knots[knots > place.time]
+            until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
+            place = self._following(place)
+            self._write(place)
+            watched = self._watched(place)
+            trajectory = integrate(
+                replace(self.equations, numbers=self.numbers), place.time, until, place.state, regime=place.regime,
+                tolerance=self.tolerance, most_steps=self.most_steps - steps, watch=self._watch(watched),
+                first_step=guess, partly=True,
+            )  # fmt: skip
+            off = float(self.share @ trajectory.final[0][: self.topo.size])
+            if abs(off) > 10 * FURTHEST and until == place.time + chunk:
+                chunk *= 0.25
+                continue
+            steps += trajectory.steps
+            guess = min(trajectory.next_step, until - place.time)
+            pieces.append(Piece(self.line, trajectory, self.numbers.copy(), self.torques, self.frictions))
+            own = self.equations.transitions.shape[1]
+            for at, which in zip(trajectory.event_time, trajectory.event_which, strict=True):
+                if which >= own and watched[which - own].label:
+                    crossed.append((float(at), watched[which - own].label))
+            if self.free:
+                chunk *= float(np.clip((FURTHEST / max(abs(off), 1e-9)) ** (1 / 3), 0.3, 3.0))
+            place = self._after(place, trajectory)
+            if trajectory.end is IntegrationEnd.REACHED:
+                for k, one in enumerate(self.torques):
+                    for i, axis in enumerate(one.axes):
+                        if axis.variable == "time":
+                            self.cells[k][i] = axis.piece(place.time)
+                continue
+            if trajectory.end is not IntegrationEnd.STOPPED:
+                system = self.line.system
+                guards = (*(system.regimes.guards if system.regimes else ()), *(w.label for w in watched))
+                return Found(pieces, place, outcome_of(system, trajectory, self.tolerance, guards), crossed)
+            hit = watched[int(trajectory.event_which[-1]) - own]
+            if hit.act is None:
+                words = f"stopped at t = {place.time:.6g} s, where the {hit.label}"
+                return Found(pieces, place, Outcome(True, "crossed", words), crossed)
+            place = hit.act(place)
+
+    def _regime(self, place: Place) -> int:
+        if place.regime != LOCATED:
+            return place.regime
+        self._write(place)
+        return self.line.system.reading(self.numbers).regime_at(place.time, place.state)
+
+    def _piece(self, axis: TorqueAxis, one: PlacedTorque, place: Place) -> int:
+        if axis.variable == "time":
+            return axis.piece(place.time)
+        self._write_course(place)
+        angle, speed = self._of_station(place, one.station)
+        return axis.piece(one.sense * (speed if axis.variable == "speed" else angle))
+
+    def _of_station(self, place: Place, station: int) -> tuple[float, float]:
+        """Angle [rad] and speed [rad/s] of a station."""
+        motion, speed = self.line.moving(np.array([place.time]), place.state[None], self.numbers)
+        mean = self.topo.mean_speeds[station]
+        return float(mean * place.angle + motion.rotation[0, station]), float(speed[0, station])
+
+    def _beyond(self, place: Place) -> Outcome | None:
+        """The outcome of a run in which a torque comes to where it says nothing."""
+        for one, cell in zip(self.torques, self.cells, strict=True):
+            for axis, piece in zip(one.axes, cell, strict=True):
+                if axis.variable != "time" and axis.beyond(piece):
+                    low, high = float(axis.knots[0]), float(axis.knots[-1])
+                    if axis.variable == "speed":
+                        span = f"{about_speed(low, self.unit)} to {about_speed(high, self.unit)}"
+                    else:
+                        span = f"{low:.6g} to {high:.6g} rad"
+                    words = (
+                        f"stopped at t = {place.time:.6g} s: the {axis.variable} of {one.stated.on} leaves its table "
+                        f"of torques, which goes from {span}; extend it, or write hold = true"
+                    )
+                    return Outcome(False, "beyond the table", words)
+        return None
+
+    # The rotation that goes with the line.
+
+    def _following(self, place: Place) -> Place:
+        """The same place, observed from a rotation that goes with the line."""
+        if not self.free:
+            return place
+        n = self.topo.size
+        angle, rate = (float(self.share @ part) for part in (place.state[:n], place.state[n : 2 * n]))
+        state = place.state.copy()
+        state[:n] -= self.turning * angle
+        state[n : 2 * n] -= self.turning * rate
+        place = replace(place, state=state, angle=place.angle + angle, speed=place.speed + rate, acceleration=0.0)
+        self._write(place)
+        gained = self._rates(place)[n : 2 * n]
+        return replace(place, acceleration=float(self.share @ gained))
+
+    def _after(self, place: Place, trajectory: Trajectory) -> Place:
+        since = trajectory.time - place.time
+        return replace(
+            place,
+            time=trajectory.time,
+            state=trajectory.final[0].copy(),
+            angle=place.angle + (place.speed + place.acceleration * since / 2) * since,
+            speed=place.speed + place.acceleration * since,
+            regime=trajectory.final_regime,
+        )
+
+    def _rates(self, place: Place) -> Array:
+        """Rates of all states; what the right-hand side leaves in its room to work in stays in the numbers."""
+        out = np.empty(len(place.state))
+        kernel().call_rate(self.equations.rate, place.time, place.state, self.numbers, 0, place.regime, out)
+        return out
+
+    def _write_course(self, place: Place) -> None:
+        core = self.core
+        self.numbers[[core.THETA, core.OMEGA, core.ALPHA, core.SINCE]] = (
+            place.angle, place.speed, place.acceleration, place.time,
+        )  # fmt: skip
+
+    def _write(self, place: Place) -> None:
+        """What the right-hand side reads from ``place`` on."""
+        core, at, per = self.core, self.applied_at, self.core.PER_APPLIED
+        self._write_course(place)
+        for one, cell in zip(self.torques, self.cells, strict=True):
+            self.numbers[at : at + per] = one.row(cell)
+            at += per
+        for friction in self.frictions:
+            self.numbers[at : at + per] = friction.row(place.time, place.senses.get(friction.first, 0.0))
+            at += per
+        for first in self.groups:
+            stands = place.senses.get(first, 1.0) == 0.0
+            self.numbers[core.HEAD + first * core.PER_STATION + core.STANDS] = float(stands)
+
+    # Dry friction.
+
+    def _settled(self, place: Place) -> dict[int, float]:
+        """Senses in which the groups with friction turn when a run begins."""
+        senses: dict[int, float] = {}
+        self._write_course(place)
+        for first in self.groups:
+            speed = self._of_station(place, first)[1]
+            known = place.senses.get(first)
+            if known is not None and (known != 0.0) == (speed != 0.0):
+                senses[first] = known
+            elif speed != 0.0:
+                senses[first] = float(np.sign(speed))
+            else:
+                senses = self._settle(replace(place, senses=senses), first, senses).senses
+        return senses
+
+    def _settle(self, place: Place, first: int, senses: dict[int, float]) -> Place:
+        """A group at rest: it stands, or sets off the way it is pulled."""
+        i = int(self.topo.unknown_of[first])
+        state = place.state.copy()
+        state[self.topo.size + i] = -self.topo.mean_speeds[first] * place.speed
+        place = replace(place, state=state, senses={**senses, first: 0.0})
+        self._write(place)
+        pulled, most = self._pull(place, first)
+        senses = {**senses, first: 0.0 if abs(pulled) <= most[0] and most[0] > 0 else float(np.sign(pulled))}
+        return replace(place, senses=senses)
+
+    def _pull(self, place: Place, first: int) -> tuple[float, tuple[float, float]]:
+        """Torque [N m] on a group that stands, friction aside; what friction at rest bears and its slope [N m/s]."""
+        self._rates(place)
+        count, scratch = len(self.topo.stations), int(self.core.places(self.numbers)[3])
+        pulled = self.numbers[scratch + 5 * count + 3 * self.topo.size + int(self.topo.unknown_of[first])]
+        bears = [0.0, 0.0]
+        for one in self.groups[first]:
+            carried = abs(self.numbers[scratch + 2 * count + one.station]) * one.stated.at_rest
+            for k, part in enumerate(one.share(place.time)):
+                bears[k] += carried * part
+        return float(pulled), (bears[0], bears[1])
+
+    # What is watched.
+
+    def _watched(self, place: Place) -> list[_Watched]:
+        core, found = watch_kernel(), list[_Watched]()
+        for k, one in enumerate(self.torques):
+            for i, axis in enumerate(one.axes):
+                if axis.variable == "time":
+                    continue
+                kind = core.STATION_SPEED if axis.variable == "speed" else core.STATION_ANGLE
+                low, high = axis.ends(self.cells[k][i])
+                inner = axis.inner(self.cells[k][i])
+                beside = BESIDE * (axis.knots[inner + 1] - axis.knots[inner])
+                for end, step in ((low, -1), (high, 1)):
+                    if np.isfinite(end):
+                        level = (0.0, end + step * beside, 0.0, 0.0, 0.0)
+                        found.append(
+                            _Watched(kind, one.station, one.sense, level, step, True, self._stepped(k, i, step))
+                        )
+        for first, sense in place.senses.items():
+            if sense:
+                stopped = self._stopped(first)
+                found.append(_Watched(core.STATION_SPEED, first, sense, (0.0,) * 5, -1, True, stopped))
+                continue
+            _, (bears, slope) = self._pull(place, first)
+            level = (place.time, bears, slope, 0.0, 0.0)
+            unknown = int(self.topo.unknown_of[first])
+            for way in (1.0, -1.0):
+                found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
+        if self.mean_speed is not None:
+            level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
+            found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
+        return found + [self._asked(one) for one in self.crossings]
+
+    def _stepped(self, torque: int, axis: int, step: int) -> Callable[[Place], Place]:
+        """A torque comes to the next piece of its table."""
+
+        def act(place: Place) -> Place:
+            self.cells[torque][axis] += step
+            return place
+
+        return act
+
+    def _stopped(self, first: int) -> Callable[[Place], Place]:
+        """A group comes to rest."""
+        return lambda place: self._settle(place, first, place.senses)
+
+    def _let_go(self, first: int, way: float) -> Callable[[Place], Place]:
+        """A group that stood sets off."""
+        return lambda place: replace(place, senses={**place.senses, first: way})
+
+    def _asked(self, one: LevelCrossing) -> _Watched:
+        core, way = watch_kernel(), {"rising": 1, "falling": -1, "either": 2}[one.direction]
+        level = (0.0, one.level, 0.0, 0.0, 0.0)
+        if one.key in ("speed", "angle"):
+            station = disk_station(self.line.assembly, one.of, "crossing")
+            kind = core.STATION_SPEED if one.key == "speed" else core.STATION_ANGLE
+            sense = float(np.sign(self.topo.mean_speeds[station]))
+            return _Watched(kind, station, sense, level, way, one.ends, None, self._said(one))
+        place = self.line.assembly.line.index(one.of)
+        spring = next(e for e, c in enumerate(self.topo.compliances) if place in c.shafts)
+        kind = {"torque": core.TORQUE, "twist": core.TWIST, "slip": core.TWIST_RATE}[one.key]
+        return _Watched(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
+
+    def _said(self, one: LevelCrossing) -> str:
+        """The label, speeds in the unit of the line."""
+        if LevelCrossing.quantity_of(one.key) is not SPEED:
+            return one.label
+        return one.label.replace(f"{one.level:.6g} rad/s", about_speed(one.level, self.unit))
+
+    def _watch(self, watched: list[_Watched]) -> Watch | None:
+        if not watched:
+            return None
+        core = watch_kernel()
+        called = any(one.kind in (core.TORQUE, core.ON_UNKNOWN) for one in watched)
+        rows = [[one.kind, one.of, one.factor, *one.level] for one in watched]
+        first = core.FRONT + core.PER_WATCHED * len(rows)
+        head = [len(rows), self.equations.rate, float(called), first]
+        room = np.zeros(2 * self.equations.size + 2 * len(rows))
+        return Watch(
+            core.line_watch.address,
+            np.concatenate([head, np.ravel(rows), self.numbers, room]),
+            np.array([one.direction for one in watched], dtype=np.int64),
+            np.array([int(one.stops) for one in watched], dtype=np.int64),
+        )

@@ -1,0 +1,122 @@
+"""``transient``: what happens when torques act on a line over time, speed or angle, from any speed or from rest."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import operating_speed
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.loads import refuse_curves
+from trunnion.equations.steady_base import imbalance
+from trunnion.errors import InputError
+from trunnion.motion.simulation.simulate import positive_time
+from trunnion.motion.transients.prepare import actions_of, driven_line, follow
+from trunnion.motion.transients.result import Transient
+from trunnion.motion.transients.stepping import Place
+from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
+from trunnion.waiting import keeps_time
+
+
+@keeps_time
+def transient(
+    line: Driveline | Assembly,
+    duration: float | Scenario | str | None = None,
+    *,
+    torque: Sequence[AppliedTorque] = (),
+    friction: Sequence[FrictionTorque] = (),
+    crossing: Sequence[LevelCrossing] = (),
+    speed: float | str | None = None,
+    phase: float = 0.0,
+    start: ArrayLike | None = None,
+    tolerance: float = TOLERANCE,
+    most_steps: int = MOST_STEPS,
+    within: float | None = None,
+) -> Transient:
+    """Follow a line while torques act on its disks: starts, blows, faults, brakes.
+
+    Parameters
+    ----------
+    line : a ``Driveline`` (or its ``Assembly``).
+    duration : [s]; or a ``Scenario``, or the name of one of the line's, which says all that follows.
+    torque : what acts over time, speed or angle; several on one disk add up, and come to what the description puts
+        there. A disk with a drive_share that is given a torque is driven by that instead.
+    friction : dry friction that resists disks and keeps them at rest.
+    crossing : levels that are watched; the run ends at the first that ``ends``.
+    speed : of the input when it begins [rad/s], by default the file's operating speed; 0 is standstill and negative
+        turns backwards. Drives with a share go on giving what balances the loads at that speed.
+    phase : angle [rad] of the input when it begins.
+    start : initial state (2n,): deviations [rad] from uniform rotation at t = 0 and their rates [rad/s]; by default
+        turning evenly, twisted by the loads where they balance, and without twist elsewhere.
+    tolerance : error allowed per step.
+    most_steps : steps after which the run ends.
+    within : seconds of computing after which it ends with what it has.
+
+    Returns
+    -------
+    Transient; its ``outcome`` says how it ended, and a failure keeps what was computed.
+
+    Raises
+    ------
+    InputError : no duration; a torque, friction or crossing where there is nothing for it; times beyond a table; some
+        drives with a share given a torque and others not; an excitation that varies with speed.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> disks = tn.Disk(name="motor", inertia=0.5), tn.Disk(name="mill", inertia=2.0)
+    >>> line = tn.Driveline([disks[0], tn.Shaft(stiffness=2e4, damping=4.0), disks[1]])
+    >>> blow = tn.AppliedTorque(on="mill", time=[0, 0.1, 0.15], torque=[0, -300, 0], between="steps")
+    >>> run = tn.transient(line, 0.3, torque=[blow], speed=100.0)
+    >>> run.outcome.kind, round(float(run.whole.speed(0.3)[0]), 6), run.energy.error < 1e-8
+    ('reached', 94.0, True)
+    """
+    description = line.line if isinstance(line, Assembly) else line
+    name = ""
+    if isinstance(duration, str):
+        duration = description.scenario(duration)
+    if isinstance(duration, Scenario):
+        scenario = duration
+        if torque or friction or crossing:
+            raise InputError("says what acts by itself", key="scenario", value=scenario.name, remedy="give a duration")
+        duration, name = scenario.duration, scenario.name
+        torque, friction, crossing = scenario.torque, scenario.friction, scenario.crossing
+        speed = scenario.speed if speed is None else speed
+    length = positive_time(duration, "give seconds, or the name of a scenario")
+    asked = actions_of(torque, friction, crossing)
+    changed = driven_line(description, asked)
+    begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
+    if not np.isfinite(begin):
+        raise InputError("must be finite", key="speed", value=begin)
+    prepared = line_system(changed, abs(begin), leaves=True, slips=True)
+    refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
+    if not prepared.assembly.topology.free and not begin > 0:
+        raise InputError(
+            "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
+            remedy="leave out the ConstantSpeed, so that the line starts by its torques",
+        )  # fmt: skip
+    for one in prepared.torques:
+        one.refuse_change()
+    angle = one_number(phase, "phase", "np.pi / 2, say")
+    place = Place(0.0, _start(prepared, start, begin, angle), angle=angle, speed=begin)
+    found = follow(prepared, place, length, asked, tolerance, most_steps)
+    return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
+
+
+def _start(prepared: LineSystem, start: ArrayLike | None, speed: float, angle: float) -> Any:
+    if start is not None:
+        return prepared.system.checked_start(start)
+    assembly = prepared.assembly
+    loaded = speed != 0 and not imbalance(assembly, assembly.table(1, abs(speed)))[0]
+    state = prepared.twisted(angle) if loaded else prepared.rest(angle)
+    if speed <= 0:  # joints turn backwards, or not at all
+        n = assembly.topology.size
+        state[n : 2 * n] *= -1.0 if speed < 0 else 0.0
+    return state
