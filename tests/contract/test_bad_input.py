@@ -92,6 +92,12 @@ def driving(*ends):
     return Driveline([ends[0], Shaft(stiffness=1e4, damping=2.0), *ends[1:]])
 
 
+DRAWN = {
+    "throw_stiffness": [], "journal_diameter": 0.06, "journal_length": 0.03, "pin_diameter": 0.05, "pin_length": 0.03,
+    "web_thickness": 0.02, "web_width": 0.08, "shear_modulus": 8e10,
+}  # fmt: skip
+
+
 def engine(**changes):
     """Of four cylinders; its pressure, where it has one, is 2 bar but for what is changed."""
     curve = {key: changes.pop(key) for key in ("angles", "pressures") if key in changes}
@@ -356,6 +362,27 @@ PYTHON = [
     (lambda: engine(throw_stiffness=[]), "Engine.throw_stiffness = []: is missing", "rigid = true"),
     (lambda: engine(throw_stiffness=[1] * 4), "Engine.throw_stiffness = [1, 1, 1, 1]: must be one for all", "shaft"),
     (lambda: engine(damping=1, loss_factor=0.1), "Engine.damping = 1: stands beside loss_factor", "leave one"),
+    (lambda: engine(pin_length=0.03), "Engine.pin_length = 0.03: stands beside throw_stiffness", "leave one"),
+    (
+        lambda: engine(throw_stiffness=[], pin_length=0.03),
+        "Engine.journal_diameter: is missing beside pin_length",
+        "web_width",
+    ),
+    (
+        lambda: engine(**DRAWN | {"pin_bore": 0.2, "stroke": 0.09}),
+        "Engine.pin_bore = 0.2: must be smaller than pin_diameter",
+        "units",
+    ),
+    (
+        lambda: engine(**DRAWN, stroke=0.09, stiffness_formula="holzer"),
+        "Engine.stiffness_formula = 'holzer': is no formula",
+        "ker wilson",
+    ),
+    (
+        lambda: engine(**DRAWN | {"web_thickness": 1e-6}, stiffness_formula="ker wilson", stroke=0.01),
+        "Engine.stiffness_formula = 'ker wilson': give a throw without stiffness",
+        "carter",
+    ),
     (lambda: engine(loss_factor_frequency=9), "Engine.loss_factor: is missing beside loss_factor_frequency", "0.02"),
     (lambda: engine(stroke=0.4, rod_length=0.2), "Engine.rod_length = 0.2: is no longer than the crank", "200 mm"),
     (lambda: engine(reciprocating_mass=1), "Engine.stroke: is missing beside reciprocating_mass", "rod_length"),

@@ -304,3 +304,31 @@ def test_assess_finds_the_worst_cylinder():
     assert line.with_load("towing, engine cylinder 2 cut out").elements[-1].load_torque == 4e3
     with pytest.raises(tn.InputError, match="is not a load case"):
         line.with_load("engine cylinder 9 misfiring")
+
+
+def test_stiffness_from_dimensions():
+    """Carter and Ker Wilson by hand; a throw without webs and pins is near the plain shaft that it then is."""
+    sizes = {
+        "journal_diameter": 0.06, "journal_length": 0.03, "pin_diameter": 0.05, "pin_bore": 0.02, "pin_length": 0.032,
+        "web_thickness": 0.02, "web_width": 0.09, "shear_modulus": 8e10, "stroke": 0.09,
+    }  # fmt: skip
+    journal, pin, web = 0.06**4, 0.05**4 - 0.02**4, 0.02 * 0.09**3
+    by_hand = {
+        "carter": 0.046 / journal + 0.024 / pin + 0.0675 / web,
+        "ker wilson": 0.054 / journal + 0.052 / pin + 0.023 / web,
+    }
+    for formula, yields in by_hand.items():
+        one = engine(throw_stiffness=[], stiffness_formula=formula, **sizes)
+        shafts = [e for e in one.made_of("engine") if isinstance(e, tn.Shaft)]
+        assert [s.stiffness for s in shafts] == pytest.approx([np.pi * 8e10 / 32 / yields] * 5, rel=1e-12)
+    line = ship(one)
+    stiffer = line.replace("engine.crank 2-3", stiffness=2e6).as_stated.elements[0]
+    assert stiffer.journal_diameter is None and stiffer.throw_stiffness[1] == 2e6
+    heavier = line.replace("engine.throw 2", inertia=5.0).as_stated.elements[0]
+    assert heavier.journal_diameter == 0.06 and heavier.throw_inertia[1] == 5.0
+    assert tn.loads(tn.dumps(line)) == line
+    plain = engine(
+        throw_stiffness=[], **sizes | {"pin_bore": 0.0, "pin_length": 1e-6, "web_thickness": 0.1, "web_width": 9}
+    )
+    shaft = tn.Shaft(outer_diameter=0.06, length=0.03 + 0.08, shear_modulus=8e10)
+    assert plain.stiffnesses[0] == pytest.approx(shaft.torsional_stiffness, rel=1e-3)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.composite import Composite
+from trunnion.driveline.crank_throw import FORMULAS, CrankThrow, throw_stiffness
 from trunnion.driveline.cylinders import MOST_ORDERS, reciprocating_mass
 from trunnion.driveline.elements import Disk, Doubt, Element, not_negative, positive
 from trunnion.driveline.excitation import Excitation, Excitations
@@ -57,6 +58,8 @@ ROUNDING = 1e-12
 """Share of the largest below which a harmonic is rounding."""
 DISTINCT = 1e-6
 """Share of the largest mean torque by which those of two curves have to differ."""
+CRANK = ("journal_diameter", "journal_length", "pin_diameter", "pin_length", "web_thickness", "web_width")
+"""Dimensions that the stiffness of a throw follows from, besides the stroke."""
 _ORDER = 'write firing_order = "1-5-3-6-2-4", say'
 
 
@@ -116,6 +119,10 @@ class Engine(Composite):
     throw_inertia : of a throw with the rotating part of its rods [kg m²], one for all or one for each; without
         reciprocating masses, whose mean is added where they are stated.
     throw_stiffness : of the crank from one throw to the next [N m/rad], one for all or one for each.
+    journal_diameter, journal_bore, journal_length, pin_diameter, pin_bore, pin_length, web_thickness, web_width : or
+        else dimensions of a throw [m], bores 0 by default, with its stroke and
+    shear_modulus : G [Pa].
+    stiffness_formula : "carter" or "ker wilson", see ``trunnion.driveline.crank_throw``; check your edition.
     damping, loss_factor, loss_factor_frequency : of these shafts, as of a ``Shaft``.
     rigid : all throws as one inertia.
     bore, stroke, rod_length : of a cylinder, and of its rod between the centres [m].
@@ -164,6 +171,22 @@ class Engine(Composite):
     )  # fmt: skip
     throw_stiffness: Annotated[OneOrSeveral[Stiffness], BeforeValidator(_one_or_each("0.6 MN*m/rad"))] = optional(
         default=(), description="from one throw to the next; one for all, or one for each", json_schema_extra=_also_one
+    )
+    journal_diameter: Maybe[Length] = optional(default=None, description="of the crank; or give throw_stiffness")
+    journal_bore: Length = optional(default=0.0, description="of a journal; 0 is solid")
+    journal_length: Maybe[Length] = optional(default=None, description="of a journal between two webs")
+    pin_diameter: Maybe[Length] = optional(default=None, description="of a crank pin")
+    pin_bore: Length = optional(default=0.0, description="of a crank pin; 0 is solid")
+    pin_length: Maybe[Length] = optional(default=None, description="of a crank pin between two webs")
+    web_thickness: Maybe[Length] = optional(default=None, description="of a web, along the crank")
+    web_width: Maybe[Length] = optional(default=None, description="of a web")
+    shear_modulus: Maybe[Pressure] = optional(default=None, description="of the crank, where its dimensions are given")
+    stiffness_formula: Annotated[
+        str, BeforeValidator(one_of(tuple(FORMULAS), "is no formula", 'write "carter" or "ker wilson"'))
+    ] = Field(
+        default="carter",
+        json_schema_extra={"enum": list(FORMULAS)},
+        description="of a throw's stiffness by its dimensions",
     )
     damping: Damping = optional(default=0.0, description="of the crank between two throws")
     loss_factor: Maybe[Dimensionless] = optional(default=None, description="of the crank, instead of damping")
@@ -227,8 +250,14 @@ class Engine(Composite):
     def _check_crank(self) -> None:
         if not self.throw_inertia:
             raise InputError("is missing", key="throw_inertia", remedy='write throw_inertia = "0.02 kg*m^2", say')
-        if not self.throw_stiffness and not self.rigid and self.throws > 1:
-            remedy = 'write throw_stiffness = "0.6 MN*m/rad", say, or rigid = true'
+        drawn = [key for key in (*CRANK, "shear_modulus") if getattr(self, key) is not None]
+        if drawn and self.throw_stiffness:
+            value, remedy = getattr(self, drawn[0]), "leave one of the two out"
+            raise InputError("stands beside throw_stiffness", key=drawn[0], value=value, remedy=remedy)
+        if drawn:
+            self._check_drawing(drawn[0])
+        elif not self.throw_stiffness and not self.rigid and self.throws > 1:
+            remedy = f'write throw_stiffness = "0.6 MN*m/rad", say, rigid = true, or {", ".join(CRANK)}'
             raise InputError("is missing", key="throw_stiffness", remedy=remedy)
         for key, kind, count in (
             ("throw_inertia", INERTIA, self.throws), ("throw_stiffness", STIFFNESS, self.throws - 1)
@@ -248,6 +277,36 @@ class Engine(Composite):
             )
         if self.loss_factor is None and self.loss_factor_frequency is not None:
             raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
+
+    def _check_drawing(self, given: str) -> None:
+        self._needs(given, *CRANK, "shear_modulus", "stroke")
+        positive(self, *CRANK, "shear_modulus", "stroke")
+        for part in ("journal", "pin"):
+            bore, outer = getattr(self, f"{part}_bore"), getattr(self, f"{part}_diameter")
+            if not 0 <= bore < outer:
+                problem = f"must be smaller than {part}_diameter = {outer:g} m, and not negative"
+                raise InputError(problem, key=f"{part}_bore", value=bore, remedy="check the units")
+        if not FORMULAS[self.stiffness_formula](self._drawn) > 0:
+            remedy = 'check them, or write stiffness_formula = "carter"'
+            raise InputError("give a throw without stiffness", key="stiffness_formula", remedy=remedy)
+
+    @property
+    def _drawn(self) -> CrankThrow:
+        numbers = {key: float(getattr(self, key)) for key in (*CRANK, "journal_bore", "pin_bore")}
+        return CrankThrow(radius=float(self.stroke or 0.0) / 2, **numbers)
+
+    @property
+    def stiffness_of_throw(self) -> float | None:
+        """Stiffness [N m/rad] from one throw to the next that follows from dimensions; None without them."""
+        if self.shear_modulus is None:
+            return None
+        return throw_stiffness(self._drawn, self.shear_modulus, self.stiffness_formula)
+
+    @property
+    def stiffnesses(self) -> tuple[float, ...]:
+        """Stiffness [N m/rad] of every shaft between two throws, as stated or as it follows."""
+        drawn = self.stiffness_of_throw
+        return self._each(self.throw_stiffness if drawn is None else (drawn,), self.throws - 1)
 
     def _check_cylinder(self) -> None:
         positive(self, "bore", "stroke", "rod_length", "reciprocating_mass", "crankcase_pressure")
@@ -378,7 +437,7 @@ class Engine(Composite):
             every = tuple(range(1, len(self.firing_order) + 1))
             return (self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, self.after),)
         found: list[Element] = []
-        share, stiffnesses = self.drive_share / self.throws, self._each(self.throw_stiffness, self.throws - 1)
+        share, stiffnesses = self.drive_share / self.throws, self.stiffnesses if self.throws > 1 else ()
         for j, (inertia, cylinders) in enumerate(zip(inertias, self.on_throws, strict=True), start=1):
             if j > 1:
                 found.append(
@@ -402,9 +461,13 @@ class Engine(Composite):
             was if new.inertia == old.inertia else was + float(new.inertia or 0) - float(old.inertia or 0)
             for was, new, old in zip(inertias, disks, own, strict=True)
         ]
+        changes: dict[str, Any] = {"throw_inertia": _short(moved)}
         stiffnesses = [float(one.stiffness or 0) for one in elements if isinstance(one, Shaft)]
+        if stiffnesses and tuple(stiffnesses) != self.stiffnesses:
+            changes |= dict.fromkeys((*CRANK, "journal_bore", "pin_bore", "shear_modulus", "stiffness_formula"))
+            changes["throw_stiffness"] = _short(stiffnesses)
         try:
-            found = self.but(throw_inertia=_short(moved), throw_stiffness=_short(stiffnesses))
+            found = self.but(**changes)
         except InputError:
             return None
         alike = zip(elements, found.made_of(name), strict=True)

@@ -373,7 +373,7 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
         with warnings.catch_warnings():
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
-            for key in _TABLES:
+            for key in TABLES:
                 if place_of is not None and isinstance(named := data.get(key), str):
                     data[key] = _table_of(key, named, place_of)
             element = KINDS[kind](**data)
@@ -385,7 +385,7 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
     return element
 
 
-_TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
+TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
     "excitation": read_excitation,
     "gas_torque": read_excitation,
     "pressure": read_pressure,
@@ -398,7 +398,7 @@ _TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
 def _table_of(key: str, named: str, place_of: Place) -> tuple[Record, ...]:
     """What the table holds that an element names; complaints say the place in the table, about that element."""
     try:
-        return _TABLES[key](place_of(named))
+        return TABLES[key](place_of(named))
     except InputError as error:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"

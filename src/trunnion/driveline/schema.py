@@ -11,7 +11,7 @@ from trunnion.driveline.clutches import Slider
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.excitation import Excitation
-from trunnion.driveline.files import FORMAT
+from trunnion.driveline.files import FORMAT, TABLES
 from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
@@ -224,6 +224,8 @@ def _tolerance() -> dict[str, Any]:
 def _element(name: str) -> dict[str, Any]:
     schema = _model(KINDS[name])
     schema["properties"] = {"type": {"const": name}, **schema["properties"]}
+    for key in TABLES.keys() & schema["properties"].keys():
+        schema["properties"][key] = _or_a_file(schema["properties"][key])
     schema["required"] = ["type", *schema.get("required", [])]
     return schema | _RULES.get(name, {})
 
@@ -235,6 +237,12 @@ def _model(model: type[BaseModel]) -> dict[str, Any]:
     schema["description"] = (model.__doc__ or "").strip().partition("\n")[0]
     schema["properties"] = {key: _not_null(value) for key, value in schema["properties"].items()}
     return schema
+
+
+def _or_a_file(field: dict[str, Any]) -> dict[str, Any]:
+    """A list of tables, or the name of a CSV file that holds them."""
+    listed = {key: field.pop(key) for key in ("type", "items") if key in field}
+    return {"anyOf": [listed, {"type": "string", "pattern": r"\.[cC][sS][vV]$"}], **field}
 
 
 def _not_null(field: dict[str, Any]) -> dict[str, Any]:

@@ -29,7 +29,6 @@ from trunnion.equations.coefficients import Assembly, mesh_harmonics
 from trunnion.equations.graph_matrices import turning_of
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.loads import own_load
 from trunnion.equations.topology import Mesh, Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
@@ -122,9 +121,8 @@ class DiskTorque(LineHarmonic):
         return where(self.law, self._running(assembly, table))
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
-        topo, column = assembly.topology, assembly.packed.column
-        speed = table[:, 0] * abs(float(topo.speed_ratio[self.station]))
-        return Running(speed, lambda: -own_load(topo, column, table, self.element))
+        speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
+        return Running(speed, lambda: -assembly.own_load(self.element, table))
 
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         s = self.station

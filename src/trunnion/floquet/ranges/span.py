@@ -167,10 +167,15 @@ class Span:
         return np.concatenate(parts, axis=1)
 
     def _tables(self, table: Array) -> Iterator[tuple[Excitation, str, Array]]:
-        """Every excitation that acts and has a table, its disk, and where the rows of ``table`` read it (case,)."""
-        for one in disk_torques(self.assembly):
-            if one.law.points and not one.prescribed:
-                yield one.law, one.name, one.place(self.assembly, table)
+        """Every excitation that acts and has a table, its disk, and where the rows of ``table`` read it (case,); of
+        those of a disk whose tables have the same points one."""
+        read = {
+            (one.element, one.law.points, bool(one.law.torques)): one
+            for one in reversed(disk_torques(self.assembly))
+            if one.law.points and not one.prescribed
+        }
+        for one in reversed(read.values()):
+            yield one.law, one.name, one.place(self.assembly, table)
 
     def _uncovered(self, speed: float) -> str:
         """Why nothing can be computed at a speed; empty where it can."""
