@@ -109,6 +109,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "springs": tables.spring_table(contents),
         "modes": Table.of(seen.natural_frequencies.table(frequency_unit(seen.unit))),
         "holzer": [(_mode_title(one), *tables.holzer_table(contents, one)) for one in contents.holzer],
+        "engines": tables.engines(contents),
         "excitations": tables.excitations(contents),
         "powers": tables.powers(contents),
         "crossings": tables.crossings(contents),

@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.design.assessment.check import Check, Status
 from trunnion.driveline.elements import Disk
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.modes.mass_elastic import HolzerTable, masses, springs
@@ -176,7 +177,14 @@ def excitations(contents: SubmissionContents) -> Table:
 
 def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str]]:
     line = contents.seen.line
+    engines = {name: one for name, one in line.as_stated.parts if isinstance(one, Engine)}
+    seen: set[str] = set()
     for name, element in line.parts:
+        engine = name.partition(".")[0]
+        if engine in engines and engine in seen:  # another throw, which turns the phases of the first by its firing
+            continue
+        seen.add(engine)
+        called = f"{engine}, each cylinder" if engine in engines else name
         for one in element.excitation if isinstance(element, Disk) else ():
             size = (
                 f"{four(one.amplitude)} N·m"
@@ -186,15 +194,40 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
                 else f"table of {len(one.amplitudes)} points up to {four(max(one.amplitudes, default=0.0))} N·m"
             )
             phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
-            yield name, order_name(one.order or 0.0, one.frequency or 0.0), size, phase
-        if isinstance(element, Disk) and element.firing_angles:
+            yield called, order_name(one.order or 0.0, one.frequency or 0.0), size, phase
+        if isinstance(element, Disk) and element.firing_angles and engine not in engines:
             angles = ", ".join(four(float(np.rad2deg(angle))) for angle in element.firing_angles)
             yield name, f"{len(element.firing_angles)} cylinders", "each as above", f"firing at {angles}"
         if hasattr(element, "angle") and element.angle:
             angle = four(float(np.rad2deg(element.angle)))
             orders = getattr(element, "orders", ())
-            called = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
-            yield name, f"{element.kind}, {called if orders else 'even'}", f"{angle}° bend", ""
+            counted = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
+            yield name, f"{element.kind}, {counted if orders else 'even'}", f"{angle}° bend", ""
+
+
+def engines(contents: SubmissionContents) -> Table | None:
+    """Cylinder data of every engine, as stated."""
+    found = [(name, one) for name, one in contents.seen.line.as_stated.parts if isinstance(one, Engine)]
+    return Table.of(_engine(name, one) for name, one in found) if found else None
+
+
+def _engine(name: str, engine: Engine) -> dict[str, object]:
+    def millimetres(length: float | None) -> float:
+        return np.nan if length is None else 1e3 * length
+
+    mass = engine.reciprocating_mass
+    return {
+        "engine": name,
+        "strokes": engine.strokes,
+        "cylinders": len(engine.firing_order),
+        "firing order": "-".join(map(str, engine.firing_order)),
+        "firing at [°]": ", ".join(four(float(np.rad2deg(angle))) for angle in engine.firing_angles),
+        "bank angle [°]": np.nan if engine.bank_angle is None else float(np.rad2deg(engine.bank_angle)),
+        "bore [mm]": millimetres(engine.bore),
+        "stroke [mm]": millimetres(engine.stroke),
+        "rod [mm]": millimetres(engine.rod_length),
+        "reciprocating mass [kg]": np.nan if mass is None else float(mass),
+    }
 
 
 def powers(contents: SubmissionContents) -> Table:
