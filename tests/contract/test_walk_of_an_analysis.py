@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from walks import Walk, shown
 
 NAME = "energy_share"
@@ -49,6 +50,7 @@ assert "Springs whose share stays below it are left out." in trunnion("energy-sh
 """
 
 
+@pytest.mark.slow
 def test_an_analysis_changes_at_most_eight_files(tmp_path) -> None:
     walk = Walk(tmp_path / "copy")
     for path in NEW:
