@@ -158,7 +158,9 @@ class LoadCaseResponse:
         """Whether the periodic steady state of every speed is taken, over a range."""
         if self.given or self.rough or self.known is not None or not self.low < self.high or not self.costly:
             return False
-        return not lossy(self.assembly) and self.motions is not None and not self.motions.obstacle
+        if lossy(self.assembly) or self.assembly.topology.dragged or self.motions is None:  # the checks say so
+            return False
+        return not self.motions.obstacle
 
     def _lost(self, span: Span) -> tuple[Gap, ...]:
         """Speeds at which the line's periodic steady state breaks off."""
