@@ -147,7 +147,7 @@ def test_lines_without_a_linear_response_are_reported_without_its_findings() -> 
 
 
 def test_a_ring_without_a_spring_leaves_open_what_it_leaves_open() -> None:
-    """No periodic motion of a free–free line with joint angles is the only one: nothing is judged, and nothing fails."""
+    """No periodic motion of a free–free line with joint angles is the only one: it is not judged, and nothing fails."""
     line = tn.Driveline(
         [
             tn.Disk(inertia=3.0, name="engine", drive_share=1, excitation=[{"order": 3, "amplitude": 100.0}]),
@@ -158,7 +158,7 @@ def test_a_ring_without_a_spring_leaves_open_what_it_leaves_open() -> None:
             tn.Shaft(stiffness=4e4, damping=5.0, name="tube"),
             tn.Disk(inertia=2.0, viscous_load=1.0),
         ],
-        limits=[tn.Limit("tube", vibratory_torque=400.0)],
+        limits=[tn.Limit(of="tube", vibratory_torque=400.0)],
         operation=tn.Operation(speed="900 rpm", speed_range=("600 rpm", "1200 rpm")),
     )
     found = tn.assess(line)
