@@ -268,3 +268,39 @@ def test_a_mean_speed_that_nothing_keeps_is_said() -> None:
     assert not tn.stability(line(tn.Disk(inertia=MOTOR, drive_share=1), generator), 100.0).verdict.name == "STABLE"
     kept = tn.order_response(line(tn.Motor(inertia=MOTOR, gain=9.0, drive_share=1), generator), [100.0, 140.0])
     assert not [one for one in kept.findings if "Nothing keeps" in str(one)]
+
+
+def test_a_motor_tied_rigidly_to_its_load() -> None:
+    """Torques that cancel on one shaft balance as they do through a spring; what is left over is still refused."""
+    motor = tn.Motor(name="motor", inertia=1.0, breakdown_torque=300.0, breakdown_slip=0.1, synchronous_speed=157.0)
+    fan = tn.Fan(name="fan", inertia=1.0, quadratic_load=0.005)
+    encoder = [tn.Shaft(stiffness=1e4, damping=1.0), tn.Disk(inertia=0.01)]
+    for elements in ([motor, fan], [motor, fan, *encoder], [motor, tn.Ratio(ratio=3), fan, *encoder]):
+        tied = tn.Driveline(elements)
+        (balance,) = tn.mean_speeds(tied)
+        found = tn.stability(tied)
+        # The whole line turns as one inertia, whose swing dies out by the slope over it; the encoder is light.
+        ratio = 1 / 3 if len(elements) == 5 else 1.0
+        rate = -balance.slope / (1.0 + ratio**2 * (1.01 if len(elements) > 2 else 1.0))
+        assert found.growth_rate == pytest.approx(rate, rel=2e-3)
+        with pytest.raises(tn.InputError, match=r"loads add up to .* \(fan .*\), the drives to .* \(motor "):
+            tn.stability(tied, 0.99 * balance.speed)
+
+
+def test_the_speed_as_printed_is_the_balance() -> None:
+    """A speed rounded to five figures runs at the balance and says so; one that differs by more is refused."""
+    motor = tn.Motor(inertia=0.45, breakdown_torque=520, breakdown_slip=0.12, synchronous_speed="1500 rpm")
+    fan = tn.Fan(inertia=3.2, rated_power="30 kW", rated_speed="1460 rpm", excitation=[{"order": 8, "share": 0.03}])
+    elements = [motor, tn.Shaft(stiffness="22 kN*m/rad", damping=4), fan]
+    by_itself = tn.Driveline(elements)
+    (own,) = (one.speed for one in tn.mean_speeds(by_itself) if one.stable)
+    assert tn.rpm(1464.5) != own == pytest.approx(tn.rpm(1464.5), rel=1e-6)
+    stated = tn.Driveline(elements, operation=tn.Operation(speed="1464.5 rpm"))
+    with pytest.warns(tn.InputRemark, match=r"operation.speed = .*1464.5 rpm.*: agrees .* 1464.500339 rpm, where"):
+        assert tn.stability(stated).speed == own
+    for near in (tn.rpm(1464.5), own * (1 + 9e-5)):
+        with pytest.warns(tn.InputRemark, match="is taken to run there"):
+            found = tn.order_response(by_itself, [near])
+        assert found.speed.tolist() == [own]
+    with pytest.raises(tn.InputError, match="torques do not balance"):
+        tn.order_response(by_itself, [own * (1 + 2e-4)])

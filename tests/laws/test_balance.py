@@ -59,6 +59,39 @@ def test_all_balances_of_random_curves() -> None:
     assert several > 20 and unstable > 20
 
 
+def test_all_balances_of_several_machines() -> None:
+    """Two to five curves without knots, over all speeds a line may have: asynchronous machines that drive and brake,
+    constant powers, a fan; slips down to 0.002."""
+    rng, several, unstable = np.random.default_rng(4), 0, 0
+    grid = np.unique(np.concatenate([np.geomspace(0.01, 1e5, 6000), np.linspace(20.0, 180.0, 16000)]))
+    for trial in range(160):
+        curves: list[tuple[float, TorqueCurve]] = [(1.0, PowerCurve(rng.uniform(0, 150), 0.0, rng.uniform(5e-4, 0.03)))]
+        for kind in ("MM", "MG", "MP", "MPP", "MMM", "MMG", "MMMM", "MMGP")[trial % 8]:
+            slip = rng.uniform(0.03, 0.3) if trial % 3 else np.geomspace(0.002, 0.03, 9)[rng.integers(9)]
+            kloss = KlossCurve(rng.uniform(200, 800), slip, rng.uniform(60, 160))
+            power = PowerLimit(rng.uniform(1e3, 3e4))
+            curves.append((1.0, {"M": Opposite(kloss), "G": kloss, "P": power}[kind]))
+        left = sum(ratio * curve.value(ratio * grid) for ratio, curve in curves)
+        at = np.flatnonzero(left[:-1] * left[1:] < 0)
+        wanted = [brentq(lambda w, c=curves: torque_left(c, w), grid[i], grid[i + 1], xtol=1e-13) for i in at]
+        found = balances(curves, 0.01, 1e5)
+        assert len(found) == len(wanted), trial
+        np.testing.assert_allclose([one.speed for one in found], wanted, rtol=1e-9)
+        rises = left[at + 1] > left[at]
+        assert [one.stable for one in found] == rises.tolist()
+        several, unstable = several + (rises.sum() > 1), unstable + (~rises).sum()
+    assert several > 20 and unstable > 40
+
+
+def test_equal_motors_share_a_fan() -> None:
+    """As many equal motors as fans: each pair turns as one motor with its fan, whatever their number."""
+    motor, fan = Opposite(KlossCurve(500.0, 0.08, 157.0)), PowerCurve(quadratic=0.015)
+    wanted = brentq(lambda w: torque_left([(1.0, motor), (1.0, fan)], w), 145.0, 157.0, xtol=1e-13)
+    for count in (1, 2, 3, 8):
+        (found,) = balances(count * [(1.0, motor), (1.0, fan)], 0.01, 1e5)
+        assert found.speed == pytest.approx(wanted, rel=1e-12) and found.stable
+
+
 def test_a_fan_on_the_mains() -> None:
     """Kloss with a heavy constant load: one balance on the falling branch, one beyond the breakdown slip."""
     motor, load = KlossCurve(500.0, 0.2, 157.0), PowerCurve(300.0)

@@ -6,6 +6,7 @@ disk or a motor has a ``drive_share`` its controller keeps any speed, and no bal
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from fractions import Fraction
 
@@ -13,12 +14,15 @@ from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import ConstantSpeed, Rotor
 from trunnion.driveline.parts import Dragged, Geared, Jointed, Loose, Part, Prescribed, Sprung, Tied
 from trunnion.driveline.quantities import DAMPING, SPEED, shown
-from trunnion.errors import InputError
+from trunnion.errors import InputError, InputRemark
 from trunnion.laws.balance import TorqueBalance, balances
 from trunnion.laws.torque_curve import TorqueCurve
 
 LOWEST, HIGHEST = 0.01, 1e5
 """Input speeds [rad/s] between which balances are looked for."""
+AS_PRINTED, SAME = 1e-4, 1e-9
+"""Relative differences of a speed from a balance: up to which it is that balance, rounded in print, and up to which
+that is not worth a remark."""
 
 
 def speed_ratios(line: ElementChain) -> list[Fraction]:
@@ -87,6 +91,26 @@ def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:
     1400.0 rpm stable
     """
     return balances(geared_curves(line), LOWEST, HIGHEST)
+
+
+def at_balance(line: ElementChain, speed: float) -> float:
+    """The balance [rad/s] that an input speed means: one that agrees with it to the figures printed, else the speed.
+
+    Says so by an ``InputRemark``.
+    """
+    meant = min((one.speed for one in mean_speeds(line)), key=lambda one: abs(one - speed), default=speed)
+    away = abs(meant - speed)
+    if away > AS_PRINTED * speed:
+        return speed
+    if away > SAME * speed:
+        remark = InputError(
+            f"agrees to the figures printed with {shown(meant, SPEED, 'rpm', 10)}, where the torques of the line "
+            "balance, and the line is taken to run there",
+            element="operation", key="speed", value=shown(speed, SPEED, "rpm", 10),
+            remedy="leave it out and the line runs there by itself",
+        )  # fmt: skip
+        warnings.warn(InputRemark(str(remark)), stacklevel=3)
+    return meant
 
 
 def own_speed(line: ElementChain) -> float:

@@ -6,10 +6,11 @@ import math
 
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.machines import Motor
-from trunnion.driveline.mean_balance import is_left_free, own_speed
+from trunnion.driveline.mean_balance import at_balance, is_left_free, own_speed
 from trunnion.driveline.quantities import SPEED, parse
 from trunnion.errors import InputError
 
@@ -26,14 +27,24 @@ def runs_by_itself(line: Driveline) -> bool:
 
 def known_speed(line: Driveline) -> float | None:
     """The operating speed that the description states [rad/s], or that at which a motor and its loads settle; None of
-    other lines.
+    other lines. A stated speed that agrees to the figures printed with a balance of a motor and its loads is that one.
 
     Raises
     ------
     InputError : a motor and its loads settle nowhere, or at several speeds.
     """
     stated = line.operation.speed if line.operation else None
-    return own_speed(line) if stated is None and runs_by_itself(line) else stated
+    if not runs_by_itself(line):
+        return stated
+    return own_speed(line) if stated is None else at_balance(line, stated)
+
+
+def settled_speeds(line: Driveline, speeds: Array) -> Array:
+    """Input speeds [rad/s], each that agrees to the figures printed with a balance of a motor and its loads moved
+    there."""
+    if not runs_by_itself(line):
+        return speeds
+    return np.array([at_balance(line, float(one)) for one in speeds])
 
 
 def stated_range(line: Driveline) -> tuple[float, float] | None:
@@ -47,7 +58,7 @@ def stated_range(line: Driveline) -> tuple[float, float] | None:
 
 def operating_speed(line: Driveline, speed: float | str | None) -> float:
     """``speed``, a number or a text with its unit, or the operating speed the description gives [rad/s]; without one
-    that at which a motor and its loads settle."""
+    that at which a motor and its loads settle. One that agrees to the figures printed with such a balance is that."""
     if isinstance(speed, str):
         speed = quantity(speed, SPEED, "speed")
     if speed is None:
@@ -66,9 +77,10 @@ def operating_speed(line: Driveline, speed: float | str | None) -> float:
     if not speed > 0 or math.isinf(read := _float(speed)):
         raise InputError("must be positive and finite", key="speed", value=speed, remedy="tn.rpm(1500), say")
     try:
-        return parse(read, SPEED)
+        read = parse(read, SPEED)
     except InputError as error:
         raise error.but(key="speed", value=read) from None
+    return at_balance(line, read) if runs_by_itself(line) else read
 
 
 def _float(number: float) -> float:

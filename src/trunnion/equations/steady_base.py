@@ -10,11 +10,11 @@ from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.graph_matrices import require_fixed_speeds
-from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads
+from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads, own_load
 from trunnion.errors import InputError
 
 BALANCED = 1e-9
-"""Torque left over, relative to the largest load, that counts as none."""
+"""Torque left over, relative to the torques of all disks and machines together, that counts as none."""
 
 
 def require_steady_base(assembly: Assembly, table: Array) -> None:
@@ -109,7 +109,7 @@ def _require_equal_legs(assembly: Assembly, table: Array) -> None:
     load = mean_loads(topo, assembly.packed.column, table)
     felt, legs = loads_on_unknowns(topo, load), topo.rigid[:, int(topo.free) :]
     left = np.abs(felt @ legs).max(initial=0.0)
-    if left > BALANCED * np.abs(load).max(initial=0.0) * np.abs(legs).max(initial=0.0):
+    if left > BALANCED * np.abs(_own_loads(assembly, table)).max(initial=0.0) * np.abs(legs).max(initial=0.0):
         raise InputError(
             "drives legs whose loads differ, so that they turn faster and faster against each other",
             element=assembly.line.names[topo.knot], key="load_torque",
@@ -157,14 +157,15 @@ def imbalance(assembly: Assembly, table: Array) -> Array:
         return np.zeros(len(table))
     torques = _at_input(assembly, table)
     left = torques.sum(axis=1)
-    return np.where(np.abs(left) > BALANCED * np.abs(torques).max(axis=1), left, 0.0)
+    return np.where(np.abs(left) > BALANCED * np.abs(torques).sum(axis=1), left, 0.0)
 
 
 def torques_in_words(assembly: Assembly, row: Array) -> str:
     """What resists and what drives a free line at one row of packed numbers, without a full stop."""
     torques = _at_input(assembly, row[None])[0]
     names = assembly.line.names
-    named = [(names[i], float(torques[s])) for s, i in assembly.topology.disks if torques[s]]
+    pairs = zip(assembly.topology.disks, torques, strict=True)
+    named = [(names[i], float(torque)) for (_, i), torque in pairs if torque]
     resist = ", ".join(f"{name} {torque:.5g}" for name, torque in named if torque > 0)
     drive = ", ".join(f"{name} {-torque:.5g}" for name, torque in named if torque < 0)
     at = f" at {row[0] * 30 / np.pi:.5g} rpm" if np.isfinite(row[0]) else ""
@@ -174,9 +175,16 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
 
 
 def _at_input(assembly: Assembly, table: Array) -> Array:
-    """Mean load torques taken to the input (cases, station) [N m]."""
+    """Mean torques of disks and machines taken to the input (cases, rotor) [N m]."""
     topo = assembly.topology
-    return mean_loads(topo, assembly.packed.column, table) * np.abs(topo.mean_speeds)
+    return _own_loads(assembly, table) * np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
+
+
+def _own_loads(assembly: Assembly, table: Array) -> Array:
+    """Mean torques that disks and machines resist with (cases, rotor) [N m], rigidly tied to each other or not."""
+    topo, column = assembly.topology, assembly.packed.column
+    found = [own_load(topo, column, table, place) for _, place in topo.disks]
+    return np.array(found).reshape(len(found), len(table)).T
 
 
 def _driving(assembly: Assembly, table: Array) -> tuple[int, int]:

@@ -4,8 +4,9 @@ Curves M_i that resist at shafts of speed ratio R_i > 0 balance at the input spe
 
     f(Ω) = Σ R_i M_i(R_i Ω) = 0,
 
-and the balance is stable where f rises: a line that turns a little faster is braked. Between two knots every curve is a
-ratio of polynomials, so f times all denominators is one polynomial, whose roots are all balances.
+and the balance is stable where f rises: a line that turns a little faster is braked. Between two knots f is smooth.
+Pieces are halved there until a polynomial through Chebyshev's points follows f to rounding, and the roots of these
+polynomials (eigenvalues of the colleague matrix, Good, *Quarterly Journal of Mathematics* 12, 1961) are all balances.
 """
 
 from __future__ import annotations
@@ -14,19 +15,29 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Polynomial
+from numpy.polynomial import Chebyshev
+from numpy.polynomial import chebyshev as chebyshev_series
 
-from trunnion.laws.torque_curve import ONE, TorqueCurve
+from trunnion.arrays import Array
+from trunnion.laws.torque_curve import TorqueCurve
 
 Geared = Sequence[tuple[float, TorqueCurve]]
 """Each curve that resists with the speed ratio R > 0 of its shaft."""
-NEAR = 1e-5
+DEGREE, TAIL = 24, 4
+"""Degree of the polynomial over one piece, and how many of its last coefficients tell whether it follows f."""
+FOLLOWED, ROUNDING, ZERO = 1e-11, 1e-14, 1e-9
+"""Shares of the torques: of coefficients at the end of a polynomial that follows f, of f that is rounding alone, and of
+what is left that counts as none."""
+NARROWEST, LEAST = 1e-7, 1e-9
+"""Width over the speed of a piece that is not halved again; the least speed over the highest that is looked at."""
+NEAR = 1e-4
 """How far from the real axis, over half a piece, a root may lie that rounding may have moved off it: a double root."""
-ROUNDING, ZERO = 1e-13, 1e-9
-"""Shares of the torques: of a coefficient that is rounding, and of what is left that counts as none."""
 ALIKE = 1e-7
 """Relative difference of two balances that count as one, at a knot between two pieces."""
 STEPS = 8
+
+_POINTS = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+_TO_SERIES = np.linalg.inv(chebyshev_series.chebvander(_POINTS, DEGREE))
 
 
 @dataclass(frozen=True)
@@ -44,7 +55,7 @@ class TorqueBalance:
 
 def torque_left(curves: Geared, speed: float) -> float:
     """f, the torque [N m] at the input that resists at an input speed [rad/s]; NaN beyond a curve."""
-    return float(sum(ratio * curve.value(ratio * speed) for ratio, curve in curves))
+    return float(_at_input(curves, speed).sum())
 
 
 def slope_left(curves: Geared, speed: float) -> float:
@@ -57,8 +68,8 @@ def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ..
 
     Speeds over a stretch of which the torques balance everywhere are none: nothing there tells one from the other.
     """
-    low = max(low, *(curve.range[0] / ratio for ratio, curve in curves))
     high = min(high, *(curve.range[1] / ratio for ratio, curve in curves))
+    low = max(low, LEAST * high, *(curve.range[0] / ratio for ratio, curve in curves))
     if not low < high:
         return ()
     knots = sorted({knot / ratio for ratio, curve in curves for knot in curve.knots})
@@ -66,7 +77,7 @@ def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ..
     found: list[float] = []
     for first, last in zip(pieces, pieces[1:], strict=False):
         for root in _roots(curves, first, last):
-            if not found or root - found[-1] > ALIKE * high:
+            if not found or root - found[-1] > ALIKE * root:
                 found.append(root)
     return tuple(TorqueBalance(speed, slope_left(curves, speed)) for speed in found)
 
@@ -74,44 +85,46 @@ def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ..
 def _roots(curves: Geared, low: float, high: float) -> Iterator[float]:
     """Rising roots of f between two speeds, no knot between them."""
     middle, half = (low + high) / 2, (high - low) / 2
-    total = _numerator(curves, middle, half)
-    if total.degree() < 1:
+    torques = _at_input(curves, middle + half * _POINTS)
+    acting = np.abs(torques).sum(axis=0).max()
+    if not np.isfinite(acting):
         return
-    for root in sorted(map(complex, total.roots()), key=lambda one: one.real):
+    series = _TO_SERIES @ torques.sum(axis=0)
+    followed = np.abs(series[-TAIL:]).max() <= FOLLOWED * acting and high <= 4 * low
+    if not followed and 2 * half > NARROWEST * high:
+        yield from _roots(curves, low, middle)
+        yield from _roots(curves, middle, high)
+        return
+    above = np.flatnonzero(np.abs(series) > ROUNDING * acting)
+    if above.size and abs(series[0]) <= np.abs(series[1:]).sum() + ZERO * acting:
+        smooth = Chebyshev(series[: above[-1] + 1], (low, high))
+        yield from sorted(_balanced(curves, smooth, middle, half))
+
+
+def _balanced(curves: Geared, smooth: Chebyshev, middle: float, half: float) -> Iterator[float]:
+    """Roots of f among those of the polynomial that follows it over a piece."""
+    for root in (np.asarray(smooth.roots(), complex) - middle) / half:
         if abs(root.imag) <= NEAR and abs(root.real) <= 1 + NEAR:
-            at = _polished(curves, middle + half * min(max(root.real, -1.0), 1.0), low, high)
-            acting = sum(abs(ratio * float(curve.value(ratio * at))) for ratio, curve in curves)
-            if abs(torque_left(curves, at)) <= ZERO * acting:
-                yield at
+            at = _polished(curves, smooth, middle + half * min(max(root.real, -1.0), 1.0))
+            if abs(torque_left(curves, at)) <= ZERO * np.abs(_at_input(curves, at)).sum():
+                yield float(at)
 
 
-def _numerator(curves: Geared, middle: float, half: float) -> Polynomial:
-    """f times all denominators as a polynomial of x, Ω = middle + half x, without what is rounding at its end."""
-    over, under = Polynomial([0.0]), ONE
-    for ratio, curve in curves:
-        p, q = (part(Polynomial([ratio * middle, ratio * half])) for part in curve.ratio(ratio * middle))
-        over, under = over * q + ratio * p * under, under * q
-    acting = sum(abs(ratio * float(curve.value(ratio * middle))) for ratio, curve in curves)
-    size = max(np.abs(over.coef).max(), acting * abs(under(0.0)))
-    return Polynomial(np.where(np.abs(over.coef) > ROUNDING * size, over.coef, 0.0)).trim()
+def _at_input(curves: Geared, speeds: Array | float) -> Array:
+    """R M(RΩ) [N m] of every curve, (curve, *speeds.shape)."""
+    return np.array([ratio * curve.value(ratio * speeds) for ratio, curve in curves])
 
 
-def _polished(curves: Geared, speed: float, low: float, high: float) -> float:
+def _polished(curves: Geared, smooth: Chebyshev, speed: float) -> float:
     """A root after a few steps of Newton's rule, which end where they no longer help."""
-    left = abs(torque_left(curves, speed))
+    left, rise = torque_left(curves, speed), smooth.deriv()
     for _ in range(STEPS):
-        slope = sum(ratio**2 * _derivative(curve, ratio * speed) for ratio, curve in curves)
+        slope = float(rise(speed))
         if not left or not slope:
             break
-        nearer = float(np.clip(speed - torque_left(curves, speed) / slope, low, high))
-        if not abs(torque_left(curves, nearer)) < left:
+        nearer = float(np.clip(speed - left / slope, *smooth.domain))
+        found = torque_left(curves, nearer)
+        if not abs(found) < abs(left):
             break
-        speed, left = nearer, abs(torque_left(curves, nearer))
+        speed, left = nearer, found
     return speed
-
-
-def _derivative(curve: TorqueCurve, speed: float) -> float:
-    """dT/dω of the piece there."""
-    over, under = curve.ratio(speed)
-    a, b = over(speed), under(speed)
-    return float((over.deriv()(speed) * b - a * under.deriv()(speed)) / b**2)

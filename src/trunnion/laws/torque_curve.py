@@ -8,8 +8,8 @@ continuous. Kloss's formula of an asynchronous motor is, with slip s = 1 − ω/
 
 odd about the synchronous speed ω_s, steepest there, and largest at the breakdown slip s_b.
 
-Between two neighbours among its ``knots`` every curve is a ratio of polynomials, so that all balances of curves are
-roots of one polynomial (``trunnion.laws.balance``). Whether a torque drives or resists is for its owner to say.
+Between two neighbours among its ``knots`` every curve is smooth, by which ``trunnion.laws.balance`` finds all balances
+of curves. Whether a torque drives or resists is for its owner to say.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class TorqueCurve(Protocol):
 
     @property
     def knots(self) -> tuple[float, ...]:
-        """Rising speeds [rad/s] within its range between which it is one ratio of polynomials."""
+        """Rising speeds [rad/s] within its range between which it is smooth: one formula."""
         ...
 
     def value(self, speed: Any) -> Array:
@@ -48,13 +48,6 @@ class TorqueCurve(Protocol):
     def slope(self, speed: Any) -> Array:
         """Its derivative by the speed [N m s/rad]."""
         ...
-
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """Numerator and positive denominator, polynomials of ω, of the piece that holds ``speed``."""
-        ...
-
-
-ONE = Polynomial([1.0])
 
 
 @dataclass(frozen=True)
@@ -87,11 +80,6 @@ class PowerCurve:
     def slope(self, speed: Any) -> Array:
         """c₁ + 2c₂|ω| [N m s/rad]."""
         return np.asarray(self.viscous + 2 * self.quadratic * np.abs(speed))
-
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """A parabola on either side of standstill."""
-        sign = 1.0 if speed >= 0 else -1.0
-        return Polynomial([float(self.constant), float(self.viscous), sign * float(self.quadratic)]), ONE
 
 
 @dataclass(frozen=True)
@@ -147,7 +135,7 @@ class KlossCurve:
         return self.slope(self.synchronous_speed * (1 - slip))
 
     def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """By the slip, a polynomial of ω itself."""
+        """Numerator and positive denominator, polynomials of ω: the formula by the slip, a polynomial of ω itself."""
         slip, b = Polynomial([1.0, -1.0 / float(self.synchronous_speed)]), float(self.breakdown_slip)
         return 2 * float(self.breakdown_torque) * b * slip, slip**2 + b**2
 
@@ -188,12 +176,6 @@ class TableCurve:
         """Derivative of the cubic [N m s/rad]."""
         return np.asarray(self._through.derivative()(speed))
 
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """The cubic of the piece between two points."""
-        place = int(np.clip(np.searchsorted(self.speeds, speed, side="right") - 1, 0, len(self.speeds) - 2))
-        piece = Polynomial(self._through.c[::-1, place])
-        return piece(Polynomial([-float(self.speeds[place]), 1.0])), ONE
-
 
 @dataclass(frozen=True)
 class ClippedLine:
@@ -232,12 +214,6 @@ class ClippedLine:
         within = np.abs(self.gain * (self.set_speed - speed)) < self.limit
         return np.asarray(np.where(within, -self.gain, 0.0))
 
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """A line, or the limit."""
-        if float(self.slope(speed)):
-            return Polynomial([float(self.gain * self.set_speed), -float(self.gain)]), ONE
-        return Polynomial([float(self.value(speed))]), ONE
-
 
 @dataclass(frozen=True)
 class PowerLimit:
@@ -267,10 +243,6 @@ class PowerLimit:
         """−P/ω² [N m s/rad]."""
         return np.asarray(-self.power / np.where(np.asarray(speed) > 0, speed, np.nan) ** 2)
 
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """P over ω."""
-        return Polynomial([float(self.power)]), Polynomial([0.0, 1.0])
-
 
 @dataclass(frozen=True)
 class Opposite:
@@ -299,11 +271,6 @@ class Opposite:
     def slope(self, speed: Any) -> Array:
         """Its derivative [N m s/rad]."""
         return np.asarray(-self.curve.slope(speed))
-
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """Numerator and denominator of the piece."""
-        over, under = self.curve.ratio(speed)
-        return -over, under
 
 
 @dataclass(frozen=True)
@@ -338,7 +305,3 @@ class FlowCurve:
     def slope(self, speed: Any) -> Array:
         """factor T/ω [N m s/rad]."""
         return np.asarray(self.factor * self.quadratic * np.abs(speed))
-
-    def ratio(self, speed: float) -> tuple[Polynomial, Polynomial]:
-        """The mean torque, a parabola on either side of standstill."""
-        return PowerCurve(quadratic=self.quadratic).ratio(speed)

@@ -24,7 +24,7 @@ from trunnion.driveline.arguments import numbers, speeds_of
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.geometry import tube_stress
-from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.operating_speed import settled_speeds, speed_unit
 from trunnion.driveline.shafts import Coupling, Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import disk_torques, line_harmonics
@@ -86,7 +86,7 @@ def order_response(
     """
     assembly = assemble(line, load_case)
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
-    speed = _positive(speeds_of(speeds, remedy), "speeds", remedy)
+    speed = settled_speeds(assembly.line, _positive(speeds_of(speeds, remedy), "speeds", remedy))
     wanted = _listed(orders)
     twisted, motions = statically_twisted, steady_states_of(assembly)
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
