@@ -259,6 +259,7 @@ def test_ratings_decide_when_a_cylinder_misfires_and_machines_excite() -> None:
     assert max(check.value for check in of_report) == pytest.approx(rated, rel=1e-5)
     malfunction = made.html.split('id="malfunction"')[1].split("</section>")[0]
     assert (">exceeded<" in malfunction) is (rated > 120.0) and "rated torque of coupling" in malfunction
+    assert ("exceeded, see section 6: rating: rated torque of coupling" in made.html) is (rated > 120.0)
     excitation = made.html.split('id="excitation"')[1].split("</section>")[0]
     assert "2 % of the mean torque" in excitation and "main.engine, each cylinder" in excitation
     assert excitation.count(">order 0.5<") == 1 and "throw 2" not in excitation

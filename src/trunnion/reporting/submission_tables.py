@@ -68,7 +68,18 @@ def particulars(contents: SubmissionContents) -> Table:
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
         rows.append(("lowest natural frequencies", f"{lowest} Hz"))
+    if contents.misfiring:
+        rows.append(("a cylinder out of work", _malfunction(contents)))
     return Table(("", ""), tuple(rows))
+
+
+def _malfunction(contents: SubmissionContents) -> str:
+    """How the checks end with a cylinder out of work, in a few words."""
+    over = dict.fromkeys(c.name for one in contents.misfiring for c in one.checks if c.exceeded)
+    unknown = any(c.missing for one in contents.misfiring for c in one.checks)
+    if over:
+        return f"exceeded, see section 6: {', '.join(over)}"
+    return "not all judged, see section 6" if unknown else "checks of torque satisfied, section 6"
 
 
 def _power(watts: float) -> str:
