@@ -13,13 +13,16 @@ PYTEST := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(
 # Sources are read anew by every process of the tests where no machine-independent code is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test slow studies check format clean
+.PHONY: demo test walks slow studies check format clean
 
 demo: $(VENV)/.installed
 	$(BIN)/trunnion analyze examples/pto-shaft.toml
 
 test: $(VENV)/.installed-dev
 	$(PYTEST) -m "not slow"
+
+walks: $(VENV)/.installed-dev
+	$(PYTEST) -m slow tests/contract/test_walk_*.py
 
 slow: $(VENV)/.installed-dev
 	$(PYTEST) -m "slow and not study"

@@ -20,7 +20,7 @@ from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import rounded_speed
+from trunnion.results.words import Words
 
 
 class Treatment(Enum):
@@ -43,7 +43,7 @@ class Cell:
 
 
 Row = dict[str, Cell]
-Words = str | tuple[str, str]
+Reason = str | tuple[str, str]
 """A reason, or a reason and the quote."""
 
 
@@ -71,7 +71,7 @@ def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
     """What is said of pendulums where no speed is asked of: they are held as at the operating speed."""
     if line.operation is None or line.operation.speed is None:
         return ()
-    at = rounded_speed(line.operation.speed, speed_unit(line))
+    at = Words(speed_unit(line)).rounded(line.operation.speed)
     says = f"is held as at {at}, where the line operates; campbell_diagram has every speed"
     return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
 
@@ -86,7 +86,7 @@ _LIKE = {
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
 """What is said of a damper without a spring by what judges disturbances."""
-QUASI_STATIC: dict[str, Words] = {
+QUASI_STATIC: dict[str, Reason] = {
     LAG: (
         "forced responses of straight lines have it; elsewhere the torque follows the speed at once, which holds well "
         "below the corner frequency",
@@ -97,10 +97,10 @@ QUASI_STATIC: dict[str, Words] = {
 
 def _row(
     *,
-    refused: Mapping[str, Words] | None = None,
-    said: Mapping[str, Words] | None = None,
-    not_judged: Mapping[str, Words] | None = None,
-    inert: Mapping[str, Words] | None = None,
+    refused: Mapping[str, Reason] | None = None,
+    said: Mapping[str, Reason] | None = None,
+    not_judged: Mapping[str, Reason] | None = None,
+    inert: Mapping[str, Reason] | None = None,
     set_aside: tuple[str, ...] = (),
 ) -> Row:
     """Cells of all features: those named, the others counted; of those ``set_aside`` the multiplier at 1 is."""
@@ -139,13 +139,13 @@ _FORCING = dict.fromkeys(
     ),
     _FORCES,
 )  # fmt: skip
-_HELD: dict[str, Words] = {
+_HELD: dict[str, Reason] = {
     HELD: (
         "a ConstantSpeed holds its rotation",
         "does nothing, a ConstantSpeed holds its rotation",
     )
 }
-_SERIES: dict[str, Words] = {
+_SERIES: dict[str, Reason] = {
     SERIES: (
         "springs in series, with no inertia between and damping over stiffness different, count as one, "
         "to first order in damping",
@@ -197,7 +197,7 @@ _UNPROVABLE |= dict.fromkeys(
     "half of a tube's inertia hangs behind the joint in front of it and varies with the angle, which no bound covers",
 )
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
-_MODES_SAID: dict[str, Words] = {
+_MODES_SAID: dict[str, Reason] = {
     **_SERIES,
     **dict.fromkeys(UNEVEN, (_ALIGNED, "joint angles zero")),
     "mesh-stiffness variation": "frequencies are those of the mean stiffness",

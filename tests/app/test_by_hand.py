@@ -37,10 +37,9 @@ LONGER = {
 }
 """The other views, and the other questions of a view."""
 CASES = [
-    pytest.param(view, settings, id=view, marks=() if view == "verdict" else pytest.mark.slow)
-    for view, settings in QUICK.items()
+    pytest.param(*case, id=name, marks=pytest.mark.slow)
+    for name, case in [*((view, (view, settings)) for view, settings in QUICK.items()), *LONGER.items()]
 ]
-CASES += [pytest.param(*case, id=name, marks=pytest.mark.slow) for name, case in LONGER.items()]
 
 SHOWN = """() => {
   const plain = v => ArrayBuffer.isView(v) ? Array.from(v) : v

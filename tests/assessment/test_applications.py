@@ -30,6 +30,7 @@ VEHICLES = {
 EXPECTED = {
     "own-limits": ALWAYS,
     "stability": ALWAYS,
+    "fatigue": ALWAYS,
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
     "damper-heat": ALWAYS,
@@ -56,7 +57,7 @@ def test_the_table() -> None:
     for name, rule in RULES.items():
         assert {a: str(rule.weight(stated(a))) for a in ALL} == EXPECTED[name], name
         assert rule.guideline is (name in GUIDELINES)
-        assert bool(rule.kept) is (name in ("own-limits", "stability"))
+        assert bool(rule.kept) is (name in ("own-limits", "stability", "fatigue"))
     assert markdown() in (ROOT / "docs" / "assess.md").read_text(encoding="utf-8")
 
 

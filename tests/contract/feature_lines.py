@@ -253,6 +253,7 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("optimise", "closed loop"): (excited(unbent), excited(looped)),
     ("resonance_speeds", "elastic teeth of planets"): (behind("hub", planetary()), behind("hub", YIELDING, PINION)),
     ("optimise", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
+    ("fatigue", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
     ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
 }
 """Where an analysis asks about something else than the lines below have."""

@@ -191,6 +191,13 @@ def run_up(shaken: Shaken) -> Iterator[Pair]:
     yield found.steady.swing[:, 0], shaken.swing(found.steady.speed)
 
 
+def transient(shaken: Shaken) -> Iterator[Pair]:
+    found = tn.transient(shaken.line(), 0.05, speed=SPEED, start=[0.0, 0.0], tolerance=1e-11)
+    time = np.linspace(0.0, found.end, 101)
+    x, v = shaken.motion(time, lambda t: SPEED * t, lambda t: SPEED, 0.0, [0.0, 0.0])
+    yield found.torque_at(time)[:, 0], STIFFNESS * x + shaken.damping * v
+
+
 def safe_accelerations(shaken: Shaken) -> Iterator[Pair]:
     found = tn.safe_accelerations(shaken.line(), 100, 104, limit=LIMIT, accelerations=(50.0, 100.0), points=2)
     for trial in found.trials:
@@ -322,10 +329,10 @@ DRIVEN = (
     lyapunov_sweep, lyapunov_map, poincare_map, bifurcation_diagram, certify_chaos,
 )  # fmt: skip
 """Those of driven lines alone."""
-CONSTANT = (run_up, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep)
+CONSTANT = (run_up, transient, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep)
 """Those of driven lines and constant amplitudes."""
 CLOSE = {exact_motion: 1e-9, piecewise_orbit: 1e-9, piecewise_branch: 1e-9, sweep: 1e-9} | dict.fromkeys(LINEAR, 1e-8)
-CLOSE |= {assess: 1e-6, sensitivity: 1e-6, simulate: 1e-4, run_up: 1e-3}
+CLOSE |= {assess: 1e-6, sensitivity: 1e-6, simulate: 1e-4, transient: 1e-4, run_up: 1e-3}
 """Share of the largest of a quantity that it may be off by; the others, and ``simulate``, count the swing of the disk
 that its torque follows, which is of second order."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from walks import Walk, shown
 
 PATH = "src/trunnion/driveline/wobble.py"
@@ -50,6 +51,7 @@ assert tn.sketch(line) is not None
 """
 
 
+@pytest.mark.slow
 def test_a_joint_changes_at_most_five_files(tmp_path) -> None:
     walk = Walk(tmp_path / "copy")
     walk.add(PATH, shown(PATH))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from walks import Walk, shown
 
 NAME = "energy_share"
@@ -49,6 +50,7 @@ assert "Springs whose share stays below it are left out." in trunnion("energy-sh
 """
 
 
+@pytest.mark.slow
 def test_an_analysis_changes_at_most_eight_files(tmp_path) -> None:
     walk = Walk(tmp_path / "copy")
     for path in NEW:
@@ -63,7 +65,7 @@ def test_an_analysis_changes_at_most_eight_files(tmp_path) -> None:
     walk.put("docs/README.md", row, before="| How large is the vibratory torque")
     walk.put("CHANGELOG.md", "\n- `energy_share`: which shaft a mode twists.\n", after="### Added\n")
     noun = f"- **`{NAME}`**: Share of each spring in the elastic energy of each mode.\n"
-    walk.put("docs/glossary.md", noun, before="- **`envelope`**")
+    walk.put("docs/glossary.md", noun, before="- **`Engine`**")
     walk.print_features()
     walk.check(RIGHT)
     walk.test(

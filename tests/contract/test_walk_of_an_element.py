@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from walks import Walk, shown
 
 PATH = "src/trunnion/driveline/torsion_spring.py"
@@ -51,6 +52,7 @@ REFUSED = """    (lambda: tn.TorsionSpring(wire_diameter=0.01), "TorsionSpring.c
 """
 
 
+@pytest.mark.slow
 def test_an_element_is_in_every_analysis(tmp_path) -> None:
     walk = Walk(tmp_path / "copy")
     walk.add(PATH, shown(PATH))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from walks import Walk, shown
 
 MOST_CHANGED = 5
@@ -12,6 +13,7 @@ DESCRIPTION, NUMBERS, LAWS, FEATURES = (
 ORACLE = "tests/oracles/harmonic_lines.py"
 
 
+@pytest.mark.slow
 def test_an_excitation_changes_at_most_five_files(tmp_path) -> None:
     walk = Walk(tmp_path / "copy")
     walk.put(DESCRIPTION, "    Damping,\n", after="    Angle,\n")

@@ -8,7 +8,7 @@ from oracles.sampling import quick_only
 
 import trunnion as tn
 from trunnion.motion.orbits.harmonic_balance_springs import balance_springs
-from trunnion.numerics.continuation.arclength import TorquePoint
+from trunnion.numerics.continuation.arclength import CurvePoint
 from trunnion.results.verdict import Verdict
 from trunnion.systems.second_order import SecondOrder, cubic_spring
 
@@ -145,7 +145,7 @@ def test_a_series_knows_what_its_radius_is_off_by(method: str, harmonics: int) -
     for z, value, multipliers, verdict in zip(
         branch.unknowns, branch.parameter, branch.multipliers, branch.verdict, strict=True
     ):
-        radius, point = float(np.abs(multipliers).max()), TorquePoint(z, np.zeros_like(z), 0)
+        radius, point = float(np.abs(multipliers).max()), CurvePoint(z, np.zeros_like(z), 0)
         begun = branch.problem.start(point)
         orbit = tn.periodic_response(system.but(frequency=float(value)), start=begun, settle=False)
         # Beside a fold shooting may arrive at the motion on its other side.

@@ -144,3 +144,24 @@ def test_lines_without_a_linear_response_are_reported_without_its_findings() -> 
         tn.speed_sweep(line, [150.0])
     assembly = assemble(line)
     assert list(response_findings(assembly, resonance_speeds(assembly), (10.0, 2000.0), Words("rpm"))) == []
+
+
+def test_a_ring_without_a_spring_leaves_open_what_it_leaves_open() -> None:
+    """No periodic motion of a free–free line with joint angles is the only one: it is not judged, and nothing fails."""
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=3.0, name="engine", drive_share=1, excitation=[{"order": 3, "amplitude": 100.0}]),
+            tn.ViscousDamper(ring_inertia=0.4, damping=20.0, name="damper"),
+            tn.Shaft(stiffness=2e4, damping=5.0, after="engine"),
+            tn.Disk(inertia=0.5),
+            tn.HookeJoint(angle="8 deg"),
+            tn.Shaft(stiffness=4e4, damping=5.0, name="tube"),
+            tn.Disk(inertia=2.0, viscous_load=1.0),
+        ],
+        limits=[tn.Limit(of="tube", vibratory_torque=400.0)],
+        operation=tn.Operation(speed="900 rpm", speed_range=("600 rpm", "1200 rpm")),
+    )
+    found = tn.assess(line)
+    for name in ("vibratory torque of tube", "parametric stability"):
+        assert str(found.check(name).status) == "not judged" and "damper.stiffness" in found.check(name).because
+    assert "Stability at the operating speed is not judged: damper.stiffness" in tn.report(line).html

@@ -104,6 +104,8 @@ def at_speed(given: OverviewAssessment) -> Overview:
             said = here.findings_in(given.unit)
     except OutOfTime as error:
         said = (Finding(Gravity.CAUTION, f"Stability at the operating speed was not computed: {error.why}."),)
+    except InputError as error:  # as the check of the range says
+        said = (Finding(Gravity.CAUTION, f"Stability at the operating speed is not judged: {error}."),)
     known = {finding.sentence for finding in given.findings}
     new = [finding for finding in said if finding.sentence not in known]
     whole = {**vars(given), "findings": by_gravity([*new, *given.findings])}

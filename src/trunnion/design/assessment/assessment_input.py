@@ -13,8 +13,6 @@ import numpy as np
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.measures import Measure, measures, torque_measures, torque_name
-from trunnion.design.fatigue.fatigue import fatigue
-from trunnion.design.fatigue.result import FatigueLife
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
@@ -35,6 +33,7 @@ from trunnion.steady.orders.spectrum import order_spectrum
 from trunnion.waiting import OutOfTime
 
 if TYPE_CHECKING:
+    from trunnion.design.fatigue.result import FatigueLife
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 NO_RESPONSE = "no linear response: "
@@ -90,6 +89,9 @@ class AssessmentInput:
     @cached_property
     def fatigue(self) -> FatigueLife | str:
         """Damage and life over what the description says that the line does, or why there is none."""
+        # Loaded where needed: it brings the compiler with it.
+        from trunnion.design.fatigue.fatigue import fatigue
+
         try:
             return fatigue(self.line)
         except (InputError, ComputationError) as error:
@@ -156,7 +158,9 @@ class LoadCaseResponse:
         """Whether the periodic steady state of every speed is taken, over a range."""
         if self.given or self.rough or self.known is not None or not self.low < self.high or not self.costly:
             return False
-        return not lossy(self.assembly) and self.motions is not None and not self.motions.obstacle
+        if lossy(self.assembly) or self.assembly.topology.dragged or self.motions is None:  # the checks say so
+            return False
+        return not self.motions.obstacle
 
     def _lost(self, span: Span) -> tuple[Gap, ...]:
         """Speeds at which the line's periodic steady state breaks off."""

@@ -195,15 +195,15 @@ def _result(
     speed = float((angle[1] - angle[0]) / (until - since))
     ways = None if _alike(kind, other) else (kind, other)
     end = PassingEnd(
-        "undecided" if ways else kind,
-        run.end,
-        made.rigid,
-        made.first,
-        made.last,
-        speed,
-        (since, until),
-        strongest,
-        ways,
+        kind="undecided" if ways else kind,
+        time=run.end,
+        rigid=made.rigid,
+        first=made.first,
+        last=made.last,
+        speed=speed,
+        stretch=(since, until),
+        strongest=strongest,
+        ways=ways,
     )
     return Passing(
         ending=end, peak_torque=run.peak_torque, peak_time=run.peak_time, shafts=run.shafts,

@@ -384,8 +384,7 @@ class LineSimulation(Result, Simulation, OfShafts):
         return extremes_in(self.torque_at, self.cuts, self.time[[0, -1]]).of(0)
 
     def declared(self) -> Iterator[Variable | Attribute]:
-        """What the fields hold, deviations and rates of every inertia, the input's rotation and the ending."""
-        yield from super().declared()
+        """Deviations and rates of every inertia, what the fields hold, the input's rotation and the ending."""
         n = len(self.line.names)
         yield Coordinate("coordinate", self.line.names, "coordinate")
         yield Variable("rotation", self.state[:, :n], "time coordinate", "rad")
@@ -393,6 +392,7 @@ class LineSimulation(Result, Simulation, OfShafts):
         if self.line.sliders:
             yield Coordinate("slider", [slider.name for slider in self.line.sliders], "slider")
             yield Variable("deflection", self.state[:, 2 * n :], "time slider", "rad")
+        yield from super().declared()
         if self.clutches:
             yield Coordinate("clutch", self.clutches, "clutch")
             yield Variable("slip", self.slip, "time clutch", "rad/s", "positive where the output leads")

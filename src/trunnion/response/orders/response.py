@@ -35,9 +35,9 @@ from trunnion.features import left_out
 from trunnion.floquet.stability.stable_speeds import verdicts_at
 from trunnion.response.orders.result import WORTH_SHOWING, OrderResponse
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import show_speed
 from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
+from trunnion.results.words import Words
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.steady.orders.spectrum import order_spectrum
@@ -264,7 +264,7 @@ def _falls_away(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding
         names = [name for (s, _), (name, _) in zip(topo.disks, topo.rotors, strict=True) if slope[worst, s] < 0]
         yield Finding(
             Gravity.CAUTION,
-            f"Nothing keeps the mean speed, at {show_speed(float(spectrum.speed[worst]), speed_unit(assembly.line))} "
+            f"Nothing keeps the mean speed, at {Words(speed_unit(assembly.line)).speed(float(spectrum.speed[worst]))} "
             f"least: what resists falls with it by {-total[worst]:.4g} N m s/rad at the input "
             f"({', '.join(dict.fromkeys(names))}). Give the drive a torque that falls more steeply: the gain of a "
             "controller, a smaller slip.",
