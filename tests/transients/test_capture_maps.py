@@ -78,14 +78,12 @@ def test_what_was_computed_is_kept() -> None:
 
 
 def test_the_least_torque_against_a_readers_own_equations() -> None:
-    found = tn.least_drive(
-        bent(0.16), ENDS, torque=weak(2.5), factors=(0.8, 6.0), points=3, accuracy=0.05, phases=[0.0, 1.0]
-    )
-    assert found.outcome.kind == "found" and 1 < found.least / found.below <= 1.05
+    found = tn.least_drive(bent(0.16), ENDS, torque=weak(2.5), factors=(0.8, 6.0), points=3, accuracy=0.1, phases=[0.5])
+    assert found.outcome.kind == "found" and 1 < found.least / found.below <= 1.1
     for one in found.trials:
         known = np.mean([not by_hand(0.16, one.factor, phase) for phase in found.phases])
         assert one.share == known, one.factor
-    assert "passes from 2 starting phases" in str(found) and "nothing was run between" in str(found)
+    assert "passes from 1 starting phase" in str(found) and "nothing was run between" in str(found)
 
 
 def test_a_motor_short_of_torque_is_no_capture() -> None:

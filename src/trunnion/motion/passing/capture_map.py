@@ -175,7 +175,7 @@ def capture_map(
     >>> disks = tn.Disk(name="motor", inertia=1.0), tn.Disk(name="load", inertia=4.0)
     >>> line = tn.Driveline([disks[0], tn.HookeJoint(angle="9 deg"), tn.Shaft(stiffness=2e3, damping=1.0), disks[1]])
     >>> weak = tn.AppliedTorque(on="motor", time=[0], torque=[2.5], between="steps")
-    >>> angles, factors = ("HookeJoint 1.angle", 0.05, 0.25, 2), ("factor", 1.0, 3.0, 2)
+    >>> angles, factors = ("HookeJoint 1.angle", 0.05, 0.18, 2), ("factor", 1.0, 4.0, 2)
     >>> tn.capture_map(line, (15.0, 40.0), angles, factors, torque=[weak], phases=2).share
     array([[0., 1.],
            [0., 0.]])

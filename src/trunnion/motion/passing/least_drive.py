@@ -20,6 +20,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import FACTOR, passes, trials_of
+from trunnion.results.counts import counted
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
@@ -113,7 +114,7 @@ class LeastDrive(Result):
     def _lines(self) -> Iterator[str]:
         trials, place = self.trials, self._place
         asked = rounded_speed(self.last, self.unit)
-        count = f"{len(self.phases)} starting phases"
+        count = counted(len(self.phases), "starting phase")
         if not trials:
             yield f"nothing was tried: {self.stopped}"
             return

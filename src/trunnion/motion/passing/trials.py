@@ -79,10 +79,10 @@ def trials_of(
 
 def scaled(torque: AppliedTorque, factor: float) -> AppliedTorque:
     """A torque times a factor."""
-    if torque.breakdown_torque is not None:
-        return torque.but(breakdown_torque=factor * float(torque.breakdown_torque))
+    if (most := torque.breakdown_torque) is not None:
+        return torque.but(breakdown_torque=factor * float(most))
     if torque.table:
-        return torque.but(table=[[factor * float(one) for one in row] for row in torque.table])
+        return torque.but(table=(factor * np.array(torque.table)).tolist())
     return torque.but(torque=[factor * float(one) for one in torque.torque])
 
 
