@@ -5,13 +5,16 @@ does at that moment, Σ Jρφ/Σ Jρ² with its speed and acceleration, so that 
 whatever turns are made, from standstill and through it.
 
 Dry friction on a disk is T_c against its rotation while it turns. Where it comes to rest the disk stands while what
-acts on it stays within the friction at rest, and then sets off the way it is pulled.
+acts on it stays within the friction at rest, and then sets off the way it is pulled. What stands and what sticks is
+judged anew where a piece begins, for a torque may have jumped there, and along every piece it is checked that it bears
+what it is asked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,8 +25,9 @@ from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
-from trunnion.equations.line_regimes import line_kernel, watch_kernel
+from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
+from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed
@@ -38,6 +42,15 @@ FIRST_PIECE = 0.01
 BESIDE = 1e-9
 """Share of a piece of a table by which a speed goes beyond its end before the next one is taken: so that a switch
 begins on its own side."""
+EQUAL = 1e-12
+"""Share of what friction at rest bears within which it is asked for just that: whether it then lets go tells how both
+change."""
+LATER = 1e-9
+"""Share of the same by which a group is let go later, so that the switch begins on its own side."""
+SHORT = 1e-3
+"""Of a piece, and of 1 over the highest natural frequency: the time over which that change is taken."""
+CHECKS, EXCESS = 16, 1e-6
+"""Stretches of a piece at whose ends it is checked what sticks, and the share beyond what it bears that is an error."""
 
 
 LOCATED = -1
@@ -137,8 +150,9 @@ class Stepper:
         stiff = twist.T @ (co.stiffness[0][:, None] * twist)
         root = np.sqrt(felt)
         frequencies = np.sqrt(np.maximum(np.linalg.eigvalsh(stiff / np.outer(root, root)), 0.0))
+        self.fastest = float(frequencies.max(initial=0.0))
         elastic = frequencies[frequencies > 1e-6 * max(float(frequencies.max()), 1e-30)]
-        usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
+        self.usual = usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
         n, reach = self.topo.size, [slider.reach for slider in line.sliders]
         weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
         self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
@@ -153,7 +167,6 @@ class Stepper:
         knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
         place = replace(place, regime=self._regime(place))
-        place = replace(place, senses=self._settled(place))
         chunk = FIRST_PIECE * duration if self.free else np.inf
         pieces: list[Piece] = []
         crossed: list[tuple[float, str]] = []
@@ -168,7 +181,7 @@ class Stepper:
                 return Found(pieces, place, Outcome(False, "out of time", words), crossed)
             ahead = knots[knots > place.time]
             until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
-            place = self._following(place)
+            place = self._following(self._settled(place, SHORT * (until - place.time)))
             self._write(place)
             watched = self._watched(place)
             trajectory = integrate(
@@ -183,6 +196,8 @@ class Stepper:
             steps += trajectory.steps
             guess = min(trajectory.next_step, until - place.time)
             pieces.append(Piece(self.line, trajectory, self.numbers.copy(), self.torques, self.frictions))
+            if wrong := self._overloaded(place, trajectory):
+                return Found(pieces, self._after(place, trajectory), wrong, crossed)
             own = self.equations.transitions.shape[1]
             for at, which in zip(trajectory.event_time, trajectory.event_which, strict=True):
                 if which >= own and watched[which - own].label:
@@ -217,7 +232,14 @@ class Stepper:
             return axis.piece(place.time)
         self._write_course(place)
         angle, speed = self._of_station(place, one.station)
-        return axis.piece(one.sense * (speed if axis.variable == "speed" else angle))
+        value = one.sense * (speed if axis.variable == "speed" else angle)
+        inner = axis.inner(axis.piece(value))
+        if not axis.hold and len(axis.knots) > 1 and abs(value - axis.knots[-1]) <= 1e-3 * self._beside(axis, inner):
+            return inner  # begins at the upper end; where it goes beyond is watched
+        return axis.piece(value)
+
+    def _beside(self, axis: TorqueAxis, piece: int) -> float:
+        return float(BESIDE * (axis.knots[piece + 1] - axis.knots[piece]))
 
     def _of_station(self, place: Place, station: int) -> tuple[float, float]:
         """Angle [rad] and speed [rad/s] of a station."""
@@ -295,33 +317,115 @@ class Stepper:
             stands = place.senses.get(first, 1.0) == 0.0
             self.numbers[core.HEAD + first * core.PER_STATION + core.STANDS] = float(stands)
 
-    # Dry friction.
+    # What stands or sticks.
 
-    def _settled(self, place: Place) -> dict[int, float]:
-        """Senses in which the groups with friction turn when a run begins."""
-        senses: dict[int, float] = {}
+    def _settled(self, place: Place, soon: float) -> Place:
+        """The same place, where it is judged anew what stands and what sticks; ``soon`` [s] is a short time."""
+        if self.fastest:
+            soon = min(soon, SHORT / self.fastest)
+        place = replace(place, senses={first: way for first, way in place.senses.items() if first in self.groups})
         self._write_course(place)
-        for first in self.groups:
-            speed = self._of_station(place, first)[1]
+        for first, several in self.groups.items():
             known = place.senses.get(first)
-            if known is not None and (known != 0.0) == (speed != 0.0):
-                senses[first] = known
-            elif speed != 0.0:
-                senses[first] = float(np.sign(speed))
-            else:
-                senses = self._settle(replace(place, senses=senses), first, senses).senses
-        return senses
+            if not any(one.stated.at_rest and any(one.share(place.time)) for one in several):
+                senses = {key: sense for key, sense in place.senses.items() if key != first}
+                place = replace(place, senses=senses)  # nothing rubs yet
+                continue
+            if known is None:
+                speed = self._of_station(place, first)[1]
+                known = float(np.sign(speed)) if abs(speed) > EQUAL * max(self.usual, abs(place.speed)) else 0.0
+            place = replace(place, senses={**place.senses, first: known})
+            if known == 0.0:
+                place = self._settle(place, first, soon)
+        return self._slipping(place, soon) if self.line.clutches else place
 
-    def _settle(self, place: Place, first: int, senses: dict[int, float]) -> Place:
+    def _settle(self, place: Place, first: int, soon: float) -> Place:
         """A group at rest: it stands, or sets off the way it is pulled."""
         i = int(self.topo.unknown_of[first])
         state = place.state.copy()
         state[self.topo.size + i] = -self.topo.mean_speeds[first] * place.speed
-        place = replace(place, state=state, senses={**senses, first: 0.0})
+        place = replace(place, state=state, senses={**place.senses, first: 0.0})
         self._write(place)
-        pulled, most = self._pull(place, first)
-        senses = {**senses, first: 0.0 if abs(pulled) <= most[0] and most[0] > 0 else float(np.sign(pulled))}
-        return replace(place, senses=senses)
+
+        def asked(at: Place) -> tuple[float, float]:
+            pulled, most = self._pull(at, first)
+            return pulled, most[0]
+
+        way = self._lets_go(place, asked, soon)
+        return replace(place, senses={**place.senses, first: way})
+
+    def _slipping(self, place: Place, soon: float) -> Place:
+        """The same place, where clutches that stick slip if they cannot carry their torque, that furthest beyond its
+        capacity first."""
+        for _ in self.line.clutches:
+            self._write(place)
+            gone: list[tuple[float, int, float]] = []
+            for c in self._sticking(place):
+                carried, most = self._carried(place, c)
+                if way := self._lets_go(place, partial(self._carried, clutch=c), soon):
+                    gone.append((abs(carried) - most, c, way))
+            if not gone:
+                break
+            _, worst, way = max(gone)
+            stride = self._regimes.clutches[worst].stride
+            place = replace(place, regime=place.regime + ((SLIPS_ON if way > 0 else SLIPS_BACK) - STICKS) * stride)
+        return place
+
+    @property
+    def _regimes(self) -> LineRegimes:
+        found = self.line.system.regimes
+        assert isinstance(found, LineRegimes)
+        return found
+
+    def _sticking(self, place: Place) -> list[int]:
+        """The slip clutches that stick, by their numbers."""
+        if not self.line.clutches:
+            return []
+        return [int(c) for c in np.flatnonzero(self._regimes.clutches_stick(np.array([place.regime]))[0])]
+
+    def _lets_go(self, place: Place, asked: Callable[[Place], tuple[float, float]], soon: float) -> float:
+        """The sense in which what sticks lets go, 0 where it does not. ``asked``: what it is asked for there, and what
+        it bears. Where both are equal it lets go if the first grows more than the second."""
+        torque, most = asked(place)
+        over = abs(torque) - most
+        if abs(over) > EQUAL * most:
+            return float(np.sign(torque)) if over > 0 else 0.0
+        state = place.state + soon * self._rates(place)
+        torque, most = asked(replace(place, time=place.time + soon, state=state))
+        return float(np.sign(torque)) if abs(torque) - most > over + EQUAL * most else 0.0
+
+    def _carried(self, place: Place, clutch: int) -> tuple[float, float]:
+        """Torque [N m] of a slip clutch, and its capacity at rest as it is clamped."""
+        self._rates(place)
+        one, count = self.line.clutches[clutch], len(self.topo.stations)
+        torques = int(self.core.places(self.numbers)[3]) + 5 * count + 7 * self.topo.size
+        share = float(np.interp(place.time, *one.table.T)) if len(one.table) else 1.0
+        return float(self.numbers[torques + one.compliance]), one.holds * share
+
+    def _overloaded(self, place: Place, trajectory: Trajectory) -> Outcome | None:
+        """The outcome of a run in which something stood or stuck beyond what it bears, in the piece that began at
+        ``place``."""
+        standing = [first for first, sense in place.senses.items() if sense == 0.0]
+        if not (standing or self.line.clutches) or not trajectory.steps:
+            return None
+        full = max([c.holds for c in self.line.clutches] + [f.stated.at_rest for f in self.frictions])
+        times = np.linspace(place.time, trajectory.time, CHECKS + 1)
+        regime = trajectory.regime[np.searchsorted(trajectory.start[1:], times[:-1], side="right")]
+        # The end counts to the step before it.
+        for time, state, now in zip(times, trajectory.at(times), [*regime, trajectory.regime[-1]], strict=True):
+            at = replace(place, time=float(time), state=state, regime=int(now))
+            sticks = self._sticking(at)
+            pulls = [(first, *self._pull(at, first)) for first in standing]
+            found = [(f"the disk {self.groups[f][0].stated.on} stands", pulled, most[0]) for f, pulled, most in pulls]
+            found += [(f"{self.line.clutches[c].name} sticks", *self._carried(at, int(c))) for c in sticks]
+            for what, torque, most in found:
+                if abs(torque) > most + EXCESS * max(most, full):
+                    words = (
+                        f"stopped at t = {time:.6g} s: {what} under {abs(torque):.6g} N m, though its friction bears "
+                        f"{most:.6g} N m; what lies behind t = {place.time:.6g} s is not right"
+                    )
+                    return Outcome(False, "friction exceeded", words)
+        return None
 
     def _pull(self, place: Place, first: int) -> tuple[float, tuple[float, float]]:
         """Torque [N m] on a group that stands, friction aside; what friction at rest bears and its slope [N m/s]."""
@@ -346,7 +450,7 @@ class Stepper:
                 kind = core.STATION_SPEED if axis.variable == "speed" else core.STATION_ANGLE
                 low, high = axis.ends(self.cells[k][i])
                 inner = axis.inner(self.cells[k][i])
-                beside = BESIDE * (axis.knots[inner + 1] - axis.knots[inner])
+                beside = self._beside(axis, inner)
                 for end, step in ((low, -1), (high, 1)):
                     if np.isfinite(end):
                         level = (0.0, end + step * beside, 0.0, 0.0, 0.0)
@@ -359,7 +463,7 @@ class Stepper:
                 found.append(_Watched(core.STATION_SPEED, first, sense, (0.0,) * 5, -1, True, stopped))
                 continue
             _, (bears, slope) = self._pull(place, first)
-            level = (place.time, bears, slope, 0.0, 0.0)
+            level = (place.time, bears * (1 + LATER), slope, 0.0, 0.0)
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
                 found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
@@ -379,7 +483,7 @@ class Stepper:
 
     def _stopped(self, first: int) -> Callable[[Place], Place]:
         """A group comes to rest."""
-        return lambda place: self._settle(place, first, place.senses)
+        return lambda place: replace(place, senses={**place.senses, first: 0.0})
 
     def _let_go(self, first: int, way: float) -> Callable[[Place], Place]:
         """A group that stood sets off."""
