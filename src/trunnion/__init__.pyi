@@ -115,6 +115,8 @@ from trunnion.motion.orbits.periodic_branch import piecewise_branch as piecewise
 from trunnion.motion.orbits.periodic_response import periodic_response as periodic_response
 from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
+from trunnion.motion.passing.capture_map import capture_map as capture_map
+from trunnion.motion.passing.least_drive import least_drive as least_drive
 from trunnion.motion.passing.passing import passing as passing
 from trunnion.motion.passing.run_up import run_up as run_up
 from trunnion.motion.passing.safe_accelerations import safe_accelerations as safe_accelerations

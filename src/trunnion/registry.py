@@ -268,6 +268,16 @@ ANALYSES = (
         command="trunnion.cli.transients:passing",
     ),
     Analysis(
+        "least_drive",
+        "The least factor of the drive torque with which a line passes its resonances.",
+    ),
+    Analysis(
+        "capture_map",
+        "From which share of its starting phases a line is captured by a resonance, over two parameters.",
+        pictures={"CaptureMap.plot": "trunnion.pictures.transients:capture_map"},
+        command="trunnion.cli.transients:capture_map",
+    ),
+    Analysis(
         "safe_accelerations",
         "The slowest and the fastest acceleration whose passage keeps a limit of torque.",
         features="passage",

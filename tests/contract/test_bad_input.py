@@ -775,6 +775,79 @@ PYTHON = [
     ),
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
     (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
+        ),
+        "x = 'speed': is what the line runs through",
+        "another parameter",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("pump.inertia", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
+        ),
+        "y = 'pump.inertia': is varied twice",
+        "another parameter",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("factor", 0.0, 2.0, 2), torque=[torque(**KLOSS)]
+        ),
+        "y = ['factor', 0.0, 2.0, 2]: must rise from above 0",
+        "12), say",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", -1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
+        ),
+        "pump.inertia = -1",
+        "",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(),
+            (5.0, 9.0),
+            ("pump.inertia", 1.0, 2.0, 2),
+            ("factor", 1.0, 2.0, 2),
+            torque=[torque(**KLOSS)],
+            phases=0,
+        ),
+        "phases = 0: must be a whole number, 1 or more",
+        "",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(),
+            (5.0, 9.0),
+            ("pump.inertia", 1.0, 2.0, 2),
+            ("factor", 1.0, 2.0, 2),
+            torque=[torque(**KLOSS)],
+            drive="engine",
+        ),
+        "drive = 'engine': is given no torque",
+        "torques act on pump",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(),
+            (5.0, 9.0),
+            ("pump.inertia", 1.0, 2.0, 2),
+            ("factor", 1.0, 2.0, 2),
+            torque=[torque(**KLOSS), tn.AppliedTorque(on="engine", **KLOSS)],
+        ),
+        "drive: is missing, for torques act on several disks",
+        "name pump, engine",
+    ),
+    (
+        lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], factors=(2.0, 1.0)),
+        "factors = [2.0, 1.0]: must be two rising positive numbers",
+        "(0.5, 2.0)",
+    ),
+    (
+        lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], accuracy=0.0),
+        "accuracy = 0: must lie between 1e-12 and 1",
+        "0.01, say",
+    ),
+    (
         lambda: tn.passing(
             line(tn.Motor(inertia=0.5, name="motor", **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
             (5.0, 9.0),

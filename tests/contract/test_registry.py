@@ -10,7 +10,7 @@ import pytest
 
 import trunnion as tn
 from trunnion.features import ROWS
-from trunnion.registry import ANALYSES, VIEWS, found_at
+from trunnion.registry import ANALYSES, found_at
 
 ROOT = Path(__file__).parents[2]
 BY_NAME = pytest.mark.parametrize("one", ANALYSES, ids=lambda one: one.name)
@@ -30,20 +30,7 @@ def test_a_command_goes_by_the_name_of_its_analysis_and_stands_on_the_first_page
         assert f"`{one.name.replace('_', '-')}" in (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
 
 
-@BY_NAME
-def test_a_view_asks_what_it_is_said_to_show(one) -> None:
-    if one.view:
-        pytest.importorskip("panel")
-        source = Path(inspect.getfile(found_at(VIEWS[one.view]))).read_text(encoding="utf-8")
-        assert f'Call("tn.{one.name}"' in source
-
-
 def test_names_stand_once_and_rows_are_used() -> None:
     names = [one.name for one in ANALYSES]
     assert len(set(names)) == len(names)
     assert {one.features for one in ANALYSES} - {""} == set(ROWS)
-
-
-def test_views_go_by_their_names() -> None:
-    pytest.importorskip("panel")
-    assert [name for name, address in VIEWS.items() if found_at(address).name != name] == []

@@ -1,4 +1,4 @@
-"""The commands ``transient`` and ``passing``."""
+"""The commands ``transient``, ``passing`` and ``capture-map``."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.command_input import OptionReader
-from trunnion.cli.options import Line, SpeedUnit
+from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
+from trunnion.cli.options import Line, Progress, SpeedUnit
 from trunnion.cli.places import CommandOutput
-from trunnion.cli.readers import range_of, read_speed
+from trunnion.cli.readers import range_of, read_even_axis, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -70,6 +70,59 @@ def passing(
     found = tn.passing(line, (from_, to), torque=acting.torque, friction=acting.friction, phase=phase)
     content = {"scenario": acting.name, **found.to_dict()}
     return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
+
+
+CELLS = 12
+"""Along an axis where none are stated."""
+Axis = tuple[str, float, float, int]
+
+
+def _axis(asked: CommandInput, text: str, key: str) -> Axis:
+    """``factor:LOW:HIGH[:CELLS]`` of the drive torque, or a parameter of the line."""
+    path, *numbers = text.split(":")
+    if path != "factor":
+        return read_even_axis(asked, text, key, CELLS)
+    try:
+        low, high = float(numbers[0]), float(numbers[1])
+        count = int(numbers[2]) if numbers[2:] else CELLS
+    except (ValueError, IndexError):
+        problem = "is no range of factors"
+        raise InputError(problem, key=key, value=text, remedy="write factor:0.5:2:12, say") from None
+    return path, low, high, count
+
+
+@Command("capture map", within=True)
+def capture_map(
+    line: Line,
+    *,
+    x: Annotated[Axis, OptionReader(_axis, "HookeJoint *.angle")],
+    y: Annotated[Axis, OptionReader(_axis, "factor:0.5:2")],
+    from_: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[0])],
+    to: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[1])],
+    scenario: str = "",
+    drive: str = "",
+    phases: Annotated[int, NumberBounds(1)] = 8,
+    processes: Annotated[int, NumberBounds(1)] = 1,
+    unit: SpeedUnit,
+    progress: Progress,
+) -> CommandOutput:
+    """Example: trunnion capture-map mill.toml --from 0rpm --to 1400rpm --x "HookeJoint 1.angle:2deg:15deg:10"
+
+    --x PARAMETER:LOW:HIGH[:CELLS]  Or factor:LOW:HIGH[:CELLS] of the drive torque.
+    --y PARAMETER:LOW:HIGH[:CELLS]  The same.
+    --from  First speed; default: of the file's range.
+    --to  Last speed; default: of the file's range.
+    --scenario  Whose torques and friction act; default: the only one of the file.
+    --drive DISK  Whose torque the factor scales, where torques act on several.
+    --phases  Starting phases of every cell.
+    --processes  That compute.
+    """
+    acting = line.scenario(_scenario(line, scenario))
+    found = tn.capture_map(
+        line, (from_, to), x, y, torque=acting.torque, friction=acting.friction, drive=drive or None,
+        phases=phases, processes=processes, progress=progress,
+    )  # fmt: skip
+    return CommandOutput(found.in_unit(unit), outcome=found.outcome)
 
 
 def _content(found: Transient, unit: str) -> dict[str, Any]:

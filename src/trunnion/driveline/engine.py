@@ -426,6 +426,11 @@ class Engine(Composite):
         """Mean inertia [kg m²] that the reciprocating mass of one cylinder adds to its throw."""
         return _masses(self)[1]
 
+    @property
+    def of_one_cylinder(self) -> tuple[Excitation, ...]:
+        """Gas and inertia torques of one cylinder that fires, phases from its own top dead centre."""
+        return (*_gas(self), *_masses(self)[0])
+
     def throw_of(self, cylinder: int) -> int:
         """Number of the throw, or 1 of a rigid engine, that bears a cylinder."""
         return 1 if self.rigid else next(j for j, there in enumerate(self.on_throws, start=1) if cylinder in there)

@@ -14,6 +14,9 @@ from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
 from trunnion.modes.natural_frequencies import NaturalFrequencies
 
+ROUNDING = 1e-9
+"""Share of the largest rotation below which a mass stands still."""
+
 
 @dataclass(frozen=True)
 class MassRow:
@@ -132,6 +135,7 @@ def _nodes(assembly: Assembly, amplitude: Array) -> list[tuple[str, float]]:
         far = topo.turning[topo.reference[compliance.far_group] if compliance.far is None else compliance.far]
         behind = float(far @ amplitude)
         ahead = behind - float(twist)
-        if behind * ahead < 0:
+        still = ROUNDING * float(np.abs(amplitude).max())  # a ring that oil alone drags along stands still
+        if behind * ahead < 0 and min(abs(behind), abs(ahead)) > still:
             found.append((" and ".join(names[i] for i in compliance.shafts), abs(ahead) / abs(twist)))
     return found

@@ -203,6 +203,7 @@ LOOKS: dict[str, Look] = {
     "accelerates": Look(FAINT, 1.0, (3.7, 1.6)),
     "turns": Look(VERMILION, 1.3),
     "top": _mark("diamond", VERMILION, 6.0),
+    "captured half": Look(VERMILION, 2.6, layer=5.0),
     "hangs": Look(FAINT, 1.0, (1, 1.65)),
     "linear": _area(ACCENT),
     "nonlinear": _area(VERMILION, hatch="//", edge=WHITE),

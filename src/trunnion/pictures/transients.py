@@ -4,12 +4,25 @@ from __future__ import annotations
 
 import numpy as np
 
+from trunnion.motion.passing.capture_map import CaptureMap
 from trunnion.motion.passing.passing_result import Passing
 from trunnion.motion.simulation.order_map import order_map
 from trunnion.motion.transients.result import Transient
 from trunnion.pictures.looks import curve
 from trunnion.pictures.motion import TORQUES, map_of_orders
-from trunnion.pictures.picture import Axis, Item, Level, Line, Panel, Picture, points_at, single
+from trunnion.pictures.picture import (
+    Axis,
+    Cells,
+    ColouredGrid,
+    Colours,
+    Item,
+    Level,
+    Line,
+    Panel,
+    Picture,
+    points_at,
+    single,
+)
 from trunnion.pictures.shared import place_of
 from trunnion.results.words import Words
 
@@ -72,3 +85,20 @@ def passing(result: Passing, *, shaft: str = "", unit: str = "") -> Picture:
     ]
     across = Axis("mean speed of the line", words.of_speeds)
     return single(across, TORQUES, items, height=4.4, title=f"{result.ending.kind}")
+
+
+def capture_map(result: CaptureMap) -> Picture:
+    """Share captured in colour, lighter the more; its boundary at one half; where the torque is short without that."""
+    along, up = result.axes
+    x, y = result.x * along.factor, result.y * up.factor
+    colours = Colours("share of starting phases captured", "amplitude", 0.0, 1.0)
+    items: list[Item] = [ColouredGrid(x, y, result.share, colours)]
+    if result.short.any():
+        items.append(Cells(x, y, result.short, "no basin", "short of torque"))
+    if not result.computed.all():
+        items.append(Cells(x, y, ~result.computed, "not found", "not computed"))
+    pieces = result.boundary * (along.factor, up.factor)
+    if len(pieces):
+        parted = np.concatenate([pieces, np.full((len(pieces), 1, 2), np.nan)], axis=1).reshape(-1, 2)
+        items.append(Line(parted[:, 0], parted[:, 1], "captured half", "one half, known to a cell"))
+    return single(Axis(along.quantity, along.unit), Axis(up.quantity, up.unit), items, 7.0, 4.8, grid="")

@@ -115,6 +115,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "crossings": tables.crossings(contents),
         "shafts": tables.shafts(contents),
         "misfires": tables.misfires(contents) if contents.misfiring else None,
+        "misfire_checks": tables.misfire_checks(contents),
         "barred": tables.barred(contents),
         "heats": tables.heats(contents),
         "rules": tables.rules(contents),

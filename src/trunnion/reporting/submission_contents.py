@@ -11,10 +11,13 @@ from typing import TypeVar
 
 import numpy as np
 
+from trunnion.design.assessment.assess import of_response
 from trunnion.design.assessment.assessment_input import LoadCaseResponse, with_torques
+from trunnion.design.assessment.check import Check, worst
+from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.measures import torque_measures
 from trunnion.driveline.operation import Operation
-from trunnion.driveline.silent_cylinders import cylinders
+from trunnion.driveline.silent_cylinders import SILENT, cylinders
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.modes.mass_elastic import HolzerTable, holzer
@@ -69,13 +72,15 @@ class ShaftTorque:
 
 @dataclass(frozen=True)
 class Malfunction:
-    """One cylinder out of work: the largest vibratory torque [N m] of every spring over the range.
+    """One cylinder out of work.
 
-    ended: what ended the search before it was done, "" where nothing did.
+    vibratory: largest torque [N m] of every spring over range and load cases; checks: those of the response that
+    decide; ended: what ended the search before it was done, "" where nothing did.
     """
 
     cylinder: str
     vibratory: tuple[LargestTorque, ...]
+    checks: tuple[Check, ...]
     ended: str
 
 
@@ -88,6 +93,7 @@ class SubmissionContents:
     holzer: tuple[HolzerTable, ...]
     powers: tuple[MeanPower, ...]
     shafts: tuple[ShaftTorque, ...]
+    firing: tuple[LargestTorque, ...]
     misfiring: tuple[Malfunction, ...]
     cases: tuple[LoadCaseResponse, ...]
     left_out: tuple[str, ...]
@@ -113,7 +119,9 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
     cases = _searched(case for case in seen.subject.cases if case.response is not None)
     powers = unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case)))
     shafts = unless_refused("Torques of the shafts", lambda: _shafts(cases))
-    misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, cases, progress)))
+    firing = unless_refused("All cylinders firing", lambda: _all_firing(seen, cases)) or ()
+    normal = unless_refused("All cylinders firing", lambda: _vibratory(firing)) if firing else None
+    misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, firing, progress)))
     left_out += [f"Torques{case.suffix}: searched in part, {why}" for case in cases for why in {*case.ended_by}]
     left_out += [f"Misfire of {one.cylinder}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
     return SubmissionContents(
@@ -122,6 +130,7 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
         holzer=tuple(holzer(seen.natural_frequencies, mode) for mode in _modes(seen, campbell)),
         powers=powers or (),
         shafts=shafts or (),
+        firing=normal or (),
         misfiring=misfiring or (),
         cases=cases,
         left_out=tuple(left_out),
@@ -146,6 +155,8 @@ def _modes(seen: OverviewAssessment, campbell: CampbellDiagram | None) -> list[i
 def _powers(case: LoadCaseResponse) -> Iterator[MeanPower]:
     """Of the spring that carries the most power, over the range."""
     response, topo = case.answered, case.assembly.topology
+    if not response.springs:
+        return
     ratios = np.array(
         [topo.mean_speeds[topo.reference[c.far_group] if c.far is None else c.far] for c in topo.compliances]
     )
@@ -186,19 +197,42 @@ def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> Large
     return max(tops, key=lambda top: top.value)
 
 
+def _all_firing(seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...]) -> tuple[LoadCaseResponse, ...]:
+    """Load cases of a line with cylinders, none of them out of work; () of a line without cylinders."""
+    parts = seen.line.as_stated.parts
+    if not any(True for _ in cylinders(parts)):
+        return ()
+    loads = {"", *(one.name for one in (seen.line.operation or Operation()).load_cases)}
+    stated = [case for case in cases if case.name in loads]  # not those that put a cylinder out of work
+    working = {
+        name: {key: None for key in SILENT if getattr(one, key, None) is not None}
+        for name, one in parts
+        if any(getattr(one, key, None) is not None for key in SILENT)
+    }
+    if not working:
+        return tuple(stated)
+    return tuple(replace(case, assembly=assemble(case.assembly.line.replace_all(working))) for case in stated)
+
+
+def _vibratory(cases: tuple[LoadCaseResponse, ...]) -> tuple[LargestTorque, ...]:
+    return tuple(_largest(cases, "vibratory", s) for s in range(len(cases[0].answered.springs)))
+
+
 def _misfiring(
-    seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
+    seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
 ) -> Iterator[Malfunction]:
     """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds."""
     every = tuple(cylinders(seen.line.as_stated.parts))
-    loads = {"", *(one.name for one in (seen.line.operation or Operation()).load_cases)}
-    firing = [case for case in cases if case.name in loads]  # not those that the description puts out of work itself
     for done, one in enumerate(every if firing else (), start=1):
         called = one.owner if one.alone else f"cylinder {one.number} of {one.owner}"
         failing = tuple(_with_misfire(case, one.owner, one.number) for case in firing)
-        springs = range(len(cases[0].answered.springs))
-        found = tuple(_largest(failing, "vibratory", s) for s in springs)
-        yield Malfunction(called, found, "; ".join({why: None for case in failing for why in case.ended_by}))
+        found = weighed(worst(check for case in failing for check in of_response(seen.subject, case)), seen.operation)
+        yield Malfunction(
+            cylinder=called,
+            vibratory=_vibratory(failing),
+            checks=tuple(check for check in found if check.exceeded or check.satisfied or check.missing),
+            ended="; ".join({why: None for case in failing for why in case.ended_by}),
+        )
         if progress is not None:
             progress(done / len(every))
 

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import Any
 
 import numpy as np
 
 from trunnion.design.assessment.check import Check, Status
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.engine import Engine
+from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.modes.mass_elastic import HolzerTable, masses, springs
-from trunnion.reporting.submission_contents import LargestTorque, SubmissionContents
+from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
 from trunnion.results.speeds import order_name
 from trunnion.results.units import signs
@@ -26,6 +26,8 @@ MOST_EXCITATIONS = 60
 KIND_OF = {kind.unit: kind for kind in (ANGLE, TORQUE, PRESSURE, POWER, ACCELERATION, RATIO)}
 """Kinds of what checks compare, by the unit that they compare in."""
 VIBRATORY, PEAK, HEAT = "vibratory_torque", "max_torque", "heat rating"
+BY_STRESS = ("max_stress", "ship_shaft")
+"""Limits of a shaft that are none of torque."""
 
 
 def title_block(document: TitleBlock | None, made: str) -> Table:
@@ -66,7 +68,18 @@ def particulars(contents: SubmissionContents) -> Table:
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
         rows.append(("lowest natural frequencies", f"{lowest} Hz"))
+    if contents.misfiring:
+        rows.append(("a cylinder out of work", _malfunction(contents)))
     return Table(("", ""), tuple(rows))
+
+
+def _malfunction(contents: SubmissionContents) -> str:
+    """How the checks end with a cylinder out of work, in a few words."""
+    over = dict.fromkeys(c.name for one in contents.misfiring for c in one.checks if c.exceeded)
+    unknown = any(c.missing for one in contents.misfiring for c in one.checks)
+    if over:
+        return f"exceeded, see section 6: {', '.join(over)}"
+    return "not all judged, see section 6" if unknown else "checks of torque satisfied, section 6"
 
 
 def _power(watts: float) -> str:
@@ -78,15 +91,7 @@ def first_checks(contents: SubmissionContents) -> Table:
     words = Words(contents.seen.unit)
     judged = [check for check in contents.seen.assessment.checks if check.exceeded or check.satisfied or check.missing]
     rows = [
-        (
-            str(c.status),
-            c.name,
-            c.margin_word,
-            _speed(c.speed, words),
-            _quantity(c.value, c.unit, words),
-            _quantity(c.limit, c.unit, words),
-        )
-        for c in judged[:FIRST_CHECKS]
+        (str(c.status), c.name, c.margin_word, _speed(c.speed, words), *_sides(c, words)) for c in judged[:FIRST_CHECKS]
     ]
     heads = ("", "check", "margin", f"at [{contents.seen.unit}]", "value", "limit")
     return Table(heads, tuple(rows))
@@ -176,26 +181,15 @@ def excitations(contents: SubmissionContents) -> Table:
 
 
 def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str]]:
-    line = contents.seen.line
-    engines = {name: one for name, one in line.as_stated.parts if isinstance(one, Engine)}
-    seen: set[str] = set()
-    for name, element in line.parts:
-        engine = name.partition(".")[0]
-        if engine in engines and engine in seen:  # another throw, which turns the phases of the first by its firing
-            continue
-        seen.add(engine)
-        called = f"{engine}, each cylinder" if engine in engines else name
-        for one in element.excitation if isinstance(element, Disk) else ():
-            size = (
-                f"{four(one.amplitude)} N·m"
-                if one.amplitude is not None
-                else f"{four(one.quadratic_amplitude)} N·m·s² times ω²"
-                if one.quadratic_amplitude is not None
-                else f"table of {len(one.amplitudes)} points up to {four(max(one.amplitudes, default=0.0))} N·m"
-            )
+    """Of every element as it is stated: of an engine what one cylinder does, in its own phase."""
+    for name, element in contents.seen.line.as_stated.parts:
+        several = isinstance(element, Engine) and len(element.firing_order) > 1
+        called = f"{name}, each cylinder" if several else name
+        shakes = element.of_one_cylinder if isinstance(element, Engine) else getattr(element, "excitation", ())
+        for one in shakes:
             phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
-            yield called, order_name(one.order or 0.0, one.frequency or 0.0), size, phase
-        if isinstance(element, Disk) and element.firing_angles and engine not in engines:
+            yield called, order_name(one.order or 0.0, one.frequency or 0.0), _size(one), phase
+        if isinstance(element, Disk) and element.firing_angles:
             angles = ", ".join(four(float(np.rad2deg(angle))) for angle in element.firing_angles)
             yield name, f"{len(element.firing_angles)} cylinders", "each as above", f"firing at {angles}"
         if hasattr(element, "angle") and element.angle:
@@ -203,6 +197,17 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
             orders = getattr(element, "orders", ())
             counted = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
             yield name, f"{element.kind}, {counted if orders else 'even'}", f"{angle}° bend", ""
+
+
+def _size(one: Excitation) -> str:
+    """The amplitude of an excitation in words."""
+    if one.amplitude is not None:
+        return f"{four(one.amplitude)} N·m"
+    if one.quadratic_amplitude is not None:
+        return f"{four(one.quadratic_amplitude)} N·m·s² times ω²"
+    if one.share is not None:
+        return f"{four(100 * one.share)} % of the mean torque"
+    return f"table of {len(one.amplitudes)} points up to {four(one.largest)} N·m"
 
 
 def engines(contents: SubmissionContents) -> Table | None:
@@ -249,59 +254,79 @@ def powers(contents: SubmissionContents) -> Table:
 def shafts(contents: SubmissionContents) -> Table:
     """LargestTorque torques of every spring beside the limits stated for it."""
     words, several = Words(contents.seen.unit), len(contents.cases) > 1
-    limits = _limits(contents)
     return Table.of(
         {
             "spring": one.spring,
             "vibratory [N·m]": one.vibratory.value,
             f"at [{words.unit}]": one.vibratory.speed * words.factor,
             "leading order": one.leading,
-            "limit of it [N·m]": limits(one.spring, VIBRATORY),
+            "limit of it [N·m]": _limit(contents, one.spring, VIBRATORY, "vibratory_torque"),
             "vibratory stress [MPa]": one.stress / 1e6,
             "peak [N·m]": one.peak.value,
             f"peak at [{words.unit}]": one.peak.speed * words.factor,
-            "limit of peak [N·m]": limits(one.spring, PEAK),
+            "limit of peak [N·m]": _limit(contents, one.spring, PEAK, "maximum_torque"),
             **({"load case": one.peak.case or "as described"} if several else {}),
         }
         for one in contents.shafts
     )
 
 
-def _limits(contents: SubmissionContents) -> Any:
-    stated = {(one.element, one.key): one.value for one in contents.seen.line.limits_by_element}
-
-    def of(spring: str, key: str) -> float:
-        known = [stated[name, key] for name in spring.split(" and ") if (name, key) in stated]
-        return min(known, default=np.nan)
-
-    return of
+def _limit(contents: SubmissionContents, spring: str, key: str, rating: str) -> str:
+    """The least limit of torque [N m] that the file or a maker states for a spring; what else bounds it."""
+    names = spring.split(" and ")
+    stated = [(one.key, one.value) for one in contents.seen.line.limits_by_element if one.element in names]
+    parts = dict(contents.seen.line.parts)
+    rated = [getattr(parts[name], rating, None) for name in names if name in parts]
+    known = [value for own, value in stated if own == key] + [float(one) for one in rated if one is not None]
+    if known:
+        return four(min(known))
+    return "by stress" if any(own in BY_STRESS for own, _ in stated) else EMPTY
 
 
 def misfires(contents: SubmissionContents) -> Table:
     """Every spring with all cylinders firing and with the worst of them out of work."""
-    words, limits = Words(contents.seen.unit), _limits(contents)
+    words = Words(contents.seen.unit)
 
-    def worst(spring: int) -> tuple[str, LargestTorque]:
-        found = max(contents.misfiring, key=lambda one: one.vibratory[spring].value)
-        return found.cylinder, found.vibratory[spring]
+    def row(s: int, spring: str) -> dict[str, object]:
+        worst = max(contents.misfiring, key=lambda one: one.vibratory[s].value)
+        top = worst.vibratory[s]
+        return {
+            "spring": spring,
+            "all firing [N·m]": contents.firing[s].value,
+            "one misfiring [N·m]": top.value,
+            "worst": worst.cylinder,
+            f"at [{words.unit}]": top.speed * words.factor,
+        }
 
-    rows: list[dict[str, object]] = []
-    for s, shaft in enumerate(contents.shafts):
-        cylinder, top = worst(s)
-        limit = limits(shaft.spring, VIBRATORY)
-        over = top.value > limit
-        rows.append(
-            {
-                "spring": shaft.spring,
-                "all firing [N·m]": shaft.vibratory.value,
-                "one misfiring [N·m]": top.value,
-                "worst": cylinder,
-                f"at [{words.unit}]": top.speed * words.factor,
-                "limit [N·m]": limit,
-                "": "exceeded" if over else "within" if np.isfinite(limit) else "no limit",
-            }
-        )
-    return Table.of(rows)
+    return Table.of(row(s, shaft.spring) for s, shaft in enumerate(contents.shafts))
+
+
+def misfire_checks(contents: SubmissionContents) -> Table:
+    """Every check of the response that decides, with the cylinder out of work that comes nearest to its limit."""
+    words = Words(contents.seen.unit)
+    found: dict[str, tuple[Check, str]] = {}
+    for one in contents.misfiring:
+        for check in one.checks:
+            known = found.get(check.name)
+            if known is None or _severity(check) < _severity(known[0]):
+                found[check.name] = check, one.cylinder
+    ordered = sorted(found.values(), key=lambda one: _severity(one[0]))
+    rows = [
+        (str(c.status), c.name, c.margin_word, _speed(c.speed, words), *_sides(c, words), cylinder)
+        for c, cylinder in ordered
+    ]
+    heads = ("", "check", "margin", f"at [{words.unit}]", "value", "limit", "out of work")
+    return Table(heads, tuple(rows))
+
+
+def _severity(check: Check) -> tuple[bool, float]:
+    """Exceeded first, then by margin; what could not be judged before what is satisfied."""
+    return check.satisfied, check.margin if np.isfinite(check.margin) else -np.inf
+
+
+def _sides(check: Check, words: Words) -> tuple[str, str]:
+    """Value and limit."""
+    return _quantity(check.value, check.unit, words), _quantity(check.limit, check.unit, words)
 
 
 def crossings(contents: SubmissionContents) -> Table:

@@ -20,19 +20,19 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.driveline.arguments import one_number, one_speed, speeds_of
+from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
-from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.passing.passing_result import Passing, PassingEnd
 from trunnion.motion.passing.rigid import rigid_time
+from trunnion.motion.passing.start import begun_line, ends_of, lasting
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.strongest_order import strongest_order
-from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line
+from trunnion.motion.transients.prepare import Actions, follow
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS
@@ -96,38 +96,27 @@ def passing(
     'captured'
     """
     description = line.line if isinstance(line, Assembly) else line
-    first, last = _ends(speeds)
-    asked = actions_of([one.but(hold=True) for one in torque], friction, ())
-    if not asked[0]:
-        raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
-    prepared = prepared_line(description, asked, first)
-    if not prepared.assembly.topology.free:
-        raise InputError(
-            "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
-            remedy="leave it out, and put a Disk of the drive's inertia in its place",
-        )  # fmt: skip
+    first, last = ends_of(speeds)
+    asked = lasting(torque, friction)
+    prepared = begun_line(description, asked, first)
     angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, asked, first, last)
     made = _Follower(prepared, asked, first, last, angle, rigid)
     run, kind = made.ending(tolerance)
-    other = kind
-    if not time_is_up():
-        other = made.ending(min(LOOSER * tolerance, 1e-3))[1]
+    other = made.other_kind(kind, tolerance)
     return _result(description, made, run, kind, other, tolerance)
 
 
 def passing_kind(
     prepared: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float, tolerance: float
 ) -> str:
-    """The kind of ending alone, at one tolerance: for maps."""
-    return _Follower(prepared, asked, first, last, phase, rigid).ending(tolerance)[1]
+    """The kind of ending alone, as ``passing`` has it."""
+    made = _Follower(prepared, asked, first, last, phase, rigid)
+    kind = made.ending(tolerance)[1]
+    return kind if _alike(kind, made.other_kind(kind, tolerance)) else "undecided"
 
 
-def _ends(speeds: Sequence[float | str]) -> tuple[float, float]:
-    ends = [one_speed(one, "speeds") for one in speeds] if len(speeds) == 2 else speeds_of(speeds).tolist()
-    if len(ends) != 2 or not np.all(np.isfinite(ends)) or not 0 <= ends[0] < ends[1]:
-        remedy = '("0 rpm", "1500 rpm"), say'
-        raise InputError("must be two rising speeds", key="speeds", value=list(speeds), remedy=remedy)
-    return float(ends[0]), float(ends[1])
+def _alike(kind: str, other: str) -> bool:
+    return kind == other or {kind, other} <= {"passed", "dwelt"}
 
 
 class _Follower:
@@ -168,6 +157,10 @@ class _Follower:
             return run, "dwelt" if run.end > DWELT * self.rigid else "passed"
         return run, "undecided"
 
+    def other_kind(self, kind: str, tolerance: float) -> str:
+        """How it ends at a looser tolerance; as it did where there is no time for that."""
+        return kind if time_is_up() else self.ending(min(LOOSER * tolerance, 1e-3))[1]
+
     def _on(self, run: Transient | None, place: Place, length: float, tolerance: float) -> Transient:
         found = follow(self.line, place, length, self.asked, tolerance, MOST_STEPS, self.last)
         made = Transient.of(self.line, found, self.asked, tolerance, place.time, "", self.line.assembly.line)
@@ -200,7 +193,7 @@ def _result(
     strongest = strongest_order(run, since, until)
     angle = run.whole.angle(np.array([since, until]))
     speed = float((angle[1] - angle[0]) / (until - since))
-    ways = None if kind == other or {kind, other} <= {"passed", "dwelt"} else (kind, other)
+    ways = None if _alike(kind, other) else (kind, other)
     end = PassingEnd(
         kind="undecided" if ways else kind,
         time=run.end,

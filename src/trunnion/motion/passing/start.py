@@ -1,0 +1,57 @@
+"""What a passage begins with: two rising speeds, torques that last, a line that nothing prescribes the speed of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from trunnion.driveline.arguments import one_speed, speeds_of
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.equations.line_system import LineSystem
+from trunnion.errors import InputError
+from trunnion.motion.transients.prepare import Actions, actions_of, prepared_line
+
+
+def ends_of(speeds: Sequence[float | str]) -> tuple[float, float]:
+    """First and last speed [rad/s].
+
+    Raises
+    ------
+    InputError : they are not two, or do not rise.
+    """
+    ends = [one_speed(one, "speeds") for one in speeds] if len(speeds) == 2 else speeds_of(speeds).tolist()
+    if len(ends) != 2 or not np.all(np.isfinite(ends)) or not 0 <= ends[0] < ends[1]:
+        remedy = '("0 rpm", "1500 rpm"), say'
+        raise InputError("must be two rising speeds", key="speeds", value=list(speeds), remedy=remedy)
+    return float(ends[0]), float(ends[1])
+
+
+def lasting(torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque]) -> Actions:
+    """What acts, tables lasting beyond their ends.
+
+    Raises
+    ------
+    InputError : there is no torque.
+    """
+    asked = actions_of([one.but(hold=True) for one in torque], friction, ())
+    if not asked[0]:
+        raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
+    return asked
+
+
+def begun_line(line: Driveline, asked: Actions, first: float) -> LineSystem:
+    """The line, ready to be followed from its ``first`` speed [rad/s].
+
+    Raises
+    ------
+    InputError : a ConstantSpeed; what ``transient`` refuses.
+    """
+    prepared = prepared_line(line, asked, first)
+    if not prepared.assembly.topology.free:
+        raise InputError(
+            "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
+            remedy="leave it out, and put a Disk of the drive's inertia in its place",
+        )  # fmt: skip
+    return prepared

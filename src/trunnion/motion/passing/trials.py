@@ -1,0 +1,106 @@
+"""The same line run up again and again: with its drive scaled, with a number changed, from several starting phases."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from trunnion.arrays import Array
+from trunnion.driveline.arguments import numbers, whole_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.parameters import pack
+from trunnion.driveline.scenarios import AppliedTorque
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.motion.passing.passing import passing_kind
+from trunnion.motion.passing.rigid import rigid_time
+from trunnion.motion.passing.start import begun_line
+from trunnion.motion.transients.prepare import Actions
+from trunnion.results.counts import few
+
+FACTOR = "factor"
+"""Name of the parameter that scales the drive torque."""
+MOST_PHASES = 10_000
+
+
+@dataclass(frozen=True)
+class Trials:
+    """What is the same in all of them: torques and friction ``asked``; ``drive``: name of the disk whose torques are
+    scaled; first and last speed [rad/s]; ``phases`` (phase,) [rad]; error allowed per step."""
+
+    line: Driveline
+    asked: Actions
+    drive: str
+    first: float
+    last: float
+    phases: Array
+    tolerance: float
+
+    def kinds(self, values: Mapping[str, float]) -> list[str]:
+        """How the line with those values of its parameters ends, from every starting phase.
+
+        Raises
+        ------
+        InputError : a value that the line refuses.
+        """
+        packed = pack(self.line)
+        table = packed.table(1)
+        for path, value in values.items():
+            if path != FACTOR:
+                packed.resolve_axis(path).put(table, value)
+        factor = values.get(FACTOR, 1.0)
+        torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in self.asked[0])
+        asked = (torque, *self.asked[1:])
+        prepared = begun_line(packed.line_at(table[0]), asked, self.first)
+        rigid = rigid_time(prepared, asked, self.first, self.last)
+        return [
+            passing_kind(prepared, asked, self.first, self.last, float(phase), rigid, self.tolerance)
+            for phase in self.phases
+        ]
+
+
+def trials_of(
+    line: Driveline | Assembly, ends: tuple[float, float], asked: Actions, drive: str | None,
+    phases: int | ArrayLike, tolerance: float,
+) -> Trials:  # fmt: skip
+    """Trials with what is left out chosen, and what is wrong refused."""
+    description = line.line if isinstance(line, Assembly) else line
+    begun_line(description, asked, ends[0])
+    driven = list(dict.fromkeys(one.on for one in asked[0]))
+    if drive is None and len(driven) > 1:
+        raise InputError("is missing, for torques act on several disks", key="drive", remedy=f"name {few(driven, 3)}")
+    if drive is not None and drive not in driven:
+        raise InputError("is given no torque", key="drive", value=drive, remedy=f"torques act on {few(driven, 3)}")
+    return Trials(description, asked, drive or driven[0], *ends, _phases(phases), tolerance)
+
+
+def scaled(torque: AppliedTorque, factor: float) -> AppliedTorque:
+    """A torque times a factor."""
+    if (most := torque.breakdown_torque) is not None:
+        return torque.but(breakdown_torque=factor * float(most))
+    if torque.table:
+        return torque.but(table=(factor * np.array(torque.table)).tolist())
+    return torque.but(torque=[factor * float(one) for one in torque.torque])
+
+
+def _phases(asked: int | ArrayLike) -> Array:
+    """Starting phases (phase,) [rad]. So many are even over half a turn, which is what a Hooke's joint repeats in, and
+    every other one is half a turn further on."""
+    if isinstance(asked, int | np.integer) and not isinstance(asked, bool):
+        count = whole_number(asked, "phases", 1)
+        if count > MOST_PHASES:
+            raise InputError("are too many", key="phases", value=count, remedy=f"at most {MOST_PHASES}; 8, say")
+        k = np.arange(count)
+        return np.asarray(np.pi * (k / count + k % 2))
+    found = numbers(asked, "phases", "a number of them, 8, say, or angles [rad]")
+    if not np.all(np.isfinite(found)):
+        raise InputError("must be finite", key="phases", value=list(found), remedy="angles [rad]")
+    return found
+
+
+def passes(kinds: Sequence[str]) -> int:
+    """How many of them came to the last speed."""
+    return sum(kind in ("passed", "dwelt") for kind in kinds)
