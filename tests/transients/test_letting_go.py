@@ -122,3 +122,9 @@ def test_a_run_that_begins_at_the_upper_end_of_a_table_slows_down() -> None:
     ]
     assert tn.transient(pair(), 0.5, torque=slow, speed=100.0).outcome.kind == "reached"
     assert tn.transient(pair(), 0.5, torque=slow[:1], speed=100.01).outcome.kind == "beyond the table"
+
+
+def test_a_negative_start_with_a_drive_share_is_refused() -> None:
+    shared = pair().replace("motor", drive_share=1.0).replace("load", viscous_load=2.0)
+    with pytest.raises(tn.InputError, match="not backwards"):
+        tn.transient(shared, 1.0, speed=-50.0)
