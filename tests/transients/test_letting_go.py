@@ -128,3 +128,12 @@ def test_a_negative_start_with_a_drive_share_is_refused() -> None:
     shared = pair().replace("motor", drive_share=1.0).replace("load", viscous_load=2.0)
     with pytest.raises(tn.InputError, match="not backwards"):
         tn.transient(shared, 1.0, speed=-50.0)
+
+
+def test_a_torque_that_jumps_over_a_level_crosses_it() -> None:
+    step = [A(on="motor", time=[0, 1], torque=[0.0, 40.0], between="steps")]
+    level = tn.LevelCrossing(of="clutch", torque=-10.0, ends=False)
+    run = tn.transient(clutched(1.0, 1.0, 50.0), 2.0, torque=step, speed=0.0, crossing=[level])
+    assert [t for t, _ in run.crossings] == [1.0]
+    ended = tn.transient(clutched(1.0, 1.0, 50.0), 2.0, torque=step, speed=0.0, crossing=[level.but(ends=True)])
+    assert ended.outcome.kind == "crossed" and ended.end == 1.0

@@ -170,7 +170,7 @@ class Stepper:
         chunk = FIRST_PIECE * duration if self.free else np.inf
         pieces: list[Piece] = []
         crossed: list[tuple[float, str]] = []
-        steps, guess = 0, 0.0
+        steps, guess, carried = 0, 0.0, np.zeros(0)
         while True:
             if beyond := self._beyond(place):
                 return Found(pieces, place, beyond, crossed)
@@ -183,6 +183,11 @@ class Stepper:
             until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
             place = self._following(self._settled(place, SHORT * (until - place.time)))
             self._write(place)
+            passed = [one for one in self.crossings if self._jumped(one, place, carried)]
+            crossed += [(place.time, one.label) for one in passed]
+            if ending := next((one for one in passed if one.ends), None):
+                words = f"stopped at t = {place.time:.6g} s, where the {ending.label}"
+                return Found(pieces, place, Outcome(True, "crossed", words), crossed)
             watched = self._watched(place)
             trajectory = integrate(
                 replace(self.equations, numbers=self.numbers), place.time, until, place.state, regime=place.regime,
@@ -205,6 +210,7 @@ class Stepper:
             if self.free:
                 chunk *= float(np.clip((FURTHEST / max(abs(off), 1e-9)) ** (1 / 3), 0.3, 3.0))
             place = self._after(place, trajectory)
+            carried = self._spring_torques(replace(place, regime=int(trajectory.regime[-1])))
             if trajectory.end is IntegrationEnd.REACHED:
                 for k, one in enumerate(self.torques):
                     for i, axis in enumerate(one.axes):
@@ -501,6 +507,21 @@ class Stepper:
         spring = next(e for e, c in enumerate(self.topo.compliances) if place in c.shafts)
         kind = {"torque": core.TORQUE, "twist": core.TWIST, "slip": core.TWIST_RATE}[one.key]
         return _Watched(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
+
+    def _spring_torques(self, place: Place) -> Array:
+        """Torque [N m] of every spring as the numbers stand."""
+        self._rates(place)
+        first = int(self.core.places(self.numbers)[3]) + 5 * len(self.topo.stations) + 7 * self.topo.size
+        return self.numbers[first : first + len(self.topo.compliances)].copy()
+
+    def _jumped(self, one: LevelCrossing, place: Place, before: Array) -> bool:
+        """Whether a torque jumps over its level between two pieces, as that of a slip clutch does."""
+        if one.key != "torque" or not len(before):
+            return False
+        spring = self._asked(one).of
+        old, new = before[spring] - one.level, self._spring_torques(place)[spring] - one.level
+        ways = {"rising": old < 0 < new, "falling": old > 0 > new, "either": old * new < 0}
+        return bool(ways[one.direction]) and abs(new - old) > LATER * (abs(one.level) + abs(new))
 
     def _said(self, one: LevelCrossing) -> str:
         """The label, speeds in the unit of the line."""
