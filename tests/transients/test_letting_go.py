@@ -137,3 +137,14 @@ def test_a_torque_that_jumps_over_a_level_crosses_it() -> None:
     assert [t for t, _ in run.crossings] == [1.0]
     ended = tn.transient(clutched(1.0, 1.0, 50.0), 2.0, torque=step, speed=0.0, crossing=[level.but(ends=True)])
     assert ended.outcome.kind == "crossed" and ended.end == 1.0
+
+
+def test_rolling_resistance_drives_no_vehicle_backwards() -> None:
+    car = tn.Vehicle(name="car", mass=1500.0, wheel_radius=0.3, rolling_resistance=0.012)
+    tyre = tn.Tyre(name="tyre", stiffness=1e4, damping=100.0)
+    coasting = tn.Driveline([tn.Disk(name="wheel", inertia=2.0), tyre, car])
+    slows = 0.012 * 1500 * 9.80665 * 0.3 / (1500 * 0.3**2 + 2.0)
+    run = tn.transient(coasting, 60.0, speed=10.0)
+    assert run.outcome.kind == "rolls back" and run.end == pytest.approx(10 / slows, rel=1e-2)
+    assert tn.transient(coasting, 5.0, speed=0.0).outcome.kind == "rolls back"
+    assert tn.transient(coasting, 5.0, speed=10.0).outcome.kind == "reached"

@@ -23,6 +23,7 @@ from trunnion.arrays import Array, Integers
 from trunnion.driveline.quantities import SPEED
 from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.driveline.vehicle import Vehicle
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
@@ -156,6 +157,10 @@ class Stepper:
         n, reach = self.topo.size, [slider.reach for slider in line.sliders]
         weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
         self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
+        self.rolling = [
+            (name, station) for station, place in self.topo.disks for name, e in (line.assembly.line.parts[place],)
+            if isinstance(e, Vehicle) and e.rolling_resistance
+        ]  # fmt: skip
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
     # What acts.
@@ -172,6 +177,8 @@ class Stepper:
         crossed: list[tuple[float, str]] = []
         steps, guess, carried = 0, 0.0, np.zeros(0)
         while True:
+            if pieces and (beyond := self._rolls_back(place)):
+                return Found(pieces, place, beyond, crossed)
             if beyond := self._beyond(place):
                 return Found(pieces, place, beyond, crossed)
             if place.time >= end:
@@ -268,6 +275,20 @@ class Stepper:
                         f"of torques, which goes from {span}; extend it, or write hold = true"
                     )
                     return Outcome(False, "beyond the table", words)
+        return None
+
+    def _rolls_back(self, place: Place) -> Outcome | None:
+        """The outcome of a run in which a vehicle turns back: its rolling resistance, a torque against its sense of
+        rotation like a weight, would drive it there."""
+        self._write_course(place)
+        for name, station in self.rolling:
+            speed = self._of_station(place, station)[1] * np.sign(self.topo.mean_speeds[station])
+            if speed < -LATER * self.usual:
+                words = (
+                    f"stopped at t = {place.time:.6g} s: {name} comes to rest or rolls back, where its "
+                    "rolling_resistance would drive it; end the run before, or leave that out and brake it by friction"
+                )
+                return Outcome(False, "rolls back", words)
         return None
 
     # The rotation that goes with the line.
@@ -473,6 +494,10 @@ class Stepper:
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
                 found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
+        for _, station in self.rolling:
+            level = (0.0, -2 * LATER * self.usual, 0.0, 0.0, 0.0)
+            sense = float(np.sign(self.topo.mean_speeds[station]))
+            found.append(_Watched(core.STATION_SPEED, station, sense, level, -1, True, lambda at: at))
         if self.mean_speed is not None:
             level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
             found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
