@@ -105,6 +105,14 @@ def test_fifteen_degrees_hang_at_half_the_natural_frequency_and_five_pass() -> N
     assert passes.outcome.kind == "passed"
 
 
+def test_nothing_is_captured_before_the_last_step_of_its_torques() -> None:
+    """It hangs at 24.3 rad/s for 60 s, and passes within seconds once its torque rises."""
+    later = [tn.AppliedTorque(on="motor", time=[0, 60.0], torque=[2.5, 40.0], between="steps")]
+    found = tn.passing(line(1.0, 4.0, tn.deg(15), 2e3, 1.0), (15.0, 40.0), torque=later)
+    assert found.outcome.kind == "passed"
+    assert found.ending.time == pytest.approx(62.0, abs=0.5)
+
+
 def test_a_motor_that_is_too_weak_is_told_apart() -> None:
     loaded = line(1.0, 4.0, 0.02, 2e3, 1.0).replace("load", quadratic_load=0.01)
     found = tn.passing(loaded, (5.0, 30.0), torque=weak(4.0))

@@ -82,6 +82,13 @@ def read_speed(asked: CommandInput, text: str, key: str) -> float:
     return speed
 
 
+def read_start(asked: CommandInput, text: str, key: str) -> float:
+    """The same, or 0 for standstill."""
+    from trunnion.driveline.quantities import SPEED
+
+    return 0.0 if _read_end(text, SPEED, asked.unit, key) == 0 else read_speed(asked, text, key)
+
+
 def read_speed_ends(asked: CommandInput, text: str, key: str) -> tuple[float, float]:
     """``LOW:HIGH`` in rad/s."""
     read = [read_speed(asked, end, key) for end in text.split(":")]

@@ -11,7 +11,7 @@ from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
 from trunnion.cli.options import Line, Progress, SpeedUnit
 from trunnion.cli.places import CommandOutput
-from trunnion.cli.readers import range_of, read_even_axis, read_speed
+from trunnion.cli.readers import range_of, read_even_axis, read_speed, read_start
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -26,7 +26,7 @@ def transient(
     line: Line,
     *,
     scenario: str = "",
-    speed: Annotated[float | None, OptionReader(read_speed)],
+    speed: Annotated[float | None, OptionReader(read_start)],
     tolerance: Tolerance = 1e-10,
     unit: SpeedUnit,
 ) -> CommandOutput:
@@ -53,7 +53,7 @@ def _scenario(line: tn.Driveline, named: str) -> str:
 def passing(
     line: Line,
     *,
-    from_: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[0])],
+    from_: Annotated[float, OptionReader(read_start, missing=lambda asked: range_of(asked)[0])],
     to: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[1])],
     scenario: str = "",
     phase: float = 0.0,
@@ -97,7 +97,7 @@ def capture_map(
     *,
     x: Annotated[Axis, OptionReader(_axis, "HookeJoint *.angle")],
     y: Annotated[Axis, OptionReader(_axis, "factor:0.5:2")],
-    from_: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[0])],
+    from_: Annotated[float, OptionReader(read_start, missing=lambda asked: range_of(asked)[0])],
     to: Annotated[float, OptionReader(read_speed, missing=lambda asked: range_of(asked)[1])],
     scenario: str = "",
     drive: str = "",

@@ -71,7 +71,8 @@ class AppliedTorque(Record):
     ----------
     on : name of the disk.
     time, speed, angle : [s], [rad/s], [rad] of the disk, rising; one of them, or two for a ``table``. Times may repeat
-        once, where the torque jumps. Angles count from where the disk stands at t = 0 in the rotation of the line.
+        once, where the torque jumps. Angles count from 0 of the line's rotation: at t = 0 the disk stands at ``phase``
+        times its speed over that of the input.
     torque : [N m] at those points; positive drives.
     table : of two variables, one row of torques [N m] for each point of the first.
     between : "lines"; "cubic", monotone as ``scipy``'s ``PchipInterpolator``; over time also "steps", each value

@@ -7,7 +7,7 @@ turns freely gives some of it to what vibrates, near a resonance the more the sl
 It has passed when its mean rotation, Σ Jρφ/Σ Jρ², first has the last speed. It is followed in stretches of many turns,
 of several times what its vibration takes to decay, and of a tenth at least of the time in which the rigid line would be
 there. It is captured where its mean speed has settled: where each of the last stretches gains so little that it would
-take another twenty times the rigid time at least.
+take another twenty times the rigid time at least, what acts having come to its last point in time.
 
 A. Sommerfeld, Z. VDI 46 (1902) 391; V. O. Kononenko, *Vibrating Systems with a Limited Power Supply* (1969).
 """
@@ -24,6 +24,7 @@ from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -124,6 +125,8 @@ class _Follower:
 
     def __init__(self, line: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float) -> None:
         self.line, self.asked, self.first, self.last, self.phase, self.rigid = line, asked, first, last, phase, rigid
+        knots = time_knots(placed_torques(line.assembly, asked[0]), placed_frictions(line.assembly, asked[1]))
+        self.steady = float(max(knots, default=0.0)) if np.isfinite(rigid) else 0.0
         modes = natural_frequencies(line.assembly)
         self.decay = float(max((1 / (z * w) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if
                                 w > 0 and z > 0), default=0.0))  # fmt: skip
@@ -138,6 +141,7 @@ class _Follower:
             state[n : 2 * n] = 0.0
         place = Place(0.0, state, angle=self.phase, speed=self.first)
         stretches: list[tuple[float, float, float]] = []
+        unsteady = 0  # stretches in which what acts still changes over time: nothing has settled there
         run: Transient | None = None
         while True:
             speed = max(abs(float(stretches[-1][1] if stretches else self.first)), 0.1 * self.last)
@@ -149,7 +153,9 @@ class _Follower:
             if time_is_up():
                 return run, "undecided"
             stretches.append(self._means(run, since))
-            if self._settled(stretches):
+            if since < self.steady:
+                unsteady = len(stretches)
+            if self._settled(stretches[unsteady:]):
                 return run, "captured" if np.isfinite(self.rigid) else "short of torque"
             if run.end > LONGEST * self.usual and len(stretches) > LONGEST:
                 return run, "undecided"

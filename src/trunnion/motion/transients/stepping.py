@@ -5,13 +5,16 @@ does at that moment, Σ Jρφ/Σ Jρ² with its speed and acceleration, so that 
 whatever turns are made, from standstill and through it.
 
 Dry friction on a disk is T_c against its rotation while it turns. Where it comes to rest the disk stands while what
-acts on it stays within the friction at rest, and then sets off the way it is pulled.
+acts on it stays within the friction at rest, and then sets off the way it is pulled. What stands and what sticks is
+judged anew where a piece begins, for a torque may have jumped there, and along every piece it is checked that it bears
+what it is asked for.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -20,10 +23,12 @@ from trunnion.arrays import Array, Integers
 from trunnion.driveline.quantities import SPEED
 from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.driveline.vehicle import Vehicle
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
-from trunnion.equations.line_regimes import line_kernel, watch_kernel
+from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
+from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed
@@ -38,6 +43,15 @@ FIRST_PIECE = 0.01
 BESIDE = 1e-9
 """Share of a piece of a table by which a speed goes beyond its end before the next one is taken: so that a switch
 begins on its own side."""
+EQUAL = 1e-12
+"""Share of what friction at rest bears within which it is asked for just that: whether it then lets go tells how both
+change."""
+LATER = 1e-9
+"""Share of the same by which a group is let go later, so that the switch begins on its own side."""
+SHORT = 1e-3
+"""Of a piece, and of 1 over the highest natural frequency: the time over which that change is taken."""
+CHECKS, EXCESS = 16, 1e-6
+"""Stretches of a piece at whose ends it is checked what sticks, and the share beyond what it bears that is an error."""
 
 
 LOCATED = -1
@@ -137,11 +151,16 @@ class Stepper:
         stiff = twist.T @ (co.stiffness[0][:, None] * twist)
         root = np.sqrt(felt)
         frequencies = np.sqrt(np.maximum(np.linalg.eigvalsh(stiff / np.outer(root, root)), 0.0))
+        self.fastest = float(frequencies.max(initial=0.0))
         elastic = frequencies[frequencies > 1e-6 * max(float(frequencies.max()), 1e-30)]
-        usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
+        self.usual = usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
         n, reach = self.topo.size, [slider.reach for slider in line.sliders]
         weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
         self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
+        self.rolling = [
+            (name, station) for station, place in self.topo.disks for name, e in (line.assembly.line.parts[place],)
+            if isinstance(e, Vehicle) and e.rolling_resistance
+        ]  # fmt: skip
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
     # What acts.
@@ -153,12 +172,13 @@ class Stepper:
         knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
         place = replace(place, regime=self._regime(place))
-        place = replace(place, senses=self._settled(place))
         chunk = FIRST_PIECE * duration if self.free else np.inf
         pieces: list[Piece] = []
         crossed: list[tuple[float, str]] = []
-        steps, guess = 0, 0.0
+        steps, guess, carried = 0, 0.0, np.zeros(0)
         while True:
+            if pieces and (beyond := self._rolls_back(place)):
+                return Found(pieces, place, beyond, crossed)
             if beyond := self._beyond(place):
                 return Found(pieces, place, beyond, crossed)
             if place.time >= end:
@@ -168,8 +188,13 @@ class Stepper:
                 return Found(pieces, place, Outcome(False, "out of time", words), crossed)
             ahead = knots[knots > place.time]
             until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
-            place = self._following(place)
+            place = self._following(self._settled(place, SHORT * (until - place.time)))
             self._write(place)
+            passed = [one for one in self.crossings if self._jumped(one, place, carried)]
+            crossed += [(place.time, one.label) for one in passed]
+            if ending := next((one for one in passed if one.ends), None):
+                words = f"stopped at t = {place.time:.6g} s, where the {ending.label}"
+                return Found(pieces, place, Outcome(True, "crossed", words), crossed)
             watched = self._watched(place)
             trajectory = integrate(
                 replace(self.equations, numbers=self.numbers), place.time, until, place.state, regime=place.regime,
@@ -183,6 +208,8 @@ class Stepper:
             steps += trajectory.steps
             guess = min(trajectory.next_step, until - place.time)
             pieces.append(Piece(self.line, trajectory, self.numbers.copy(), self.torques, self.frictions))
+            if wrong := self._overloaded(place, trajectory):
+                return Found(pieces, self._after(place, trajectory), wrong, crossed)
             own = self.equations.transitions.shape[1]
             for at, which in zip(trajectory.event_time, trajectory.event_which, strict=True):
                 if which >= own and watched[which - own].label:
@@ -190,6 +217,7 @@ class Stepper:
             if self.free:
                 chunk *= float(np.clip((FURTHEST / max(abs(off), 1e-9)) ** (1 / 3), 0.3, 3.0))
             place = self._after(place, trajectory)
+            carried = self._spring_torques(replace(place, regime=int(trajectory.regime[-1])))
             if trajectory.end is IntegrationEnd.REACHED:
                 for k, one in enumerate(self.torques):
                     for i, axis in enumerate(one.axes):
@@ -217,7 +245,14 @@ class Stepper:
             return axis.piece(place.time)
         self._write_course(place)
         angle, speed = self._of_station(place, one.station)
-        return axis.piece(one.sense * (speed if axis.variable == "speed" else angle))
+        value = one.sense * (speed if axis.variable == "speed" else angle)
+        inner = axis.inner(axis.piece(value))
+        if not axis.hold and len(axis.knots) > 1 and abs(value - axis.knots[-1]) <= 1e-3 * self._beside(axis, inner):
+            return inner  # begins at the upper end; where it goes beyond is watched
+        return axis.piece(value)
+
+    def _beside(self, axis: TorqueAxis, piece: int) -> float:
+        return float(BESIDE * (axis.knots[piece + 1] - axis.knots[piece]))
 
     def _of_station(self, place: Place, station: int) -> tuple[float, float]:
         """Angle [rad] and speed [rad/s] of a station."""
@@ -240,6 +275,20 @@ class Stepper:
                         f"of torques, which goes from {span}; extend it, or write hold = true"
                     )
                     return Outcome(False, "beyond the table", words)
+        return None
+
+    def _rolls_back(self, place: Place) -> Outcome | None:
+        """The outcome of a run in which a vehicle turns back: its rolling resistance, a torque against its sense of
+        rotation like a weight, would drive it there."""
+        self._write_course(place)
+        for name, station in self.rolling:
+            speed = self._of_station(place, station)[1] * np.sign(self.topo.mean_speeds[station])
+            if speed < -LATER * self.usual:
+                words = (
+                    f"stopped at t = {place.time:.6g} s: {name} comes to rest or rolls back, where its "
+                    "rolling_resistance would drive it; end the run before, or leave that out and brake it by friction"
+                )
+                return Outcome(False, "rolls back", words)
         return None
 
     # The rotation that goes with the line.
@@ -295,33 +344,115 @@ class Stepper:
             stands = place.senses.get(first, 1.0) == 0.0
             self.numbers[core.HEAD + first * core.PER_STATION + core.STANDS] = float(stands)
 
-    # Dry friction.
+    # What stands or sticks.
 
-    def _settled(self, place: Place) -> dict[int, float]:
-        """Senses in which the groups with friction turn when a run begins."""
-        senses: dict[int, float] = {}
+    def _settled(self, place: Place, soon: float) -> Place:
+        """The same place, where it is judged anew what stands and what sticks; ``soon`` [s] is a short time."""
+        if self.fastest:
+            soon = min(soon, SHORT / self.fastest)
+        place = replace(place, senses={first: way for first, way in place.senses.items() if first in self.groups})
         self._write_course(place)
-        for first in self.groups:
-            speed = self._of_station(place, first)[1]
+        for first, several in self.groups.items():
             known = place.senses.get(first)
-            if known is not None and (known != 0.0) == (speed != 0.0):
-                senses[first] = known
-            elif speed != 0.0:
-                senses[first] = float(np.sign(speed))
-            else:
-                senses = self._settle(replace(place, senses=senses), first, senses).senses
-        return senses
+            if not any(one.stated.at_rest and any(one.share(place.time)) for one in several):
+                senses = {key: sense for key, sense in place.senses.items() if key != first}
+                place = replace(place, senses=senses)  # nothing rubs yet
+                continue
+            if known is None:
+                speed = self._of_station(place, first)[1]
+                known = float(np.sign(speed)) if abs(speed) > EQUAL * max(self.usual, abs(place.speed)) else 0.0
+            place = replace(place, senses={**place.senses, first: known})
+            if known == 0.0:
+                place = self._settle(place, first, soon)
+        return self._slipping(place, soon) if self.line.clutches else place
 
-    def _settle(self, place: Place, first: int, senses: dict[int, float]) -> Place:
+    def _settle(self, place: Place, first: int, soon: float) -> Place:
         """A group at rest: it stands, or sets off the way it is pulled."""
         i = int(self.topo.unknown_of[first])
         state = place.state.copy()
         state[self.topo.size + i] = -self.topo.mean_speeds[first] * place.speed
-        place = replace(place, state=state, senses={**senses, first: 0.0})
+        place = replace(place, state=state, senses={**place.senses, first: 0.0})
         self._write(place)
-        pulled, most = self._pull(place, first)
-        senses = {**senses, first: 0.0 if abs(pulled) <= most[0] and most[0] > 0 else float(np.sign(pulled))}
-        return replace(place, senses=senses)
+
+        def asked(at: Place) -> tuple[float, float]:
+            pulled, most = self._pull(at, first)
+            return pulled, most[0]
+
+        way = self._lets_go(place, asked, soon)
+        return replace(place, senses={**place.senses, first: way})
+
+    def _slipping(self, place: Place, soon: float) -> Place:
+        """The same place, where clutches that stick slip if they cannot carry their torque, that furthest beyond its
+        capacity first."""
+        for _ in self.line.clutches:
+            self._write(place)
+            gone: list[tuple[float, int, float]] = []
+            for c in self._sticking(place):
+                carried, most = self._carried(place, c)
+                if way := self._lets_go(place, partial(self._carried, clutch=c), soon):
+                    gone.append((abs(carried) - most, c, way))
+            if not gone:
+                break
+            _, worst, way = max(gone)
+            stride = self._regimes.clutches[worst].stride
+            place = replace(place, regime=place.regime + ((SLIPS_ON if way > 0 else SLIPS_BACK) - STICKS) * stride)
+        return place
+
+    @property
+    def _regimes(self) -> LineRegimes:
+        found = self.line.system.regimes
+        assert isinstance(found, LineRegimes)
+        return found
+
+    def _sticking(self, place: Place) -> list[int]:
+        """The slip clutches that stick, by their numbers."""
+        if not self.line.clutches:
+            return []
+        return [int(c) for c in np.flatnonzero(self._regimes.clutches_stick(np.array([place.regime]))[0])]
+
+    def _lets_go(self, place: Place, asked: Callable[[Place], tuple[float, float]], soon: float) -> float:
+        """The sense in which what sticks lets go, 0 where it does not. ``asked``: what it is asked for there, and what
+        it bears. Where both are equal it lets go if the first grows more than the second."""
+        torque, most = asked(place)
+        over = abs(torque) - most
+        if abs(over) > EQUAL * most:
+            return float(np.sign(torque)) if over > 0 else 0.0
+        state = place.state + soon * self._rates(place)
+        torque, most = asked(replace(place, time=place.time + soon, state=state))
+        return float(np.sign(torque)) if abs(torque) - most > over + EQUAL * most else 0.0
+
+    def _carried(self, place: Place, clutch: int) -> tuple[float, float]:
+        """Torque [N m] of a slip clutch, and its capacity at rest as it is clamped."""
+        self._rates(place)
+        one, count = self.line.clutches[clutch], len(self.topo.stations)
+        torques = int(self.core.places(self.numbers)[3]) + 5 * count + 7 * self.topo.size
+        share = float(np.interp(place.time, *one.table.T)) if len(one.table) else 1.0
+        return float(self.numbers[torques + one.compliance]), one.holds * share
+
+    def _overloaded(self, place: Place, trajectory: Trajectory) -> Outcome | None:
+        """The outcome of a run in which something stood or stuck beyond what it bears, in the piece that began at
+        ``place``."""
+        standing = [first for first, sense in place.senses.items() if sense == 0.0]
+        if not (standing or self.line.clutches) or not trajectory.steps:
+            return None
+        full = max([c.holds for c in self.line.clutches] + [f.stated.at_rest for f in self.frictions])
+        times = np.linspace(place.time, trajectory.time, CHECKS + 1)
+        regime = trajectory.regime[np.searchsorted(trajectory.start[1:], times[:-1], side="right")]
+        # The end counts to the step before it.
+        for time, state, now in zip(times, trajectory.at(times), [*regime, trajectory.regime[-1]], strict=True):
+            at = replace(place, time=float(time), state=state, regime=int(now))
+            sticks = self._sticking(at)
+            pulls = [(first, *self._pull(at, first)) for first in standing]
+            found = [(f"the disk {self.groups[f][0].stated.on} stands", pulled, most[0]) for f, pulled, most in pulls]
+            found += [(f"{self.line.clutches[c].name} sticks", *self._carried(at, int(c))) for c in sticks]
+            for what, torque, most in found:
+                if abs(torque) > most + EXCESS * max(most, full):
+                    words = (
+                        f"stopped at t = {time:.6g} s: {what} under {abs(torque):.6g} N m, though its friction bears "
+                        f"{most:.6g} N m; what lies behind t = {place.time:.6g} s is not right"
+                    )
+                    return Outcome(False, "friction exceeded", words)
+        return None
 
     def _pull(self, place: Place, first: int) -> tuple[float, tuple[float, float]]:
         """Torque [N m] on a group that stands, friction aside; what friction at rest bears and its slope [N m/s]."""
@@ -346,7 +477,7 @@ class Stepper:
                 kind = core.STATION_SPEED if axis.variable == "speed" else core.STATION_ANGLE
                 low, high = axis.ends(self.cells[k][i])
                 inner = axis.inner(self.cells[k][i])
-                beside = BESIDE * (axis.knots[inner + 1] - axis.knots[inner])
+                beside = self._beside(axis, inner)
                 for end, step in ((low, -1), (high, 1)):
                     if np.isfinite(end):
                         level = (0.0, end + step * beside, 0.0, 0.0, 0.0)
@@ -359,10 +490,14 @@ class Stepper:
                 found.append(_Watched(core.STATION_SPEED, first, sense, (0.0,) * 5, -1, True, stopped))
                 continue
             _, (bears, slope) = self._pull(place, first)
-            level = (place.time, bears, slope, 0.0, 0.0)
+            level = (place.time, bears * (1 + LATER), slope, 0.0, 0.0)
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
                 found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
+        for _, station in self.rolling:
+            level = (0.0, -2 * LATER * self.usual, 0.0, 0.0, 0.0)
+            sense = float(np.sign(self.topo.mean_speeds[station]))
+            found.append(_Watched(core.STATION_SPEED, station, sense, level, -1, True, lambda at: at))
         if self.mean_speed is not None:
             level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
             found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
@@ -379,7 +514,7 @@ class Stepper:
 
     def _stopped(self, first: int) -> Callable[[Place], Place]:
         """A group comes to rest."""
-        return lambda place: self._settle(place, first, place.senses)
+        return lambda place: replace(place, senses={**place.senses, first: 0.0})
 
     def _let_go(self, first: int, way: float) -> Callable[[Place], Place]:
         """A group that stood sets off."""
@@ -397,6 +532,21 @@ class Stepper:
         spring = next(e for e, c in enumerate(self.topo.compliances) if place in c.shafts)
         kind = {"torque": core.TORQUE, "twist": core.TWIST, "slip": core.TWIST_RATE}[one.key]
         return _Watched(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
+
+    def _spring_torques(self, place: Place) -> Array:
+        """Torque [N m] of every spring as the numbers stand."""
+        self._rates(place)
+        first = int(self.core.places(self.numbers)[3]) + 5 * len(self.topo.stations) + 7 * self.topo.size
+        return self.numbers[first : first + len(self.topo.compliances)].copy()
+
+    def _jumped(self, one: LevelCrossing, place: Place, before: Array) -> bool:
+        """Whether a torque jumps over its level between two pieces, as that of a slip clutch does."""
+        if one.key != "torque" or not len(before):
+            return False
+        spring = self._asked(one).of
+        old, new = before[spring] - one.level, self._spring_torques(place)[spring] - one.level
+        ways = {"rising": old < 0 < new, "falling": old > 0 > new, "either": old * new < 0}
+        return bool(ways[one.direction]) and abs(new - old) > LATER * (abs(one.level) + abs(new))
 
     def _said(self, one: LevelCrossing) -> str:
         """The label, speeds in the unit of the line."""

@@ -50,7 +50,8 @@ def transient(
     friction : dry friction that resists disks and keeps them at rest.
     crossing : levels that are watched; the run ends at the first that ``ends``.
     speed : of the input when it begins [rad/s], by default the file's operating speed; 0 is standstill and negative
-        turns backwards. Drives with a share go on giving what balances the loads at that speed.
+        turns backwards. Drives with a share go on giving what balances the loads at that speed, which must not be
+        negative then.
     phase : angle [rad] of the input when it begins.
     start : initial state (2n,): deviations [rad] from uniform rotation at t = 0 and their rates [rad/s]; by default
         turning evenly, twisted by the loads where they balance, and without twist elsewhere.
@@ -98,6 +99,12 @@ def transient(
         raise InputError(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
             remedy="leave out the ConstantSpeed, so that the line starts by its torques",
+        )  # fmt: skip
+    sharing = [name for name, e in prepared.assembly.line.parts if getattr(e, "drive_share", None)]
+    if begin < 0 and sharing:
+        raise InputError(
+            "gives what balances the loads in the line's sense of rotation, and not backwards", element=sharing[0],
+            key="drive_share", remedy="start at a positive speed, or give the drive a torque",
         )  # fmt: skip
     angle = one_number(phase, "phase", "np.pi / 2, say")
     place = Place(0.0, _start(prepared, start, begin, angle), angle=angle, speed=begin)
