@@ -332,3 +332,43 @@ def test_stiffness_from_dimensions():
     )
     shaft = tn.Shaft(outer_diameter=0.06, length=0.03 + 0.08, shear_modulus=8e10)
     assert plain.stiffnesses[0] == pytest.approx(shaft.torsional_stiffness, rel=1e-3)
+
+
+def test_a_share_of_the_mean_torque_counts_that_of_one_cylinder():
+    """However many cylinders a disk bears; at one load the same as an amplitude of as much."""
+    crank = {"firing_order": "1-3-4-2", "throw_stiffness": 1e9, "throw_inertia": 0.05}
+
+    def response(gas, **how):
+        made = tn.Engine(gas_torque=[{"order": 2, **gas}], drive_share=1, **crank, **how)
+        disk = tn.Disk(inertia=3.0, load_torque=400.0)
+        return tn.order_response(tn.Driveline([made, tn.Shaft(stiffness=1e5, damping=5), disk]), [50.0]).torque
+
+    for how in ({}, {"rigid": True}, {"bank_angle": "180 deg"}, {"rigid": True, "misfiring": 2}):
+        assert response({"share": 0.5}, **how) == pytest.approx(response({"amplitude": 50.0}, **how), rel=1e-9)
+
+
+def test_a_load_on_a_throw_leaves_a_misfire_its_compression():
+    """A load case that states a load of the throw anew changes nothing; with a cylinder out of work as well."""
+    numbers = {"compression_ratio": 14, "charge_pressure": 2e5, "polytropic_exponent": 1.34}
+    one = engine(pressure=[curve(60e5)], damping=300.0, **numbers, **CYLINDER)
+    cases = [
+        tn.LoadCase(name="pump", loads={"engine.throw 1": 0.0}),
+        tn.LoadCase(name="30", loads={"engine.throw 1": 30}),
+    ]
+    asked = tn.Operation(speed=70.0, misfiring=True, load_cases=cases)
+    line = tn.Driveline(ship(one).as_stated.elements, operation=asked)
+    plain, loaded = tn.misfire(line, [70.0]), tn.misfire(line, [70.0], load_case="30")
+    assert loaded.vibratory_torque == pytest.approx(plain.vibratory_torque, rel=1e-2)
+    cut = tn.misfire(line, [70.0], load_case="30", cut_out=True)
+    assert np.abs(cut.vibratory_torque / loaded.vibratory_torque - 1).max() > 0.05
+    alone = tn.order_response(line.with_load("30, engine cylinder 3 misfiring"), [70.0])
+    assert alone.vibratory_torque[0] == pytest.approx(loaded.vibratory_torque[2], rel=1e-12)
+
+
+def test_a_cylinder_out_of_work_in_the_other_way_is_left_out_and_a_line_needs_springs():
+    line = ship(engine(gas_torque=GAS, damping=300.0, cut_out=3))
+    assert [number for _, number in tn.misfire(line, [70.0]).cylinders] == [1, 2, 4, 5, 6]
+    assert not [name for name in line.replace("engine", cut_out=None, misfiring=3)._silent if "cylinder 3 cut" in name]
+    rigid = tn.Driveline([engine(gas_torque=GAS, rigid=True), tn.Disk(inertia=2.0, load_torque=30.0)])
+    with pytest.raises(tn.InputError, match="has no springs"):
+        tn.misfire(rigid, [70.0])

@@ -158,8 +158,9 @@ class Driveline(ElementChain):
         name of a load case and a comma.
         """
         loads, silent = self.loads_of(case), self._silent_in(case)
-        line = self.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in self.parts])
-        return line.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else line
+        # the cylinder first: a load on a throw dissolves its Engine
+        line = self.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else self
+        return line.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in line.parts])
 
     def loads_of(self, case: str) -> dict[str, float]:
         """Load torques [N m] by disk of one of its load cases; none of one that only puts a cylinder out of work."""

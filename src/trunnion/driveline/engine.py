@@ -520,6 +520,8 @@ def _but_rounding(new: Element, made: Element) -> bool:
 
 def _for_several(law: Excitation, cylinders: int) -> Excitation:
     """The harmonic of one cylinder on a disk that bears several, by the mean torque of that disk."""
+    if law.share is not None:
+        return law.but(share=law.share / cylinders)
     return law.but(torques=tuple(cylinders * one for one in law.torques)) if law.torques else law
 
 

@@ -30,12 +30,14 @@ class Cylinder:
 
 
 def cylinders(parts: Sequence[tuple[str, Element]], key: str = "misfiring") -> Iterator[Cylinder]:
-    """The cylinders of elements as they are stated that can be put out of work by ``key``."""
+    """The cylinders of elements as they are stated that can be put out of work by ``key``; none that already is so in
+    the other way."""
     for name, element in parts:
         if isinstance(element, Engine):
-            numbers = range(1, len(element.firing_order) + 1)
+            other = element.cut_out if key == "misfiring" else element.misfiring
+            numbers = [number for number in range(1, len(element.firing_order) + 1) if number != other]
         elif isinstance(element, Disk) and key == "misfiring":
-            numbers = range(1, len(element.firing_angles) + 1)
+            numbers = list(range(1, len(element.firing_angles) + 1))
         else:
             continue
         yield from (Cylinder(name, number, len(numbers) == 1 and isinstance(element, Disk)) for number in numbers)

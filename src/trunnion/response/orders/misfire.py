@@ -111,16 +111,19 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
     >>> tn.misfire(line, [100.0, 150.0])
     <Misfire: misfire: cylinder 2 of Disk 1 is the worst of 4>
     """
-    if load_case is not None:
-        line = line.with_load(load_case)
     key = "cut_out" if cut_out else "misfiring"
     found_here = tuple(cylinders(line.as_stated.parts, key))
     if not found_here:
         remedy = 'add an Engine, or list the excitation of one cylinder and firing_angles = ["0 deg", "180 deg"], say'
         where = {"element": "driveline", "key": "firing_angles"}
         raise InputError("has no cylinders that could misfire", **where, remedy=remedy)
-    normal = order_response(line, speeds).vibratory_torque
-    lines = [line.replace(one.owner, **{key: one.number}) for one in found_here]
+    # the cylinder first: a load on a throw dissolves its Engine, whose compression would be lost
+    lines = [_loaded(line.replace(one.owner, **{key: one.number}), load_case) for one in found_here]
+    before = order_response(_loaded(line, load_case), speeds)
+    if not before.springs:
+        remedy = "add a Shaft or a Coupling; without one nothing vibrates against anything"
+        raise InputError("has no springs, whose torque a misfire could raise", element="driveline", remedy=remedy)
+    normal = before.vibratory_torque
     found = [order_response(one, speeds) for one in lines]
     torque = np.stack([one.vibratory_torque for one in found])
     at = np.nan_to_num(torque).argmax(axis=1)
@@ -131,6 +134,10 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
         vibratory_torque=largest, speed=found[0].speed[at], normal=usual, line=lines[worst], response=found[worst],
         unit=found[worst].unit, cut_out=cut_out,
     )  # fmt: skip
+
+
+def _loaded(line: Driveline, load_case: str | None) -> Driveline:
+    return line if load_case is None else line.with_load(load_case)
 
 
 def _worst(torque: Array, normal: Array) -> int:
