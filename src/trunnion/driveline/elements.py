@@ -34,7 +34,7 @@ from trunnion.driveline.quantities import (
     Torque,
     optional,
 )
-from trunnion.driveline.record import Name, Record, as_tuple, is_name
+from trunnion.driveline.record import Name, Record, WholeNumber, as_tuple, is_name
 from trunnion.errors import InputError, InputRemark
 
 if TYPE_CHECKING:
@@ -277,7 +277,7 @@ class Disk(Loaded, DiskInertia):
     firing_angles: Annotated[Several[Angle], BeforeValidator(_ANGLES)] = optional(
         default=(), description="of the cylinders that each add the excitation listed, over 720 deg for four strokes"
     )
-    misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire, from 1")
+    misfiring: WholeNumber = Field(default=None, description="number of the cylinder that does not fire, from 1")
 
     @model_validator(mode="before")
     @classmethod

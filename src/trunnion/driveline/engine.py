@@ -37,7 +37,7 @@ from trunnion.driveline.quantities import (
     optional,
     shown,
 )
-from trunnion.driveline.record import as_tuple, one_of
+from trunnion.driveline.record import WholeNumber, as_tuple, one_of
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
 
@@ -205,8 +205,8 @@ class Engine(Composite):
     drive_share: Dimensionless = optional(
         default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
     )
-    misfiring: int | None = Field(default=None, description="number of the cylinder that does not fire")
-    cut_out: int | None = Field(default=None, description="number of the cylinder without gas torque")
+    misfiring: WholeNumber = Field(default=None, description="number of the cylinder that does not fire")
+    cut_out: WholeNumber = Field(default=None, description="number of the cylinder without gas torque")
     compression: PressureCurves = optional(default=(), description="pressure in a cylinder that does not fire")
     compression_ratio: Maybe[Dimensionless] = optional(default=None, description="instead, of its volumes")
     charge_pressure: Maybe[Pressure] = optional(default=None, description="absolute, where compression begins")

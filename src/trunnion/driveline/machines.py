@@ -27,6 +27,7 @@ from trunnion.driveline.quantities import (
     Torque,
     optional,
 )
+from trunnion.driveline.record import WholeNumber
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ class ElectricMachine(Machine):
     breakdown_torque: Maybe[Torque] = optional(default=None, description="largest torque, at the breakdown slip")
     breakdown_slip: Maybe[Dimensionless] = optional(default=None, description="slip at the largest torque")
     synchronous_speed: Maybe[Speed] = optional(default=None, description="speed without slip")
-    pole_pairs: int | None = Field(default=None, description="of an asynchronous machine, which give its lag")
+    pole_pairs: WholeNumber = Field(default=None, description="of an asynchronous machine, which give its lag")
     gain: Maybe[Damping] = optional(default=None, description="of a speed controller, torque over speed")
     set_speed: Maybe[Speed] = optional(default=None, description="that the controller aims at")
     torque_limit: Maybe[Torque] = optional(default=None, description="of the converter, of either sign")

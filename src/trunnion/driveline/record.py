@@ -36,6 +36,15 @@ def _name(value: object) -> object:
 Name = Annotated[str, BeforeValidator(_name)]
 
 
+def _whole(value: object) -> object:
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise InputError("must be a whole number", value=value, remedy="write 2, say, without quotes")
+    return value
+
+
+WholeNumber = Annotated[int | None, BeforeValidator(_whole)]
+
+
 class Record(BaseModel):
     """Base of all that is stated: checks itself when it is made, with an InputError for all that is wrong.
 
