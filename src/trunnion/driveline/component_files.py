@@ -80,7 +80,7 @@ class Component:
         return KINDS[self.kind](**{key: value for key, value in stated.items() if value is not None})
 
 
-def component(name: str, **changes: Any) -> Element:
+def component(name: str, /, **changes: Any) -> Element:
     """An element of the catalogue of components, its numbers as typed from the maker's sheet.
 
     Parameters
