@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import CURVE, FEATURES, UNEVEN, feature
+from trunnion.driveline.features import CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
@@ -127,6 +127,7 @@ _EVEN = {
 _STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
 _NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
 PENDULUM = "centrifugal pendulum"
+HEATED = "temperature of a coupling"
 _NO_SPEED = {PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated"}
 _OTHER_SPEEDS = {PENDULUM: "the square of the speed holds it, and equations here are of one speed"}
 _NO_PATH = {PENDULUM: "it swings along a path, which is not followed"}
@@ -154,7 +155,9 @@ _SERIES: dict[str, Reason] = {
 }
 _IN_ROWS = {**_HELD, **_SERIES}
 _BY_PLACE = {**_IN_ROWS, **QUASI_STATIC}
-_AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes")
+_AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes") | {
+    OVER_TORQUE: "it holds for small motions about one mean torque, and the torque changes"
+}
 ONE_MOTION = "dry friction at one motion"
 _DRY_FRICTION = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
 _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
@@ -187,7 +190,7 @@ _UNPROVABLE = {
             "gear mesh", "mesh damping",
             "impact damping", "backlash", "transmission error",
             "mesh-stiffness variation", "stages", "damping in contact only", ONE_MOTION, "load torque", "viscous load",
-            "quadratic load", CURVE, LAG, SERIES, "slip clutch", PENDULUM,
+            "quadratic load", CURVE, LAG, SERIES, "slip clutch", PENDULUM, OVER_TORQUE, HEATED,
         ),
         "the bounds of the proof cover shafts, disks and Hooke's joints without loads",
     ),
@@ -245,6 +248,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     **_NO_PATH,
     **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
+    OVER_TORQUE: "it goes with the loads at the speed that branches and sweeps follow",
     **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
@@ -256,7 +260,8 @@ _NOT_EXACT = {
 _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no phase"}
 _RIGID = dict.fromkeys(
     (
-        "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
+        "inertia", "stiffness", OVER_TORQUE, HEATED, "tube inertia", "bending stiffness", "damping", "loss factor",
+        "damping ratio",
         "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "tyre", "vehicle",
         "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",

@@ -12,6 +12,7 @@ from typing import Any
 
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
@@ -146,6 +147,7 @@ def _of_loaded(key: str) -> tuple[str, ...]:
 
 
 CURVE = "torque curve"
+OVER_TORQUE = "stiffness over mean torque"
 FEATURES = (
     Feature(
         "inertia",
@@ -161,6 +163,14 @@ FEATURES = (
             *_of_springs("stiffness"), "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length",
             "Shaft.shear_modulus", "Shaft.material",
         ),
+    ),
+    Feature(
+        OVER_TORQUE, _of("Coupling", "torques", "stiffnesses"), _where(Coupling, "stiffnesses", lambda one: one.torques)
+    ),
+    Feature(
+        "temperature of a coupling",
+        _of("Coupling", "temperature", "temperatures", "stiffness_factors", "damping_factors"),
+        _where(Coupling, "temperature", lambda one: one.temperatures),
     ),
     Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
     Feature(DRAGGED, (), _dragged),
@@ -345,8 +355,12 @@ NOT_FEATURES = {
     "PressureCurve.load": "a label",
     "Shaft.tensile_strength": "a rating, which checks compare with",
     **dict.fromkeys(
-        (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
+        (f"Coupling.{key}" for key in (*Coupling.ratings, "highest_temperature")),
         "a rating, which checks compare with",
+    ),
+    **dict.fromkeys(
+        ("Coupling.thermal_resistance", "Coupling.ambient_temperature"),
+        "coupling_temperatures finds by them where the temperature settles",
     ),
     "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
     **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),

@@ -22,6 +22,7 @@ from pydantic import BeforeValidator, Field, model_validator
 from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
@@ -40,7 +41,7 @@ from trunnion.driveline.quantities import (
     shown,
 )
 from trunnion.driveline.record import listed, one_of
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError

@@ -9,6 +9,7 @@ UNITS = {
     "damping": "N*m*s/rad",
     "loss_factor": "1",
     "relative_damping": "1",
+    "temperature": "K",
     "mass": "kg",
     "loss_factor_frequency": "rad/s",
     "linear_amplitude": "rad",

@@ -11,6 +11,7 @@ from trunnion.driveline.elements import Disk
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import refuse_curves
 from trunnion.equations.released import refuse_pendulums
@@ -66,6 +67,7 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> LineSystem:
     refuse_pendulums(line)
     prepared = line_system(driven_line(line, asked), abs(speed), leaves=True, slips=True)
     refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
+    refuse_torque_tables(line, "write the stiffness at the torque that matters")
     for one in prepared.torques:
         one.refuse_change()
     return prepared
