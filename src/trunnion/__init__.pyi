@@ -135,6 +135,7 @@ from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
+from trunnion.response.coupling_temperatures import coupling_temperatures as coupling_temperatures
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity
 from trunnion.response.kinetostatics import check_limits as check_limits

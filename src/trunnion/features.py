@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.features import CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
@@ -68,12 +69,18 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
 
 
 def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
-    """What is said of pendulums where no speed is asked of: they are held as at the operating speed."""
+    """What is said where no speed is asked of: pendulums are held, and couplings loaded, as at the operating speed."""
     if line.operation is None or line.operation.speed is None:
         return ()
     at = Words(speed_unit(line)).rounded(line.operation.speed)
-    says = f"is held as at {at}, where the line operates; campbell_diagram has every speed"
-    return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
+    loaded = any(isinstance(one, Rotor) and one.loaded_by_speed for one in line.elements)
+    says = {PENDULUM: "is held", OVER_TORQUE: "is loaded"} if loaded else {PENDULUM: "is held"}
+    there = f"as at {at}, where the line operates; campbell_diagram has every speed"
+    return tuple(
+        Finding(Gravity.CAUTION, f"{name.removesuffix('.stiffnesses')} {what} {there}")
+        for key, what in says.items()
+        for name in feature(key).places(line)
+    )
 
 
 _LIKE = {

@@ -155,6 +155,21 @@ def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: Spe
     )  # fmt: skip
 
 
+@Command("temperatures of couplings")
+def coupling_temperatures(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit) -> CommandOutput:
+    """Example: trunnion coupling-temperatures ship.toml --speed 300rpm:800rpm -o temperatures.png"""
+    result = tn.coupling_temperatures(line, speeds).in_unit(unit)
+
+    def more() -> None:
+        output.table(result.table())
+        output.findings(result.findings)
+
+    return CommandOutput(
+        result, draw=partial(result.plot, operating=line.operation), table=result.data,
+        text=lambda: result.headline, more=more,
+    )  # fmt: skip
+
+
 @Command("torque over speed")
 def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> CommandOutput:
     """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""

@@ -129,7 +129,7 @@ class Coupling(SpringElement):
             remedy = "begin at 0 or above; the stiffness is the same in both directions"
             raise InputError("must not be negative", key="torques", value=self.torques[0], remedy=remedy)
         if not min(self.stiffnesses) > 0:
-            raise InputError("must be positive", key="stiffnesses", value=min(self.stiffnesses))
+            raise InputError("must be positive", key="stiffnesses", remedy="leave out torques without a stiffness")
 
     def _check_temperatures(self) -> None:
         for key in ("temperature", "ambient_temperature", "highest_temperature", "temperatures"):
@@ -153,7 +153,7 @@ class Coupling(SpringElement):
         for key, values in factors.items():
             _table("temperatures", self.temperatures, key, values, TEMPERATURE)
             if not min(values) > 0:
-                raise InputError("must be positive", key=key, value=min(values))
+                raise InputError("must be positive", key=key, remedy="write what is left at that temperature, 0.6 say")
         if self.temperature is not None and self.temperatures:
             low, high = self.temperatures[0], self.temperatures[-1]
             if not low <= self.temperature <= high:
@@ -248,7 +248,7 @@ def _table(over: str, points: tuple[float, ...], key: str, values: tuple[float, 
         problem = f"has {len(values)} values beside {len(points)} {over}"
         raise InputError(problem, key=key, remedy=f"write one for each of {over}")
     if len(points) < 2:
-        raise InputError("must be two or more", key=over, value=len(points), remedy="one point is no table")
+        raise InputError("must be two or more", key=over, remedy="one point is no table")
     for before, after in pairwise(points):
         if not after > before:
             said = " after ".join(shown(one, kind) for one in (after, before))

@@ -232,10 +232,12 @@ def shaft_stiffness(
 
 
 def _as_it_operates(assembly: Assembly, table: Array, element: int) -> Array:
-    """Mean torque (case,) [N m] of the spring of an element, as the line operates where no speed is asked of."""
+    """Mean torque (case,) [N m] of the spring of an element, as the line operates where no speed is asked of: at its
+    speed, or the highest of its range."""
     operation, speeds = assembly.line.operation, table.copy()
-    if operation is not None and operation.speed is not None:
-        speeds[:, 0] = np.where(np.isfinite(table[:, 0]), table[:, 0], operation.speed)
+    stated = None if operation is None else operation.speed or (operation.speed_range or (None, None))[1]
+    if stated is not None:
+        speeds[:, 0] = np.where(np.isfinite(table[:, 0]), table[:, 0], stated)
     own = next(e for e, one in enumerate(assembly.topology.compliances) if element in one.shafts)
     return np.asarray(assembly.static_torque(speeds)[:, own])
 
