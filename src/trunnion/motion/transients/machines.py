@@ -78,7 +78,8 @@ def _refuse(name: str, machine: Machine) -> None:
     if isinstance(machine, ElectricMachine) and machine.lag_frequency is not None:
         key = "corner_frequency" if machine.corner_frequency is not None else "pole_pairs"
         raise InputError(
-            f"lets its torque lag behind its speed above {machine.lag_frequency:.4g} rad/s, which is not followed here", element=name, key=key, value=getattr(machine, key),
+            f"lets its torque lag behind its speed above {machine.lag_frequency:.4g} rad/s, which is not followed here",
+            element=name, key=key, value=getattr(machine, key),
             remedy=f"leave out {key}: the torque then follows at once, which holds for slower swings",
         )  # fmt: skip
     if isinstance(machine, Propeller) and machine.damping_factor is not None:
