@@ -85,6 +85,7 @@ def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
 
 _LIKE = {
     "rolling resistance": "load torque",
+    "brake": "load torque",
     "air drag": "quadratic load",
     "slip of a tyre": DRAGGED,
     "elastic teeth of planets": "closed loop",
@@ -377,6 +378,7 @@ ROWS: dict[str, Row] = {
         refused={
             **_ONE_DRIVE,
             LAG: "equations of motion have no lagging torque",
+            OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
             **_NO_PATH,
             "excitation that varies with speed or load": "its amplitude would change on the way",
         },

@@ -34,6 +34,7 @@ EXPECTED = {
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
     "coupling-temperature": ALWAYS,
+    "brake-heat": ALWAYS,
     "damper-heat": ALWAYS,
     "pendulum-travel": ALWAYS,
     "slip-clutch": ALWAYS,
@@ -174,6 +175,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     wide = [tn.Limit(of="shaft", max_torque=1e6)]
     shaft = tn.Shaft(name="shaft", stiffness=4e4, damping=20.0)
     soft = tn.Coupling(name="shaft", stiffness=4e4, damping=20.0, vibratory_torque=20.0)
+    drags = tn.Brake(name="drags", inertia=0.1, torque=1.0, heat_rating=1.0)
     warm = tn.Coupling(
         name="shaft", stiffness=4e4, damping=20.0, temperature=300.0, thermal_resistance=1e4, ambient_temperature=300.0,
         highest_temperature=300.01,
@@ -192,6 +194,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
         "own-limits": tn.Driveline([engine, shaft, load], limits=tight),
         "din-740": tn.Driveline([engine, soft, load], limits=wide),
         "coupling-temperature": tn.Driveline([engine, warm, load], limits=wide),
+        "brake-heat": tn.Driveline([engine, shaft, load, drags], limits=wide),
         "damper-heat": tn.Driveline([engine, hot, shaft, load], limits=[*wide, tn.Limit(of="hot", max_torque=1e6)]),
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(

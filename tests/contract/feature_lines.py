@@ -214,6 +214,11 @@ def machine(one: object) -> Change:
     return behind("hub", one)
 
 
+def flanged(one: object) -> Change:
+    """Behind the hub."""
+    return behind("hub", one)
+
+
 def asynchronous(**more: int) -> tn.Generator:
     """By Kloss's formula."""
     numbers = {"breakdown_torque": 40.0, "breakdown_slip": 0.3, "synchronous_speed": 120.0}
@@ -331,6 +336,9 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
     "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
     "load torque": (same, put("load", load_torque=80.0)),
+    "brake": (
+        flanged(tn.Disk(inertia=0.02, name="brake")), flanged(tn.Brake(inertia=0.02, torque=15.0, name="brake"))
+    ),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),
     "torque curve": (machine(tn.Pump(inertia=0.05, load_torque=15.0, name="pump")), machine(asynchronous())),

@@ -55,6 +55,8 @@ def heated(line: tn.Driveline) -> tn.Driveline:
         temperatures=[300.0, 400.0], stiffness_factors=[1.0, 0.7], thermal_resistance=0.5, ambient_temperature=305.0,
         name="rubber",
     )  # fmt: skip
+    if line.damping_ratio is not None:
+        rubber = rubber.but(relative_damping=None, loss_factor_frequency=None)
     shaken = tn.Disk(inertia=0.15, excitation=[{"order": 2, "amplitude": 4.0}], name="shaken")
     return line.but(elements=[*line.elements, rubber.but(after="load"), shaken])
 

@@ -17,6 +17,7 @@ from trunnion import (
 )
 from trunnion.driveline import (
     Belt,
+    Brake,
     CentrifugalPendulum,
     ConstantSpeed,
     Coupling,
@@ -1018,6 +1019,19 @@ PYTHON = [
     (lambda: Shaft(stiffness="2e4 Nm"), "Shaft.stiffness = '2e4 Nm': Nm is not", "write N*m/rad"),
     (lambda: Shaft(stiffness=1, damping="3 N*m*s"), "Shaft.damping = '3 N*m*s': ", "write N*m*s/rad"),
     (lambda: Operation(speed="1500 1/min"), "operation.speed = '1500 1/min': ", '"1500 rpm"'),
+    (lambda: Brake(inertia=1.0), "Brake.torque: is missing", 'write torque = "200 N*m"'),
+    (lambda: Brake(inertia=1.0, torque=-5), "Brake.torque = -5: must not be negative", "either direction"),
+    (lambda: Brake(inertia=0, torque=5), "Brake.inertia = 0: must be positive", "kg"),
+    (
+        lambda: Brake(inertia=1.0, torque=5, static_torque=4),
+        "Brake.static_torque = 4: is less than torque",
+        "leave it out",
+    ),
+    (
+        lambda: Brake(inertia=1.0, torque=5, stribeck_speed=1),
+        "Brake.static_torque: is missing beside stribeck_speed",
+        "at rest",
+    ),
     (lambda: Coupling(), "Coupling.stiffness: is missing", "relative_damping = 1.13"),
     (
         lambda: Coupling(torques=[1, 2], stiffnesses=[3]),

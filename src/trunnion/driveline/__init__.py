@@ -5,6 +5,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.component_files import component, components
 from trunnion.driveline.couplings import Coupling
@@ -87,6 +88,7 @@ __all__ = [
     "TorquePoint",
     "TransmissionError",
     "Belt",
+    "Brake",
     "Clutch",
     "Slider",
     "SlipClutch",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
@@ -154,7 +155,7 @@ FEATURES = (
         (
             "Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density",
             "Disk.material", "Disk.mass", "Disk.radius", "Propeller.entrained_inertia",
-            *(f"{kind}.inertia" for kind in MACHINES),
+            *(f"{kind}.inertia" for kind in (*MACHINES, "Brake")),
         ),
     ),
     Feature(
@@ -298,6 +299,7 @@ FEATURES = (
     ),
     Feature("load torque", _of_loaded("load_torque")),
     Feature("drive share", _of_loaded("drive_share")),
+    Feature("brake", _of("Brake", "torque"), _kind(Brake)),
     Feature("viscous load", _of_loaded("viscous_load")),
     Feature(
         "quadratic load",
@@ -308,7 +310,7 @@ FEATURES = (
         (
             *_of_loaded("curve"), "TorquePoint.speed", "TorquePoint.torque", "Generator.power",
             *(one for key in (*KLOSS, "gain", "set_speed", "torque_limit") for one in _of_loaded(key)),
-            "Propeller.damping_factor",
+            "Propeller.damping_factor", "Brake.static_torque", "Brake.stribeck_speed",
         ),
         _curves,
     ),
@@ -362,6 +364,7 @@ NOT_FEATURES = {
         ("Coupling.thermal_resistance", "Coupling.ambient_temperature"),
         "coupling_temperatures finds by them where the temperature settles",
     ),
+    "Brake.heat_rating": "a rating, which checks compare with",
     "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
     **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
@@ -38,6 +39,7 @@ KINDS: dict[str, type[Element]] = {
         Fan,
         Pump,
         Propeller,
+        Brake,
         ViscousDamper,
         TunedDamper,
         CentrifugalPendulum,

@@ -39,6 +39,7 @@ UNITS = {
     "inertia_out": "kg*m^2",
     "torque": "N*m",
     "sliding_torque": "N*m",
+    "static_torque": "N*m",
     "stribeck_speed": "rad/s",
     "load_torque": "N*m",
     "viscous_load": "N*m*s/rad",

@@ -155,7 +155,7 @@ def coupling_temperatures(
     assembly = assemble(line, load_case)
     couplings = _asked(assembly)
     speed = settled_speeds(assembly.line, speeds_of(speeds, "np.linspace(tn.rpm(300), tn.rpm(3000), 61)"))
-    problem = _Problem(assembly, couplings)
+    problem = _ThermalBalance(assembly, couplings)
     found = problem.alone(speed) if len(couplings) == 1 else [problem.together(one) for one in speed]
     temperature = np.array([one.cold for one in found])
     named = tuple(assembly.line.names[place] for place in couplings)
@@ -183,7 +183,7 @@ def _asked(assembly: Assembly) -> list[int]:
 
 
 @dataclass(frozen=True)
-class _Settled:
+class _SettledAt:
     """At one speed: temperatures of all couplings from cold, the highest found, their number, and of one coupling the
     one above which it heats on."""
 
@@ -193,15 +193,15 @@ class _Settled:
     runaway: float = float("nan")
 
 
-def _of_roots(roots: Array, falling: Flags) -> _Settled:
+def _of_roots(roots: Array, falling: Flags) -> _SettledAt:
     """Of one coupling from its rising ``roots`` [K], at which the excess is ``falling`` (it stays) or not."""
     stays = roots[falling]
     lost = float(roots[-1]) if len(roots) and not falling[-1] else float("nan")
     nothing = np.array([np.nan])
-    return _Settled(stays[:1], stays[-1:], len(stays), lost) if len(stays) else _Settled(nothing, nothing, 0, lost)
+    return _SettledAt(stays[:1], stays[-1:], len(stays), lost) if len(stays) else _SettledAt(nothing, nothing, 0, lost)
 
 
-class _Problem:
+class _ThermalBalance:
     """The heat of couplings by their temperatures."""
 
     def __init__(self, assembly: Assembly, places: list[int]) -> None:
@@ -258,7 +258,7 @@ class _Problem:
         heat = self.heat(np.full(len(temperature), speed), temperature)
         return np.asarray(self.ambient + self.resistance * heat - temperature)
 
-    def alone(self, speeds: Array) -> list[_Settled]:
+    def alone(self, speeds: Array) -> list[_SettledAt]:
         """Of one coupling: every change of sign between cold and the end of its table, at all speeds together."""
         nodes = np.linspace(self.ambient[0], self.high[0], NODES)
         values = self._excess(np.repeat(speeds, NODES), np.tile(nodes, len(speeds))).reshape(len(speeds), NODES)
@@ -310,15 +310,15 @@ class _Problem:
             b, fb = np.where(left, b, new), np.where(left, fb, value)
         return (a + b) / 2
 
-    def together(self, speed: float) -> _Settled:
+    def together(self, speed: float) -> _SettledAt:
         """Of several: relaxed towards balance from cold and from hot."""
         ends = [self._relaxed(speed, start) for start in (self.ambient, self.high)]
         known = [one for one in ends if not np.isnan(one).any()]
         nothing = np.full(len(self.places), np.nan)
         if not known:
-            return _Settled(nothing, nothing, 0)
+            return _SettledAt(nothing, nothing, 0)
         apart = len(known) == 2 and np.abs(known[0] - known[1]).max() > 1e3 * EXACT
-        return _Settled(ends[0], known[-1] if apart else known[0], len(known) if apart else 1)
+        return _SettledAt(ends[0], known[-1] if apart else known[0], len(known) if apart else 1)
 
     def _relaxed(self, speed: float, start: Array) -> Array:
         """Temperatures at which all stay; NaN where they leave their tables or do not settle."""
