@@ -1019,6 +1019,11 @@ PYTHON = [
     (lambda: Shaft(stiffness="2e4 Nm"), "Shaft.stiffness = '2e4 Nm': Nm is not", "write N*m/rad"),
     (lambda: Shaft(stiffness=1, damping="3 N*m*s"), "Shaft.damping = '3 N*m*s': ", "write N*m*s/rad"),
     (lambda: Operation(speed="1500 1/min"), "operation.speed = '1500 1/min': ", '"1500 rpm"'),
+    (
+        lambda: engine(gas_torque=[], firing_intervals=["180 deg", "-180 deg", "360 deg", "360 deg"]),
+        "Engine.firing_intervals = ['180 deg', '-180 deg', '360 deg', '360 deg']: must not be negative",
+        "crank angle from each firing",
+    ),
     (lambda: Brake(inertia=1.0), "Brake.torque: is missing", 'write torque = "200 N*m"'),
     (lambda: Brake(inertia=1.0, torque=-5), "Brake.torque = -5: must not be negative", "either direction"),
     (lambda: Brake(inertia=0, torque=5), "Brake.inertia = 0: must be positive", "kg"),

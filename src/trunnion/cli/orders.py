@@ -148,6 +148,8 @@ def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: Spe
 
     def more() -> None:
         output.table(result.table())
+        output.table(result.by_cylinder(), "every cylinder out of work in turn")
+        output.findings(result.findings)
 
     return CommandOutput(
         result, draw=partial(seen.plot, operating=line.operation), table=result.data,
@@ -274,7 +276,8 @@ def _misfire_json(result: Misfire) -> dict[str, Any]:
         "worst": result.names[result.cylinders.index(result.worst)],
         "cylinders": list(result.names),
         "springs": result.table(),
-        "findings": output.findings_json(result.response.findings),
+        "by_cylinder": result.by_cylinder(),
+        "findings": output.findings_json((*result.findings, *result.response.findings)),
     }
 
 
