@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from generate import api, changelog, commands, elements, messages
+from generate import api, changelog, commands, elements, messages, validation
 
 
 def write(folder: Path) -> None:
@@ -13,4 +13,5 @@ def write(folder: Path) -> None:
     api.write_pages(folder / "api")
     commands.write_page(folder / "commands.md")
     messages.write_page(folder / "messages.md")
+    validation.write_page(folder / "validation.md")
     changelog.write_pages(folder)
