@@ -76,9 +76,9 @@ def printed_numbers() -> str:
             read = "" if batch.source in seen else f" Read: {source.read}."
             seen.add(batch.source)
             parts += [f"**{source.title}: {batch.where}{unit}.**{read}{said}", table(HEADS, rows)]
-    total = ", ".join(f"{count} {verdict}" for verdict, count in counted.most_common())
+    total = ", ".join(f"{verdict} {count}" for verdict, count in counted.most_common())
     head = [
-        f"{sum(counted.values())} numbers of {len(seen)} sources whose figures were read: {total}.",
+        f"{sum(counted.values())} numbers of {len(seen)} sources whose figures were read. Verdicts: {total}.",
         table(("verdict", "means"), MEANING.items()),
     ]
     return "\n\n".join([*head, *parts])
