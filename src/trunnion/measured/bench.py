@@ -128,7 +128,8 @@ def measure(
     ... )
     >>> print(tn.measure(line, 100.0, 1.0, {"hub": 60}, jitter=1e-6))
     measurement of 1 channel
-      hub: 954 pulses, 60 a turn, 15.88 turns in 0.998 s
+      hub: 955 pulses, 60 a turn, 15.9 turns in 0.9989 s
+      note: Nothing excites this line but its joints.
     """
     assembly = assemble(line, load_case)
     course = _course(speeds, duration)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.measured.tracking.by_angle import MeasuredOrderMap
-from trunnion.measured.tracking.result import KINDS, MeasuredOrders
+from trunnion.measured.tracking.result import MeasuredOrders, unit_of
 from trunnion.pictures.looks import curve
 from trunnion.pictures.picture import Axis, Band, ColouredGrid, Colours, Item, Line, Picture, single
 from trunnion.pictures.shared import over_speed, place_of
@@ -34,7 +34,7 @@ def orders(found: MeasuredOrders, *, channel: str = "") -> Picture:
     InputError : no such channel.
     """
     column = place_of(channel, found.channels, 0, "channel", "no channel", f"there are {', '.join(found.channels)}")
-    _, symbol, size = KINDS[found.kinds[column]]
+    symbol, size = unit_of(found.kinds[column], float(np.nanmax(np.abs(found.amplitude[:, :, column]), initial=0.0)))
     x, y = found.speed * speed_factor(found.unit), np.abs(found.amplitude[:, :, column]) / size
     half, rank = found.half_width[:, :, column] / size, np.argsort(x)
     peaks = np.nan_to_num(y).max(axis=0, initial=0.0)
@@ -54,7 +54,7 @@ def orders(found: MeasuredOrders, *, channel: str = "") -> Picture:
 def order_map(found: MeasuredOrderMap) -> Picture:
     """Amplitude over order and speed, three decades below the largest."""
     x, rank = found.speed * speed_factor(found.unit), np.argsort(found.speed)
-    _, symbol, size = KINDS[found.kind]
+    symbol, size = unit_of(found.kind, float(found.amplitude[:, 1:].max()))
     amplitude = found.amplitude[:, 1:] / size
     top = max(float(amplitude.max()), 1e-300)
     least = top / 10**MAP_DECADES

@@ -18,6 +18,7 @@ from trunnion.results.units import figures
 
 WINDOW = 4
 """Turns over which the speed of a reference run is taken as a cubic."""
+ROUNDS = 40
 SAME = 4.0
 """Standard deviations by which the two halves of a run may differ."""
 
@@ -120,8 +121,9 @@ def pitch_errors(reference: Measurement, *, unit: str = "rpm") -> PitchErrors:
         turns.append(whole)
         speeds += ends
     return PitchErrors(
-        tuple(one.name for one in reference.pulses), np.arange(most, dtype=float), error, np.array(deviation),
-        np.array(difference), np.array(turns), min(speeds), max(speeds), unit,
+        channels=tuple(one.name for one in reference.pulses), tooth=np.arange(most, dtype=float), error=error,
+        deviation=np.array(deviation), difference=np.array(difference), turns=np.array(turns), low_speed=min(speeds),
+        high_speed=max(speeds), unit=unit,
     )  # fmt: skip
 
 
@@ -136,7 +138,7 @@ def _of(train: PulseTrain) -> tuple[Array, float, float, float, list[float]]:
     teeth = train.pulses_per_turn
     pattern = np.zeros(teeth)
     # What a window's cubic takes of the pattern comes back in a few rounds.
-    for _ in range(6):
+    for _ in range(ROUNDS):
         residual: list[Array] = []
         tooth: list[Integers] = []
         part: list[Flags] = []

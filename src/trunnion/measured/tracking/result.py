@@ -20,9 +20,15 @@ from trunnion.results.units import figures
 
 TWO_SIDED = 1.959963984540054
 """Standard deviations of an interval that holds 95 %."""
-KINDS = {"rotation": ("rad", "µrad", 1e-6), "torque": ("N*m", "N·m", 1.0), "acceleration": ("rad/s^2", "rad/s²", 1.0),
-         "speed": ("rad/s", "rad/s", 1.0), "other": ("", "", 1.0)}  # fmt: skip
-"""By kind of channel: its unit in SI, the one that is printed, and that one's size."""
+PRINTED = {"torque": "N·m", "acceleration": "rad/s²", "speed": "rad/s"}
+"""Units of kinds of channels, but for rotations."""
+
+
+def unit_of(kind: str, largest: float) -> tuple[str, float]:
+    """The unit in which amplitudes of a kind of channel read, up to the ``largest`` [SI], and its size."""
+    if kind == "rotation":
+        return ("mrad", 1e-3) if largest >= 1e-3 else ("µrad", 1e-6)
+    return PRINTED.get(kind, ""), 1.0
 
 
 @dataclass(frozen=True)
@@ -144,8 +150,8 @@ class MeasuredOrders(Result):
         """One row an order of a channel: largest size, interval, speed."""
         rows: list[dict[str, object]] = []
         for channel, kind in zip(self.channels, self.kinds, strict=True):
-            _, unit, size = KINDS[kind]
             for order, value, half, speed in self.largest(channel):
+                unit, size = unit_of(kind, value)
                 own = bool(self.hidden[self.row(order), self.column(channel)])
                 rows.append(
                     {
@@ -175,9 +181,9 @@ class MeasuredOrders(Result):
     def _lines(self) -> Iterator[str]:
         yield self.headline
         for channel, kind in zip(self.channels, self.kinds, strict=True):
-            _, unit, size = KINDS[kind]
             parts = []
             for order, value, half, speed in self.largest(channel):
+                unit, size = unit_of(kind, value)
                 words = f"{figures(value / size, 4)} ± {figures(half / size, 2)} {unit}".rstrip()
                 parts.append(f"order {order:g} {words} at {self.words.rounded(speed)}")
             yield f"  {channel}: {'; '.join(parts)}"

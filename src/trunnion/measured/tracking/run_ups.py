@@ -20,7 +20,7 @@ RAMPING = 0.15
 """Share of the usual acceleration of the recording's ramps from which a turn belongs to one."""
 
 
-class SpeedRamp(NamedTuple):
+class MeasuredRamp(NamedTuple):
     """First and last time [s] and speed [rad/s] of a stretch in which the speed rises, or falls."""
 
     first_time: float
@@ -35,8 +35,21 @@ class SpeedRamp(NamedTuple):
         return high / low if low > 0 else 1.0
 
 
-def run_ups(train: PulseTrain) -> tuple[SpeedRamp, ...]:
-    """Stretches over which the speed rises or falls by a fifth or more, in a pickup's own speed."""
+def run_ups(train: PulseTrain) -> tuple[MeasuredRamp, ...]:
+    """Stretches over which the speed rises or falls by a fifth or more.
+
+    Parameters
+    ----------
+    train : pulses of a wheel, whose own speed is looked at turn by turn.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> rotation = 2 * np.pi * np.arange(30 * 100) / 30
+    >>> (ramp,) = tn.run_ups(tn.PulseTrain(np.sqrt(rotation / 10 + 4), 30))  # 20 rad/s² from 40 rad/s on
+    >>> 40 < ramp.first_speed < 50, round(ramp.ratio, 1) > 3
+    (True, True)
+    """
     time, speed = turn_speeds(train)
     if len(speed) < FEWEST:
         return ()
@@ -52,13 +65,13 @@ def run_ups(train: PulseTrain) -> tuple[SpeedRamp, ...]:
     found = []
     for rows in np.split(np.arange(len(speed)), cuts):
         first, last = int(rows[0]), int(rows[-1])
-        ramp = SpeedRamp(float(time[first]), float(time[last]), float(speed[first]), float(speed[last]))
+        ramp = MeasuredRamp(float(time[first]), float(time[last]), float(speed[first]), float(speed[last]))
         if sense[first] and len(rows) >= FEWEST and ramp.ratio >= LEAST:
             found.append(ramp)
     return tuple(found)
 
 
-def longest_ramp(ramps: Sequence[SpeedRamp]) -> SpeedRamp | None:
+def longest_ramp(ramps: Sequence[MeasuredRamp]) -> MeasuredRamp | None:
     """The one that covers the most speeds; None of none."""
     return max(ramps, key=lambda one: one.ratio, default=None)
 

@@ -30,7 +30,7 @@ from trunnion.measured.tracking.rotation import (
     rotation_windows,
     tooth_means,
 )
-from trunnion.measured.tracking.run_ups import SpeedRamp, longest_ramp, run_ups
+from trunnion.measured.tracking.run_ups import MeasuredRamp, longest_ramp, run_ups
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.units import figures
 from trunnion.waiting import keep_time
@@ -127,8 +127,8 @@ def _orders_of(orders: Iterable[float]) -> Array:
     return found
 
 
-def _stretch(main: PulseTrain, between: tuple[float, float] | None) -> SpeedRamp:
-    whole = SpeedRamp(float(main.times[0]), float(main.times[-1]), 0.0, 0.0)
+def _stretch(main: PulseTrain, between: tuple[float, float] | None) -> MeasuredRamp:
+    whole = MeasuredRamp(float(main.times[0]), float(main.times[-1]), 0.0, 0.0)
     if between is None:
         return longest_ramp(run_ups(main)) or whole
     first, last = (float(one) for one in between)
@@ -137,7 +137,7 @@ def _stretch(main: PulseTrain, between: tuple[float, float] | None) -> SpeedRamp
             f"is outside the recording, {figures(whole.first_time)} to {figures(whole.last_time)} s", key="between",
             value=[first, last], remedy="give two rising times in seconds",
         )  # fmt: skip
-    return SpeedRamp(first, last, 0.0, 0.0)
+    return MeasuredRamp(first, last, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -228,7 +228,7 @@ class _Tracking:
         return self.ratio * counted_ratio(train, self.main)
 
     def result(
-        self, orders: Array, unit: str, stretch: SpeedRamp, progress: Callable[[float], None] | None
+        self, orders: Array, unit: str, stretch: MeasuredRamp, progress: Callable[[float], None] | None
     ) -> MeasuredOrders:
         """All channels at all windows."""
         self._refuse_high(self.main, orders, self.ratio)
@@ -487,7 +487,7 @@ def shift_between(pattern: Array, own: Array, orders: Array, spread: float, name
     return best
 
 
-def between_words(stretch: SpeedRamp, unit: str) -> str:
+def between_words(stretch: MeasuredRamp, unit: str) -> str:
     """ "Taken from the run-up between 3 and 27 s."."""
     what = "run-up" if stretch.last_speed > stretch.first_speed else "run-down"
     return f"Taken from the {what} between {figures(stretch.first_time, 4)} and {figures(stretch.last_time, 4)} s."
