@@ -39,7 +39,6 @@ class _Piece:
     colour: str
     wide: float = 0.0
     edge: str = ""
-    nearer: float = 0.0
 
 
 def write(shown: ShownMotion, path: Path, *, seconds: float, width: int, title: str) -> None:
@@ -57,19 +56,22 @@ def write(shown: ShownMotion, path: Path, *, seconds: float, width: int, title: 
             view.draw(whole, shown.parts, movement, k / frames, row)
         _write_title(whole, title, shown, height)
         pictures.append(whole.resize((width, height), Image.Resampling.LANCZOS))
-    first = pictures[0].quantize(96)
-    rest = [one.quantize(palette=first) for one in pictures[1:]]
+    plain = Image.Dither.NONE
+    first = pictures[0].quantize(64, dither=plain)
+    rest = [one.quantize(palette=first, dither=plain) for one in pictures[1:]]
     first.save(path, format="GIF", save_all=True, append_images=rest, duration=round(1000 * seconds / frames), loop=0)
 
 
 def _write_title(whole: Any, title: str, shown: ShownMotion, height: int) -> None:
+    from matplotlib import get_data_path
     from PIL import ImageDraw, ImageFont
 
+    font = ImageFont.truetype(str(Path(get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"), 12 * FINE)
     words = ", ".join(dict.fromkeys([title, *(movement.title for movement in shown.movements)]))
     one = shown.movements[0]
     drawn = "size arbitrary" if one.arbitrary else f"twist drawn {one.factor:g} ×" if one.factor != 1 else ""
     text = "; ".join(part for part in (words, drawn) if part)
-    ImageDraw.Draw(whole).text((8 * FINE, (height - 19) * FINE), text, fill=INK, font=ImageFont.load_default(13 * FINE))
+    ImageDraw.Draw(whole).text((8 * FINE, (height - 19) * FINE), text, fill=INK, font=font)
 
 
 def state(movement: Movement, share: float) -> tuple[Array, Array]:
@@ -115,23 +117,29 @@ class _View:
         pencil = ImageDraw.Draw(whole)
         angles, torque = state(movement, share)
         most = float(np.abs(movement.torque).max(initial=0.0))
-        pieces = []
-        for part in parts:
+        out = self.axes[2]
+        for part in sorted(parts, key=lambda one: float(_middle(one) @ out)):
             tint = STEEL if part.spring < 0 or not most else _tint(float(torque[part.spring]) / most)
-            for piece in _pieces(part, angles, tint):
-                seen = piece.points @ self.axes.T
-                pieces.append((float(seen[:, 2].mean()) + piece.nearer, piece, seen))
-        for _, piece, seen in sorted(pieces, key=lambda one: one[0]):
-            x = self.wide / 2 + (seen[:, 0] - self.middle[0]) * self.scale
-            y = (row + 0.5) * self.tall - (seen[:, 1] - self.middle[1]) * self.scale
-            points = list(zip(x.tolist(), y.tolist(), strict=True))
-            if not piece.wide:
-                pencil.polygon(points, fill=piece.colour, outline=piece.edge or None)
-                continue
-            thick = max(1, round(piece.wide * self.scale))
-            if piece.edge:
-                pencil.line(points, fill=piece.edge, width=thick + 2 * FINE)
-            pencil.line(points, fill=piece.colour, width=thick, joint="curve")
+            for piece in _pieces(part, angles, tint, out):
+                self._draw(pencil, piece, row)
+
+    def _draw(self, pencil: Any, piece: _Piece, row: int) -> None:
+        seen = piece.points @ self.axes.T
+        x = self.wide / 2 + (seen[:, 0] - self.middle[0]) * self.scale
+        y = (row + 0.5) * self.tall - (seen[:, 1] - self.middle[1]) * self.scale
+        points = list(zip(x.tolist(), y.tolist(), strict=True))
+        if not piece.wide:
+            pencil.polygon(points, fill=piece.colour, outline=piece.edge or None, width=FINE)
+            return
+        thick = max(1, round(piece.wide * self.scale))
+        if piece.edge:
+            pencil.line(points, fill=piece.edge, width=thick + 2 * FINE)
+        pencil.line(points, fill=piece.colour, width=thick, joint="curve")
+
+
+def _middle(part: DrawnPart) -> Array:
+    """Where a body stands among others, the nearest drawn last."""
+    return part.at + 0.5 * part.size.get("length", 0.0) * part.frame[0] if part.far is None else (part.at + part.far) / 2
 
 
 def _corners(part: DrawnPart) -> Iterator[Array]:
@@ -159,8 +167,8 @@ def _circle(x: float, radius: float) -> Array:
     return np.stack([np.full(len(turn), x), radius * np.cos(turn), radius * np.sin(turn)], axis=1)
 
 
-def _pieces(part: DrawnPart, angles: Array, tint: str) -> Iterator[_Piece]:
-    """What is drawn of one body."""
+def _pieces(part: DrawnPart, angles: Array, tint: str, out: Array) -> Iterator[_Piece]:
+    """What is drawn of one body, the farthest first; ``out`` points to the eye."""
     own = [float(angles[s]) - off for s, off in zip(part.stations, part.turned, strict=True)]
     length, radius = part.size.get("length", 0.0), part.size.get("radius", 0.1)
 
@@ -168,11 +176,18 @@ def _pieces(part: DrawnPart, angles: Array, tint: str) -> Iterator[_Piece]:
         frame = part.back if which and part.back is not None else part.frame
         return _put(part.at, frame, own[which], np.array(places, dtype=float))
 
+    towards = bool(part.frame[0] @ out > 0)
+
     def drum(first: float, last: float, colour: str, which: int = 0) -> Iterator[_Piece]:
-        yield _Piece(put([[first, 0, 0], [last, 0, 0]], which), colour, 2 * radius, EDGE)
-        for x in (first, last):
-            yield _Piece(put(_circle(x, radius), which), colour, edge=EDGE)
-            yield _Piece(put([[x, 0, 0], [x, 0.95 * radius, 0]], which), MARK, 0.06, nearer=0.04)
+        far, near = (first, last) if towards else (last, first)
+        yield _Piece(put(_circle(far, radius), which), colour, edge=EDGE)
+        across = np.cross(part.frame[0], out)
+        if np.linalg.norm(across) > 1e-9:
+            side = radius * across / np.linalg.norm(across)
+            ends = [part.at + x * part.frame[0] + way * side for x, way in ((far, 1), (near, 1), (near, -1), (far, -1))]
+            yield _Piece(np.array(ends), colour, edge=EDGE)
+        yield _Piece(put(_circle(near, radius), which), colour, edge=EDGE)
+        yield _Piece(put([[near, 0, 0], [near, 0.95 * radius, 0]], which), MARK, 0.06)
 
     match part.shape:
         case "disk" | "ring" | "throw" | "drive" | "gear" | "rim":
@@ -180,8 +195,9 @@ def _pieces(part: DrawnPart, angles: Array, tint: str) -> Iterator[_Piece]:
             yield _Piece(put([[-0.15, 0, 0], [length + 0.15, 0, 0]]), DARK, 0.16)
             yield from drum(0.0, length, tint if part.spring >= 0 else colour)
         case "plates":
-            yield from drum(0.0, length / 2, DARK)
-            yield from drum(length / 2, length, tint, 1)
+            halves = [drum(0.0, length / 2, DARK), drum(length / 2, length, tint, 1)]
+            for half in halves if towards else reversed(halves):
+                yield from half
         case "shaft" | "coupling":
             thick = radius if part.shape == "shaft" else max(2.2 * radius, 0.24)
             yield _Piece(put([[0, 0, 0], [length, 0, 0]]), tint, 2 * thick, EDGE)
@@ -189,10 +205,15 @@ def _pieces(part: DrawnPart, angles: Array, tint: str) -> Iterator[_Piece]:
                 x = np.linspace(0.0, 1.0, 13)
                 turn = side + x * (own[1] - own[0])
                 stripe = np.stack([x * length, thick * np.cos(turn), thick * np.sin(turn)], axis=1)
-                yield _Piece(put(stripe), INK, 0.025, nearer=0.02)
+                whole = (turn + own[0])[:, None]
+                in_front = (np.cos(whole) * part.frame[1] + np.sin(whole) * part.frame[2]) @ out > 0
+                for k in range(len(x) - 1):
+                    if in_front[k]:
+                        yield _Piece(put(stripe[k : k + 2]), INK, 0.03)
         case "cross" | "joint":
             reach = part.size["reach"]
-            for which, way, colour in ((0, -1.0, DARK), (1, 1.0, GEAR)):
+            forks = [(0, -1.0, DARK), (1, 1.0, GEAR)]
+            for which, way, colour in forks if towards else forks[::-1]:
                 root = 0.4 * way * reach
                 yield _Piece(put([[way * reach, 0, 0], [root, 0, 0]], which), colour, 0.16)
                 fork = [[0, radius, 0], [root, radius, 0], [root, -radius, 0], [0, -radius, 0]]

@@ -115,8 +115,8 @@ def parted(assembly: Assembly, table: Array, angle: Array) -> tuple[Array, Array
     """Rigid part and deviation (time, station) of a true motion, whose ``angle`` (time, station) equations of motion
     count from the line at rest [rad].
 
-    The rigid part follows the input where that is prescribed, else the whole line, Σ Jρφ/Σ Jρ². What slips against the
-    line follows its own first shaft.
+    The rigid part follows the input where that is prescribed, else the line in front of all that slips, Σ Jρφ/Σ Jρ².
+    What slips follows its own first shaft.
     """
     topo = assembly.topology
     untwisted = assembly.coefficients(table, statically_twisted=False, any_frequency=True)
@@ -125,6 +125,7 @@ def parted(assembly: Assembly, table: Array, angle: Array) -> tuple[Array, Array
     follows = angle[:, 0]
     if topo.free:
         heavy = untwisted.inertia[0] * mean
+        heavy[np.concatenate([np.zeros(0, dtype=int), *(topo.stations_behind[e] for e in topo.dragged)])] = 0.0
         follows = angle @ heavy / (heavy @ mean)
     rigid = base_motion(topo, untwisted, follows).angle[0]
     for e in topo.dragged:

@@ -215,6 +215,7 @@ def _disturbed(assembly: Assembly, found: Stability) -> Movement:
     n = topo.size
     critical = int(np.abs(np.abs(found.multipliers) - found.spectral_radius).argmin())
     multiplier, mode_state = complex(found.multipliers[critical]), found.floquet_modes[:, critical]
+    mode_state = mode_state / mode_state[np.abs(mode_state[:n]).argmax()]  # real where it is largest, at the start
     system = periodic_linear_system(assembly, table)
     run = propagated(system, 1e-10)
     turns = found.period / (2 * np.pi)

@@ -100,9 +100,9 @@ def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[s
         return path.read_bytes()
 
 
-def scene(result: Any) -> Plain:
-    """A motion as the player reads it, and in words."""
-    return {"scene": result.json, "text": str(result)}
+def scene(result: Any) -> str:
+    """A motion as the player reads it."""
+    return str(result.json)
 
 
 def report(result: Any) -> bytes:

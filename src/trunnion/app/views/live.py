@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.live import Live
-from trunnion.app.parts.widgets import column, pane, pre, small
+from trunnion.animation.player.component import Player
+from trunnion.app.parts.widgets import column, pane, small
 from trunnion.app.views.base import (
     VariantPane,
     View,
@@ -44,11 +44,12 @@ ASKS = {
 
 
 class _LivePane(VariantPane["LiveView"]):
-    """The player, and what it plays in words."""
+    """The player, or why there is nothing to play."""
 
     def make(self) -> None:
         """Both, made once."""
-        self.player = Live(sizing_mode="stretch_width")
+        # One WebGL context a page: the kept variant is drawn without.
+        self.player = Player(sizing_mode="stretch_width", flat=self.variant != "now")
         self.text = pane()
         self.panel = column(self.player, self.text)
         self.parts = {("scene",): [self.player, self.text]}
@@ -57,10 +58,9 @@ class _LivePane(VariantPane["LiveView"]):
         """Nothing to play."""
         self.player.scene, self.text.object = "", ""
 
-    def show_scene(self, step: ViewStep, data: Any) -> None:
+    def show_scene(self, step: ViewStep, data: str) -> None:
         """Play a motion."""
-        self.player.scene = data["scene"]
-        self.text.object = pre(data["text"])
+        self.player.scene, self.text.object = data, ""
 
     def refused(self, step: ViewStep, sentence: str) -> None:
         """Why it cannot be shown."""

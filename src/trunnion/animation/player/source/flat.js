@@ -1,6 +1,6 @@
 // The same bodies on a plain canvas, for browsers without WebGL: lines and areas, the farthest first.
 import { colour, css, LOOKS } from "./colours.js"
-import { add, placed } from "./vectors.js"
+import { add, cross, dot, length as reach, placed, unit } from "./vectors.js"
 
 const ROUND = 26
 const circle = (put, x, radius, from = 0, to = 2 * Math.PI) => Array.from({ length: ROUND + 1 }, (_, k) => {
@@ -8,39 +8,44 @@ const circle = (put, x, radius, from = 0, to = 2 * Math.PI) => Array.from({ leng
   return put(x, radius * Math.cos(a), radius * Math.sin(a))
 })
 
-// Areas and lines of a body: {points, fill, stroke, wide}.
-function outline(part, own, share, looks, theme) {
-  const found = [], { at, axes, size } = part
+// Areas and lines of a body, the farthest first, for an eye in the direction `out`: {points, fill, stroke, wide}.
+function outline(part, own, share, looks, theme, out) {
+  const found = [], { at, axes, size } = part, towards = dot(axes.e, out) > 0
   const put = placed(at, axes, own[0] ?? 0)
   const tint = share === null || part.spring < 0 ? looks.steel : css(colour(share, theme))
+  const rod = (put, from, to) => found.push({ points: [put(from, 0, 0), put(to, 0, 0)], stroke: looks.dark, wide: 0, body: 0.08, edge: looks.dark })
   const drum = (put, radius, x, length, fill) => {
-    for (const end of [x, x + length]) found.push({ points: circle(put, end, radius), fill, stroke: looks.dark, wide: 1 })
-    found.push({ points: [put(x, 0, 0), put(x + length, 0, 0)], stroke: fill, wide: 0, body: radius, edge: looks.dark })
+    const [far, near] = towards ? [x, x + length] : [x + length, x], side = cross(axes.e, out)
+    found.push({ points: circle(put, far, radius), fill, stroke: looks.dark, wide: 1 })
+    if (reach(side) > 1e-9) {
+      const way = unit(side).map(k => radius * k), mid = k => add(at, axes.e, k)
+      found.push({ points: [add(mid(far), way), add(mid(near), way), add(mid(near), way, -1), add(mid(far), way, -1)], fill, stroke: looks.dark, wide: 1 })
+    }
+    found.push({ points: circle(put, near, radius), fill, stroke: looks.dark, wide: 1 })
+    found.push({ points: [put(near, 0, 0), put(near, 0.95 * radius, 0)], stroke: looks.mark, wide: 3 })
   }
-  const spoke = (put, x, radius) => found.push({ points: [put(x, 0, 0), put(x, radius, 0)], stroke: looks.mark, wide: 3, near: 0.05 })
   switch (part.shape) {
     case "disk": case "gear": case "rim": case "ring": case "throw": case "drive": {
       const fill = part.shape === "drive" ? looks.drive : part.shape === "gear" || part.shape === "rim" ? (part.spring >= 0 ? tint : looks.gear) : looks.steel
-      found.push({ points: [put(-0.15, 0, 0), put(size.length + 0.15, 0, 0)], stroke: looks.dark, wide: 0, body: 0.08, edge: looks.dark })
+      rod(put, -0.15, size.length + 0.15)
       drum(put, size.radius, 0, size.length, fill)
-      spoke(put, size.length, size.radius); spoke(put, 0, size.radius)
       break
     }
     case "plates": {
-      drum(put, size.radius, 0, size.length / 2, looks.dark); spoke(put, 0, size.radius)
-      const other = placed(at, axes, own[1])
-      drum(other, size.radius, size.length / 2, size.length / 2, tint); spoke(other, size.length, size.radius)
+      const halves = [() => drum(put, size.radius, 0, size.length / 2, looks.dark),
+        () => drum(placed(at, axes, own[1]), size.radius, size.length / 2, size.length / 2, tint)]
+      for (const half of towards ? halves : halves.reverse()) half()
       break
     }
     case "shaft": case "coupling": {
       const r = part.shape === "shaft" ? size.radius : Math.max(2.2 * size.radius, 0.24)
       found.push({ points: [put(0, 0, 0), put(size.length, 0, 0)], stroke: tint, wide: 0, body: r, edge: looks.dark })
       for (const start of [0, Math.PI]) {
-        const stripe = Array.from({ length: 13 }, (_, k) => {
-          const x = k / 12, turn = own[0] + x * (own[1] - own[0])
-          return placed(at, axes, turn)(x * size.length, r * Math.cos(start), r * Math.sin(start))
-        })
-        found.push({ points: stripe, stroke: looks.ink, wide: 1.6, near: 0.02 })
+        const spot = k => placed(at, axes, own[0] + start + k / 12 * (own[1] - own[0]))
+        for (let k = 0; k < 12; k++) {
+          const foot = spot(k)(0, 0, 0), tip = spot(k)(0, 1, 0)
+          if (dot(add(tip, foot, -1), out) > 0) found.push({ points: [spot(k)(k / 12 * size.length, r, 0), spot(k + 1)((k + 1) / 12 * size.length, r, 0)], stroke: looks.ink, wide: 1.6 })
+        }
       }
       break
     }
@@ -51,7 +56,8 @@ function outline(part, own, share, looks, theme) {
         found.push({ points: [put(0, r, 0), put(way * 0.4 * reach, r, 0), put(way * 0.4 * reach, -r, 0), put(0, -r, 0)], stroke: look, wide: 5 })
         found.push({ points: [put(0, r, 0), put(0, -r, 0)], stroke: looks.joint, wide: 4 })
       }
-      arms(put, -1, looks.dark); arms(back, 1, looks.gear)
+      const both = [() => arms(put, -1, looks.dark), () => arms(back, 1, looks.gear)]
+      for (const one of towards ? both : both.reverse()) one()
       break
     }
     case "belt": case "link": case "tie":
@@ -62,7 +68,7 @@ function outline(part, own, share, looks, theme) {
 }
 
 export class Flat {
-  constructor(canvas, movements, parts, camera, theme) {
+  constructor(canvas, parts, camera, theme) {
     this.canvas = canvas; this.parts = parts; this.camera = camera; this.theme = theme
     this.context = canvas.getContext("2d")
     this.last = []
@@ -81,17 +87,13 @@ export class Flat {
       g.save(); g.beginPath(); g.rect(0, row * tall, this.width, tall); g.clip()
       const aspect = this.width / tall, scale = tall / 2
       const pixel = p => { const [x, y] = this.camera.seen(p, aspect); return [this.width / 2 + x * scale, row * tall + tall / 2 - y * scale] }
-      const unit = scale / this.camera.half(aspect), pieces = []
+      const scaled = scale / this.camera.half(aspect), { out } = this.camera.axes
       this.last = this.parts.map(part => part.stations.map((s, k) => angles[s] - (part.turned[k] ?? 0)))
-      this.parts.forEach((part, i) => {
-        const share = part.spring >= 0 && torques && most ? torques[part.spring] / most : null
-        for (const piece of outline(part, this.last[i], share, looks, this.theme)) {
-          const middle = piece.points.reduce((a, b) => add(a, b), [0, 0, 0]).map(x => x / piece.points.length)
-          pieces.push({ ...piece, depth: this.camera.seen(middle, aspect)[2] + (piece.near ?? 0) })
-        }
-      })
-      pieces.sort((a, b) => a.depth - b.depth)
-      for (const piece of pieces) this.piece(g, piece, pixel, unit)
+      const order = this.parts.map((part, i) => [i, dot(part.far ? add(part.at, part.far).map(x => x / 2) : add(part.at, part.axes.e, (part.size.length ?? 0) / 2), out)])
+      for (const [i] of order.sort((a, b) => a[1] - b[1])) {
+        const part = this.parts[i], share = part.spring >= 0 && torques && most ? torques[part.spring] / most : null
+        for (const piece of outline(part, this.last[i], share, looks, this.theme, out)) this.piece(g, piece, pixel, scaled)
+      }
       g.restore()
     })
   }

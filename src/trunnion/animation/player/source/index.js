@@ -28,6 +28,7 @@ const STYLE = `
 .tp button.play { min-width: 74px; font-weight: 600; }
 .tp button:focus-visible, .tp select:focus-visible, .tp input:focus-visible { outline: 3px solid var(--accent); outline-offset: 1px; }
 .tp output { white-space: nowrap; font-variant-numeric: tabular-nums; color: var(--faint); min-width: 3.5em; }
+.tp output.clock { min-width: 6.2em; }
 .tp .legend { display: inline-flex; gap: 6px; align-items: center; font-size: 13px; font-variant-numeric: tabular-nums; }
 .tp .legend i { display: inline-block; width: 120px; height: 11px; border: 1px solid var(--line); border-radius: 2px; }
 .tp .said { margin: 4px 2px 0; font-size: 13px; color: var(--faint); overflow-wrap: anywhere; }
@@ -88,7 +89,7 @@ class Player {
     this.play_button = element("button", { class: "play", type: "button", onclick: () => this.toggle() })
     this.scrub = element("input", { type: "range", min: 0, max: 1000, step: 1, value: 0, "aria-label": "time",
       oninput: () => { this.pause(); this.seek(this.whole * this.scrub.value / 1000) } })
-    this.clock = element("output", { for: "" })
+    this.clock = element("output", { class: "clock" })
     this.pace = element("input", { type: "range", min: -2, max: 2, step: 0.05, value: 0,
       oninput: () => { this.speed = 10 ** this.pace.value; this.sound() } })
     this.paced = element("output")
@@ -119,7 +120,17 @@ class Player {
     this.root.replaceChildren(element("style", { text: STYLE }), this.box)
   }
 
-  choose(k) {
+  // Another scene in the place of this one, seen from the same side.
+  load(data) {
+    const before = this.data.choices[this.chosen], { turn, rise, zoom } = this.camera
+    this.data = data
+    this.select.replaceChildren(...data.choices.map(choice => element("option", { text: choice.title })))
+    const same = before.title === data.choices[0].title, share = this.time / this.whole
+    this.choose(0, { turn, rise, zoom })
+    if (same) this.time = share * this.whole
+  }
+
+  choose(k, from = null) {
     const choice = this.data.choices[k]
     this.chosen = k
     this.select.selectedIndex = k
@@ -142,41 +153,45 @@ class Player {
     this.named = named
     this.names = named.length <= 24
     this.naming.checked = this.names
+    this.picked = this.picked && (named.find(part => part.name === this.picked.name) ?? null)
     this.camera = new Camera(reaches(this.parts))
+    if (from) Object.assign(this.camera, from)
     this.sound()
     this.restage()
   }
 
-  // Begins the picture anew: in WebGL, one context for all of the page, or on a plain canvas.
+  // Begins the picture anew: in WebGL, in the one context of the page, or on a plain canvas.
   restage() {
-    this.painter?.dispose()
     const look = this.theme
     this.box.classList.toggle("dark", look === "dark")
-    const canvas = this.canvas = element("canvas", { class: "view", tabindex: 0, role: "application",
-      "aria-label": `${this.data.title}, ${this.data.choices[this.chosen].title}, in space. Arrow keys turn it, plus and minus zoom, `
-        + "space plays and pauses, comma and full stop step, Home resets.", "aria-describedby": `${this.id}said` })
-    this.stage.replaceChildren(canvas, this.over)
-    this.painter = null
-    if (!this.options.flat) {
-      try { this.painter = new Solid(canvas, this.rows, this.parts, this.camera, look) } catch (error) { this.why = String(error) }
-    }
-    if (!this.painter) {
-      const fresh = canvas.cloneNode()
-      canvas.replaceWith(fresh)
-      this.canvas = fresh
-      this.painter = new Flat(fresh, this.rows, this.parts, this.camera, look)
-    } else {
-      canvas.addEventListener("webglcontextlost", event => {
-        if (this.canvas !== canvas || !this.alive) return
-        event.preventDefault(); this.options.flat = true; this.restage()
-      })
-    }
-    this.listen(this.canvas)
+    if (this.painter instanceof Solid && !this.options.flat) this.painter.rebuild(this.parts, this.camera, look)
+    else this.begin(look)
+    this.canvas.setAttribute("aria-label", `${this.data.title}, ${this.data.choices[this.chosen].title}, in space. Arrow keys turn it, `
+      + "plus and minus zoom, space plays and pauses, comma and full stop step, Home resets.")
     this.labels = this.named.map(part => element("span", { class: "label", text: part.name }))
     this.captions = this.rows.length > 1 ? this.rows.map(row => element("div", { class: "caption" }, element("span", { text: row.data.title + ": " + row.data.short }))) : []
     this.over.replaceChildren(...this.labels, ...this.captions)
     this.key()
     this.fit()
+  }
+
+  begin(look) {
+    this.painter?.dispose()
+    this.painter = null
+    const blank = () => element("canvas", { class: "view", tabindex: 0, role: "application", "aria-describedby": `${this.id}said` })
+    let canvas = blank()
+    if (!this.options.flat) {
+      try { this.painter = new Solid(canvas, this.parts, this.camera, look) } catch (error) { this.why = String(error); canvas = blank() }
+    }
+    if (this.painter) {
+      canvas.addEventListener("webglcontextlost", event => {
+        if (this.canvas !== canvas || !this.alive) return
+        event.preventDefault(); this.options.flat = true; this.restage()
+      })
+    } else this.painter = new Flat(canvas, this.parts, this.camera, look)
+    this.canvas = canvas
+    this.stage.replaceChildren(canvas, this.over)
+    this.listen(canvas)
   }
 
   get kind() { return this.painter instanceof Solid ? "webgl" : "2d" }
@@ -398,8 +413,9 @@ export function render({ model, el }) {
   let player = null
   const show = () => {
     const text = get("scene")
-    player?.dispose(); player = null
-    if (!text) { root.replaceChildren(); return }
+    if (!text) { player?.dispose(); player = null; root.replaceChildren(); root.style.display = "none"; return }
+    root.style.display = ""
+    if (player) { player.options.theme = get("theme") || undefined; player.load(JSON.parse(text)); return }
     player = mount(root, JSON.parse(text), { theme: get("theme") || undefined, flat: get("flat") || false, choice: get("choice") ?? 0,
       onpick: name => { if (own) { model.set("picked", name); model.save_changes() } else model.picked = name } })
   }

@@ -252,20 +252,30 @@ const BUILD = {
 }
 
 export class Solid {
-  constructor(canvas, movements, parts, camera, theme) {
-    this.canvas = canvas; this.camera = camera; this.theme = theme; this.rows = movements
-    const looks = LOOKS[theme]
+  constructor(canvas, parts, camera, theme) {
+    this.canvas = canvas
     this.renderer = new WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true, powerPreference: "low-power" })
-    this.renderer.setClearColor(looks.ground)
     this.renderer.autoClear = false
-    this.scene = new Scene()
     this.eye = new OrthographicCamera(-1, 1, 1, -1, -200, 400)
+    this.eye.matrixAutoUpdate = false
+    this.rebuild(parts, camera, theme)
+  }
+
+  // Other bodies in the same context.
+  rebuild(parts, camera, theme) {
+    this.empty()
+    this.camera = camera; this.theme = theme
+    const looks = LOOKS[theme]
+    this.renderer.setClearColor(looks.ground)
+    this.scene = new Scene()
     const sun = new DirectionalLight(0xffffff, 2.1), back = new DirectionalLight(0xffffff, 0.7)
     sun.position.set(-3, -6, 8); back.position.set(4, 5, -2)
     this.scene.add(new AmbientLight(0xffffff, 1.15), sun, back)
     this.bodies = parts.map(part => new Body(part, this.scene, looks))
     for (const body of this.bodies) body.theme = theme
   }
+
+  empty() { this.scene?.traverse(one => { one.geometry?.dispose(); one.material?.dispose?.() }) }
 
   size(width, height, ratio) {
     this.width = width; this.height = height
@@ -295,7 +305,6 @@ export class Solid {
   look(aspect) {
     const half = this.camera.half(aspect), { right, up, out } = this.camera.axes, eye = this.eye
     eye.left = -half * aspect; eye.right = half * aspect; eye.top = half; eye.bottom = -half
-    eye.matrixAutoUpdate = false
     eye.matrix = new Matrix4().makeBasis(vector(right), vector(up), vector(out)).setPosition(...add(this.camera.target, out, 60))
     eye.matrixWorldNeedsUpdate = true
     eye.updateProjectionMatrix()
@@ -304,7 +313,7 @@ export class Solid {
   read() { return this.bodies.map(body => body.read()) }
 
   dispose() {
-    this.scene.traverse(one => { one.geometry?.dispose(); one.material?.dispose?.() })
+    this.empty()
     this.renderer.dispose()
     this.renderer.forceContextLoss()
   }
