@@ -209,7 +209,9 @@ def test_massless_shafts_share_their_twist() -> None:
         )
     parts, response = only(tn.animate(line, "response", speed=20.0))
     ends = part(parts, "soft").stations
-    assert response.deviation[:, ends[1]] == pytest.approx(0.75 * response.deviation[:, part(parts, "load").stations[0]])
+    assert response.deviation[:, ends[1]] == pytest.approx(
+        0.75 * response.deviation[:, part(parts, "load").stations[0]]
+    )
 
 
 def test_what_slips_is_drawn_as_it_is() -> None:
@@ -222,7 +224,14 @@ def test_what_slips_is_drawn_as_it_is() -> None:
             tn.SlipClutch(torque=20.0, name="clutch"),
             tn.Disk(inertia=2.0, name="load"),
         ],
-        scenarios=[tn.Scenario(name="blow", duration=0.4, speed=50.0, torque=[tn.AppliedTorque(on="load", torque=[0.0, -200.0], time=[0.0, 0.05], hold=True)])],
+        scenarios=[
+            tn.Scenario(
+                name="blow",
+                duration=0.4,
+                speed=50.0,
+                torque=[tn.AppliedTorque(on="load", torque=[0.0, -200.0], time=[0.0, 0.05], hold=True)],
+            )
+        ],
     )
     parts, motion = only(tn.animate(line, "transient", scenario="blow"))
     clutch = part(parts, "clutch").stations

@@ -1,5 +1,5 @@
-"""A line in motion in a browser, from a file, with the network cut: what stands in the picture against what was computed,
-without WebGL too, with hostile names, by keyboard, and at rest for who wants it so."""
+"""A line in motion in a browser, from a file, with the network cut: what stands in the picture against what was
+computed, without WebGL too, with hostile names, by keyboard, and at rest for who wants it so."""
 
 from __future__ import annotations
 

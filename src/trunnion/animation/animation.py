@@ -73,7 +73,8 @@ class Animation:
         return Path(path)
 
     def _repr_html_(self) -> str:
-        return f'<iframe srcdoc="{escape(self.html)}" title="{escape(self.title)} in motion" style="width:100%;height:560px;border:0"></iframe>'
+        shown = f'srcdoc="{escape(self.html)}" title="{escape(self.title)} in motion"'
+        return f'<iframe {shown} style="width:100%;height:560px;border:0"></iframe>'
 
     def _lines(self) -> Iterator[str]:
         yield f"{self.title} in motion; .save(path) writes a page, a GIF or JSON"

@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.animation.movement import Movement
 from trunnion.animation.movements import GROWN
 from trunnion.animation.scenery import DrawnPart
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 
 if TYPE_CHECKING:
     from trunnion.animation.animation import ShownMotion
@@ -88,7 +88,7 @@ def state(movement: Movement, share: float) -> tuple[Array, Array]:
         at = (share * whole) % span
     times = movement.time - movement.time[0]
 
-    def between(part: Array) -> Array:
+    def between(part: Array | Complex) -> Array:
         found = [np.interp(at, times, column.real) + 1j * np.interp(at, times, column.imag) for column in part.T]
         return np.real(np.array(found) * wave)
 
@@ -139,7 +139,9 @@ class _View:
 
 def _middle(part: DrawnPart) -> Array:
     """Where a body stands among others, the nearest drawn last."""
-    return part.at + 0.5 * part.size.get("length", 0.0) * part.frame[0] if part.far is None else (part.at + part.far) / 2
+    return (
+        part.at + 0.5 * part.size.get("length", 0.0) * part.frame[0] if part.far is None else (part.at + part.far) / 2
+    )
 
 
 def _corners(part: DrawnPart) -> Iterator[Array]:

@@ -26,8 +26,9 @@ class Movement:
 
     time (frame,) [s]; rigid (frame, station) [rad]; deviation (frame, station) [rad] and torque (frame, spring) [N m],
     positive with the twist. With a ``growth`` λ [1/s] they are complex, and Re[deviation e^{λt}] is what moves.
-    ``repeats``: the last frame is the first again, whole turns aside. ``size``: what one unit of the deviation is, "" for
-    radians; ``slow``: how many times slower than it is it plays at first.
+    ``repeats``: the last frame is the first again, whole turns aside. ``arbitrary``: the deviation is 1 rad where it is
+    largest, which says nothing; ``factor``: by what it is multiplied, ``slow``: how many times slower than
+    it is it plays, both at first.
     """
 
     title: str
@@ -56,7 +57,7 @@ class Movement:
 
 
 def rigid_angles(assembly: Assembly, table: Array, input_angle: Array) -> Array:
-    """Angle of every station (time, station) [rad] of a line whose shafts do not twist, at angles of its input [rad]."""
+    """Angle of every station (time, station) [rad] where shafts do not twist, at angles of the input (time,) [rad]."""
     untwisted = assembly.coefficients(table, statically_twisted=False, any_frequency=True)
     return base_motion(assembly.topology, untwisted, input_angle).angle[0]
 
@@ -82,7 +83,7 @@ def station_deviation(topo: Topology, relative: Array, unknowns: Array | Complex
     """Of every station (time, station), of the unknowns (time, n), small: relative (time, station) is how fast it turns
     over its group's first."""
     moves = topo.unknown_of >= 0
-    found = np.zeros((len(unknowns), len(topo.stations)), dtype=unknowns.dtype)
+    found: Array = np.zeros((len(unknowns), len(topo.stations)), dtype=unknowns.dtype)
     found[:, moves] = unknowns[:, topo.unknown_of[moves]] * np.broadcast_to(relative, found.shape)[:, moves]
     of_sums: dict[int, int] = {}
     for s, station in enumerate(topo.stations):

@@ -58,7 +58,9 @@ def turning(line: Driveline | Assembly, speed: float | str | None = None) -> tup
     angle = rigid_angles(assembly, table, tau)
     nothing = np.zeros((len(tau), len(assembly.topology.compliances)))
     words = Words(speed_unit(assembly.line))
-    uneven = "its joints make the shafts behind them uneven" if has_joint_angles(assembly) else "nothing makes it uneven"
+    uneven = (
+        "its joints make the shafts behind them uneven" if has_joint_angles(assembly) else "nothing makes it uneven"
+    )
     said = f"The line turns at {words.speed(at)}, shafts rigid: {uneven}."
     return assembly, Movement(
         "turning", said, tau / at, angle, np.zeros_like(angle), nothing, turns[1], slow=A_TURN * at / (2 * np.pi),
@@ -83,8 +85,8 @@ def mode(line: Driveline | Assembly, number: int = 1) -> tuple[Assembly, Movemen
     table = assembly.table(1)
     stiffness = assembly.coefficients(table, any_frequency=True).stiffness[0]
     torque = np.cos(cycle)[:, None] * (stiffness * (topo.elongations @ shape))
-    deviation = with_massless(assembly, deviation)
-    rigid = np.broadcast_to(rigid_angles(assembly, table, np.zeros(1)), deviation.shape)
+    moved = with_massless(assembly, deviation)
+    rigid = np.broadcast_to(rigid_angles(assembly, table, np.zeros(1)), moved.shape)
     most = found.names[int(np.abs(shape).argmax())]
     ratio = found.damping_ratio[place]
     damped = "overdamped" if np.isnan(ratio) else f"damping ratio {ratio:.3g}"
@@ -93,7 +95,7 @@ def mode(line: Driveline | Assembly, number: int = 1) -> tuple[Assembly, Movemen
         "is arbitrary, torques are for 1 rad there."
     )
     one = Movement(
-        f"mode {number}", said, cycle / frequency, rigid, deviation, torque, arbitrary=True,
+        f"mode {number}", said, cycle / frequency, rigid, moved, torque, arbitrary=True,
         slow=A_CYCLE * frequency / (2 * np.pi),
     )  # fmt: skip
     return assembly, replace(one, factor=float(f"{TO_BE_SEEN:.1g}"))
@@ -285,7 +287,15 @@ def run_up(
     angle = shown.topology.mean_speeds * reference(time)[:, None] + seen.rotation
     rigid, moved = parted(shown, table, angle)
     one = Movement(
-        "run-up", said, time, rigid, moved, seen.torque, repeats=False, slow=A_PASSAGE / (time[-1] - time[0]), notes=notes
+        "run-up",
+        said,
+        time,
+        rigid,
+        moved,
+        seen.torque,
+        repeats=False,
+        slow=A_PASSAGE / (time[-1] - time[0]),
+        notes=notes,
     )
     return shown, exaggerated(one, shown.topology)
 
@@ -296,8 +306,10 @@ def transient(line: Driveline | Assembly, scenario: str | None = None) -> tuple[
 
     assembly = assemble(line)
     known = [one.name for one in assembly.line.scenarios]
-    if scenario is None and not known:
-        raise InputError("has no scenario", element="driveline", key="scenario", remedy="write [[scenario]] in its file")
+    if not scenario and not known:
+        raise InputError(
+            "has no scenario", element="driveline", key="scenario", remedy="write [[scenario]] in its file"
+        )
     found: Transient = follow(assembly, scenario or known[0])
     return transient_movement(found)
 

@@ -10,9 +10,10 @@ import numpy as np
 from trunnion.animation.movement import Movement
 from trunnion.animation.movements import GROWN
 from trunnion.animation.scenery import DrawnPart
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 
 FORMAT = 1
+"""Of the scene."""
 FIGURES = 7
 """Of the largest value of a series, and decimals of lengths."""
 LONGEST_WATCH = 60.0
@@ -22,7 +23,11 @@ LONGEST_WATCH = 60.0
 def choice(title: str, parts: Sequence[DrawnPart], movements: Sequence[Movement]) -> dict[str, Any]:
     """One motion, or two below each other that share their time, of the bodies ``parts``."""
     span = _span(movements)
-    return {"title": title, "parts": [_part(one) for one in parts], "movements": [_movement(m, span) for m in movements]}
+    return {
+        "title": title,
+        "parts": [_part(one) for one in parts],
+        "movements": [_movement(m, span) for m in movements],
+    }
 
 
 def _span(movements: Sequence[Movement]) -> float | None:
@@ -69,7 +74,7 @@ def _movement(one: Movement, span: float | None) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _moving(part: Array) -> Any:
+def _moving(part: Array | Complex) -> Any:
     if np.iscomplexobj(part):
         return {"re": _series(part.real), "im": _series(part.imag)}
     return _series(part)

@@ -2,8 +2,8 @@
 
 Axes and bends are true: every shaft has a frame (e, u, v) as kinetostatics have it, a joint turns it by its plane and
 bends it by its angle. Along an axis nothing is to scale but tubes of stated length among each other. The radius of a
-disk goes with the fifth root of its inertia, as of steel disks of one shape, that of a shaft with the fourth root of its
-stiffness. Gears set the shaft behind them aside, a differential across; branches stand beside each other.
+disk goes with the fifth root of its inertia, as of steel disks of one shape, that of a shaft with the fourth root of
+its stiffness. Gears set the shaft behind them aside, a differential across; branches stand beside each other.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ Ends = Annotated[
 ]
 
 
-@Command("animation", writes=PAGES)
+@Command("frames", writes=PAGES)
 def animate(
     line: LineOfFile,
     *,

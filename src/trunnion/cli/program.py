@@ -128,7 +128,9 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     analyze,
     *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
     callback("misfire", "Every cylinder out of work in turn: the worst, and the torques with it.", orders.misfire),
-    callback("animate", "The line in motion, in space: a page that plays it without a network, a GIF, or JSON.", animate),
+    callback(
+        "animate", "The line in motion, in space: a page that plays it without a network, a GIF, or JSON.", animate
+    ),
     reproduce,
     serve_app,
     warm_up,

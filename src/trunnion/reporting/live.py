@@ -1,4 +1,4 @@
-"""The page beside the report on which the line moves: a file of its own, for its script, which the report has none of."""
+"""The page beside the report on which the line moves: a file of its own, since the report runs no script."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def live(line: Driveline, speed: float | None = None) -> tuple[Animation, tuple[
             continue
         try:
             found.append(animate(line, what, **arguments))
-        except TrunnionError as error:
+        except TrunnionError:
             refused.add(what)
             if what == "response":
                 refused.add("disturbance")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from trunnion.app.parts.calls import LINE, Call
 from trunnion.animation.player.component import Player
+from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.widgets import column, pane, small
 from trunnion.app.views.base import (
     VariantPane,
@@ -72,8 +72,8 @@ class LiveView(View):
 
     name = "live"
     about = (
-        "The line in space, as it turns, swings and twists: drag to turn it, the wheel and + − to come closer, the space "
-        "bar to hold it. Twist is exaggerated as it says; bends and planes are true."
+        "The line in space, as it turns, swings and twists: drag to turn it, the wheel and + − to come closer, the "
+        "space bar to hold it. Twist is exaggerated as it says; bends and planes are true."
     )
     side = _LivePane
     asks, asked_by = ASKS, ("what",)
