@@ -47,6 +47,7 @@ from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Scenario as Scenario
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
+from trunnion.driveline import Sheet as Sheet
 from trunnion.driveline import Slider as Slider
 from trunnion.driveline import SlipClutch as SlipClutch
 from trunnion.driveline import SNCurve as SNCurve
@@ -62,6 +63,8 @@ from trunnion.driveline import TunedDamper as TunedDamper
 from trunnion.driveline import Tyre as Tyre
 from trunnion.driveline import Vehicle as Vehicle
 from trunnion.driveline import ViscousDamper as ViscousDamper
+from trunnion.driveline import component as component
+from trunnion.driveline import components as components
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump
 from trunnion.driveline import dumps as dumps

@@ -870,12 +870,53 @@ PYTHON = [
     ),
     (
         lambda: tn.passing(
-            line(tn.Motor(inertia=0.5, name="motor", **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
+            line(tn.Motor(inertia=0.5, name="motor", pole_pairs=2, **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
             (5.0, 9.0),
-            torque=[torque(time=[0, 1], torque=[1, 1])],
         ),
-        "motor.curve: has a torque over speed",
-        "state its inertia as a Disk, and its torque in the scenario",
+        "motor.pole_pairs = 2: lets its torque lag behind its speed above",
+        "leave out pole_pairs: the torque then follows at once",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0)),
+        "torque: is missing",
+        "or a Motor in the line",
+    ),
+    (
+        lambda: tn.transient(line(engine(), Shaft(stiffness=1e4), Generator(inertia=1.0, power=1e3)), 1.0, speed=0.0),
+        "Generator 1.power = 1000: takes constant power, which has no torque at standstill",
+        "start at a positive speed",
+    ),
+    (
+        lambda: tn.transient(line(motor(gain=9.0, drive_share=1), Shaft(stiffness=1e4), PUMP), 1.0, speed=0.0),
+        "motor.drive_share = 1: is set by its converter to the speed at which the run begins",
+        "leave out drive_share",
+    ),
+    (
+        lambda: tn.transient(
+            line(motor(gain=9.0, torque_limit=5.0, drive_share=1), Shaft(stiffness=1e4), fan(load_torque=9.0)),
+            1.0,
+            speed=9.0,
+        ),
+        "motor.torque_limit = 5: would have to drive with",
+        "raise it, or lower the load",
+    ),
+    (
+        lambda: tn.transient(
+            line(engine(), Shaft(stiffness=1e4), propeller(damping_factor=3.0, quadratic_load=9.0)), 1.0, speed=9.0
+        ),
+        "propeller.damping_factor = 3: holds about one mean speed, which changes here",
+        "leave it out",
+    ),
+    (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], torque=[1, 2]),
+        "torque on pump.torque = [1, 2]: stands beside power",
+        "leave one of the two out",
+    ),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside power",
     ),
     (
         lambda: tn.passing(
