@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from trunnion.animation import movements
-from trunnion.animation.animation import Animation, ShownMotion
+from trunnion.animation.animation import Animation
 from trunnion.animation.movement import Movement
+from trunnion.animation.scene import ShownMotion
 from trunnion.animation.scenery import scenery
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest

@@ -10,23 +10,12 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from trunnion.animation.movement import Movement
 from trunnion.animation.page import as_data, page
-from trunnion.animation.scene import FORMAT, choice
-from trunnion.animation.scenery import DrawnPart
+from trunnion.animation.scene import FORMAT, ShownMotion, choice
 from trunnion.errors import InputError
 from trunnion.writing import written_whole
 
 ENDINGS = (".html", ".gif", ".json")
-
-
-@dataclass(frozen=True)
-class ShownMotion:
-    """One of an animation's motions: the bodies, and one movement of them or two below each other."""
-
-    title: str
-    parts: tuple[DrawnPart, ...]
-    movements: tuple[Movement, ...]
 
 
 @dataclass(frozen=True)

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from trunnion.animation.movement import Movement
 from trunnion.animation.movements import GROWN
+from trunnion.animation.scene import ShownMotion
 from trunnion.animation.scenery import DrawnPart
 from trunnion.arrays import Array, Complex
-
-if TYPE_CHECKING:
-    from trunnion.animation.animation import ShownMotion
 
 TURN, RISE = -0.62, 0.36
 """From where one looks [rad], as the player does at first."""

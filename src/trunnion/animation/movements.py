@@ -58,10 +58,8 @@ def turning(line: Driveline | Assembly, speed: float | str | None = None) -> tup
     angle = rigid_angles(assembly, table, tau)
     nothing = np.zeros((len(tau), len(assembly.topology.compliances)))
     words = Words(speed_unit(assembly.line))
-    uneven = (
-        "its joints make the shafts behind them uneven" if has_joint_angles(assembly) else "nothing makes it uneven"
-    )
-    said = f"The line turns at {words.speed(at)}, shafts rigid: {uneven}."
+    how = "its joints make the shafts behind them uneven" if has_joint_angles(assembly) else "nothing makes it uneven"
+    said = f"The line turns at {words.speed(at)}, shafts rigid: {how}."
     return assembly, Movement(
         "turning", said, tau / at, angle, np.zeros_like(angle), nothing, turns[1], slow=A_TURN * at / (2 * np.pi),
         notes=_not_whole(turns),

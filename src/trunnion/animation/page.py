@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
-from markupsafe import Markup
 
 from trunnion._version import __version__
 
@@ -44,7 +43,7 @@ def page(scene: dict[str, Any]) -> str:
         undefined=StrictUndefined,
     )
     facts = {
-        "title": scene["title"], "hash": Markup(admitted(script())), "version": __version__,
-        "scene": Markup(as_data(scene)), "script": Markup(script()),
+        "title": scene["title"], "hash": admitted(script()), "version": __version__,
+        "scene": as_data(scene), "script": script(),
     }  # fmt: skip
     return made.get_template("player.html.j2").render(**facts)

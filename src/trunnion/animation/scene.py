@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,15 @@ FIGURES = 7
 """Of the largest value of a series, and decimals of lengths."""
 LONGEST_WATCH = 60.0
 """Seconds that a disturbance takes at most to watch."""
+
+
+@dataclass(frozen=True)
+class ShownMotion:
+    """One of an animation's motions: the bodies, and one movement of them or two below each other."""
+
+    title: str
+    parts: tuple[DrawnPart, ...]
+    movements: tuple[Movement, ...]
 
 
 def choice(title: str, parts: Sequence[DrawnPart], movements: Sequence[Movement]) -> dict[str, Any]:
@@ -77,7 +87,7 @@ def _movement(one: Movement, span: float | None) -> dict[str, Any]:
 def _moving(part: Array | Complex) -> Any:
     if np.iscomplexobj(part):
         return {"re": _series(part.real), "im": _series(part.imag)}
-    return _series(part)
+    return _series(part.real)
 
 
 def _series(columns: Array) -> list[Any]:

@@ -225,7 +225,7 @@ class _Draft:
         return [drawn], replace(axle.on(length), station=station)
 
     def _joint(
-        self, i: int, element: Element, axle: _Axle, station: int, uneven: bool
+        self, i: int, element: Element, axle: _Axle, station: int, nonuniform: bool
     ) -> tuple[list[DrawnPart], _Axle]:
         """Bent by its angle, in its plane; a cross has two forks, others a housing."""
         plane, angle = (float(getattr(element, key, 0.0) or 0.0) for key in ("plane", "angle"))
@@ -235,10 +235,10 @@ class _Draft:
         cross = isinstance(element, HookeJoint)
         drawn = DrawnPart(
             i, self.line.names[i], "cross" if cross else "joint", centre, front, (axle.station, station),
-            (counted, 0.0 if uneven else counted), back=behind,
+            (counted, 0.0 if nonuniform else counted), back=behind,
             size={"reach": JOINT, "radius": CROSS if cross else PLAIN},
         )  # fmt: skip
-        return [drawn], _Axle(station, centre + JOINT * behind[0], behind, 0.0 if uneven else counted)
+        return [drawn], _Axle(station, centre + JOINT * behind[0], behind, 0.0 if nonuniform else counted)
 
     def _gears(
         self, i: int, element: Element, axle: _Axle, station: int, ratio: float
