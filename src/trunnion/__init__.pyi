@@ -19,6 +19,7 @@ from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
+from trunnion.driveline import Disturbance as Disturbance
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
@@ -56,6 +57,7 @@ from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
+from trunnion.driveline import TorqueFunction as TorqueFunction
 from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint

@@ -169,6 +169,13 @@ def torque(**given):
     return tn.AppliedTorque(on="pump", **given)
 
 
+FAULT = {"case": "three-phase short circuit", "frequency": "50 Hz", "amplitude": 9, "decay": 0.2}
+
+
+def disturbance(**given):
+    return tn.Disturbance(on="pump", **given)
+
+
 def unbalanced():
     """A straight line that nothing holds at a speed, excited by its rotation, whose drive is stronger than its load."""
     engine = Disk(inertia=1.0, load_torque=-30.0, excitation=[{"order": 2, "amplitude": 5.0}], name="engine")
@@ -964,6 +971,108 @@ PYTHON = [
         ),
         "propeller.damping_factor = 3: holds about one mean speed, which changes here",
         "leave it out",
+    ),
+    (
+        lambda: torque(formula="__import__('os')"),
+        "torque on pump.formula = \"__import__('os')\": cannot be read at character 12",
+        "write numbers",
+    ),
+    (lambda: torque(formula="open(t)"), "torque on pump.formula = 'open(t)': calls open, which is no function", "sin"),
+    (lambda: torque(formula="x"), "torque on pump.formula = 'x': says x, which is no name that it knows", "angle"),
+    (lambda: torque(formula="min(t)"), "torque on pump.formula = 'min(t)': gives min 1 arguments", "min takes 2"),
+    (lambda: torque(formula="1e999"), "torque on pump.formula = '1e999': has a number beyond 1e308", "smaller"),
+    (
+        lambda: torque(formula="step(speed)"),
+        "torque on pump.formula = 'step(speed)': jumps where the speed does",
+        "tanh",
+    ),
+    (
+        lambda: torque(formula="t+" * 3000),
+        "torque on pump.formula = 't+t+",
+        "has more than 4000 characters; write a table",
+    ),
+    (lambda: torque(formula=3), "torque on pump.formula = 3: is no text", "write formula"),
+    (
+        lambda: torque(formula="-" * 99 + "t"),
+        "torque on pump.formula = '---",
+        "write it shorter",
+    ),
+    (lambda: torque(formula="t", time=[0, 1]), "torque on pump.time = [0, 1]: stands beside formula", "leave one"),
+    (
+        lambda: torque(formula="t", between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside formula",
+    ),
+    (
+        lambda: torque(formula="t", since=2, until=1),
+        "torque on pump.until = 1: must lie behind since",
+        "leave it out, or raise it",
+    ),
+    (
+        lambda: torque(time=[0, 1], torque=[0, 1], since=2),
+        "torque on pump.since = 2: belongs to a formula",
+        "put it into the points of time",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0), torque=[torque(formula="sin(t)")]),
+        "torque on pump.until: goes on changing with time",
+        "say until when",
+    ),
+    (
+        lambda: tn.transient(
+            free(), 1.0, torque=[tn.TorqueFunction(on="pump", function=lambda t, w, a: "x")], speed=9.0
+        ),
+        "torque.function = 'str': gives no number",
+        "let it return the torque in N m",
+    ),
+    (lambda: disturbance(case="earthquake"), "disturbance on pump.case = 'earthquake': is no case", "tip-in"),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2),
+        "tip-in on pump.rise: is missing",
+        "needed are first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=0.1, fall=0.1),
+        "tip-in on pump.fall = 0.1: is of another case",
+        "it takes first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=-0.1),
+        "tip-in on pump.rise = -0.1: must not be negative",
+        "",
+    ),
+    (lambda: disturbance(**FAULT | {"decay": 0}), "three-phase short circuit on pump.decay = 0: must be positive", ""),
+    (
+        lambda: disturbance(**FAULT, since=2, until=1),
+        "three-phase short circuit on pump.until = 1: must lie behind since",
+        "times count from t = 0",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[1, 2], amplitudes=[1]),
+        "synchronous start on pump.amplitudes = [1]: has 1 values for 2 speeds",
+        "one for each speed",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[2, 1], amplitudes=[1, 1]),
+        "synchronous start on pump.speeds = [2, 1]: does not rise at point 2",
+        "put the lowest first",
+    ),
+    (
+        lambda: disturbance(
+            case="synchronous start", frequency=9, pole_pairs=2, speeds=range(20), amplitudes=range(20)
+        ),
+        "synchronous start on pump.speeds = range(0, 20): are more than 16",
+        "give fewer points",
+    ),
+    (
+        lambda: disturbance(case="impacts", peaks=[1, 1], width=0.2, spacing=0.1),
+        "impacts on pump.spacing = 0.1: is less than width",
+        "must not overlap",
+    ),
+    (
+        lambda: tn.transient(free(), 1.0, disturbance=["x"], speed=9.0),
+        "disturbance = 'x': is not a list of Disturbance",
+        "tn.Disturbance",
     ),
     (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
     (
