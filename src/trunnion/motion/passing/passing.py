@@ -20,10 +20,10 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem

@@ -36,8 +36,9 @@ from trunnion.results.variables import Attribute, Coordinate, Variable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
     from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing
+    from trunnion.driveline.scenarios import LevelCrossing
 
 BACKWARDS = 0.02
 """Share of the largest speed beyond which a line that turns against its sense does more than swing."""

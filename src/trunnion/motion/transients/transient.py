@@ -8,17 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -32,6 +34,7 @@ def transient(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    disturbance: Sequence[Disturbance] = (),
     crossing: Sequence[LevelCrossing] = (),
     speed: float | str | None = None,
     phase: float = 0.0,
@@ -49,6 +52,7 @@ def transient(
     torque : what acts over time, speed or angle; several on one disk add up, and come to what the description puts
         there. A disk with a drive_share that is given a torque is driven by that instead.
     friction : dry friction that resists disks and keeps them at rest.
+    disturbance : short circuits, bites, impacts, tip-ins and brakes by name, which add to both.
     crossing : levels that are watched; the run ends at the first that ``ends``.
     speed : of the input when it begins [rad/s], by default the file's operating speed; 0 is standstill and negative
         turns backwards. Drives with a share go on giving what balances the loads at that speed, which must not be
@@ -85,12 +89,16 @@ def transient(
         duration = description.scenario(duration)
     if isinstance(duration, Scenario):
         scenario = duration
-        if torque or friction or crossing:
+        if torque or friction or crossing or disturbance:
             raise InputError("says what acts by itself", key="scenario", value=scenario.name, remedy="give a duration")
         duration, name = scenario.duration, scenario.name
         torque, friction, crossing = scenario.torque, scenario.friction, scenario.crossing
+        disturbance = scenario.disturbance
         speed = scenario.speed if speed is None else speed
     length = positive_time(duration, "give seconds, or the name of a scenario")
+    refuse_others(disturbance, Disturbance, "disturbance")
+    torque = [*torque, *(made for one in disturbance for made in one.torques)]
+    friction = [*friction, *(made for one in disturbance for made in one.frictions)]
     asked = actions_of(torque, friction, crossing)
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
