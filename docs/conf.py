@@ -69,9 +69,13 @@ def _with_mathjax(app, failure):  # type: ignore[no-untyped-def]
 
 
 def _links_out_of_docs(app, name, source):  # type: ignore[no-untyped-def]
-    """Files at the top of the project are pages of the site too; in the repository links lead to the files."""
+    """Files at the top of the project are pages of the site too; a page that the home page does not list is a guide."""
     if not name.startswith("generated/"):
         source[0] = changelog.turned(source[0], HERE)
+    if name == "index":
+        listed = source[0].split()
+        new = [page.stem for page in sorted(HERE.glob("*.md")) if page.stem not in (*listed, "index")]
+        source[0] = source[0].replace("\nreport\napp\n", "\n".join(["", "report", "app", *new, ""]))
 
 
 def setup(app):  # type: ignore[no-untyped-def]
