@@ -96,6 +96,17 @@ from trunnion.floquet.tolerance.certify import certify_stability as certify_stab
 from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
+from trunnion.measured.bench import measure as measure
+from trunnion.measured.signals.measurement import Measurement as Measurement
+from trunnion.measured.signals.measurement import PulseTrain as PulseTrain
+from trunnion.measured.signals.measurement import SampledSignal as SampledSignal
+from trunnion.measured.signals.read import read_measurement as read_measurement
+from trunnion.measured.tracking.by_angle import measured_order_map as measured_order_map
+from trunnion.measured.tracking.by_angle import synchronous_average as synchronous_average
+from trunnion.measured.tracking.pitch import pitch_errors as pitch_errors
+from trunnion.measured.tracking.run_ups import run_ups as run_ups
+from trunnion.measured.tracking.track import track_orders as track_orders
+from trunnion.measured.tracking.vold_kalman import vold_kalman as vold_kalman
 from trunnion.modes.bending import bending_speeds as bending_speeds
 from trunnion.modes.damper_optimum import damper_optimum as damper_optimum
 from trunnion.modes.natural_frequencies import natural_frequencies as natural_frequencies

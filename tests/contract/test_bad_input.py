@@ -3,6 +3,7 @@
 import os
 import re
 
+import numpy as np
 import pytest
 
 import trunnion as tn
@@ -54,6 +55,19 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def wheel():
+    """Ninety-nine turns of a wheel of 20 teeth, five a second."""
+    return tn.PulseTrain(np.arange(2000) / 100.0, 20, name="wheel")
+
+
+def gauge():
+    return tn.SampledSignal(np.sin(np.arange(2000.0)), 100.0, name="gauge")
+
+
+def rotated():
+    return tn.track_orders(tn.Measurement([wheel()]), [1])
 
 
 def damped():
@@ -795,6 +809,50 @@ PYTHON = [
         "0 rpm",
     ),
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
+    (lambda: tn.PulseTrain([0.1, 0.3, 0.2], 1), "pulses.times = 0.2: must rise", "take each once"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 0), "pulses.pulses_per_turn = 0: must be a whole number", "1 or more"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 9), "pulses.times = 2: holds less than two turns of 9 pulses", "record longer"),
+    (lambda: tn.PulseTrain(np.arange(9.0), 2, pitch_error=0.7), "pulses.pitch_error = 0.7: must be a share", "2 %"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 0.0), "signal.rate = 0: must be positive", "Hz"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 1.0, kind="torqe"), "signal.kind = 'torqe': is no kind", '"torque"'),
+    (
+        lambda: tn.SampledSignal([1.0, np.nan], 1.0),
+        "signal.values: has 1 sample that are no numbers",
+        "cut the gap out",
+    ),
+    (lambda: tn.Measurement([]), "measurement.channels: has no channel", "one or more"),
+    (lambda: tn.Measurement([wheel(), wheel()]), "measurement.name = 'wheel': names two channels", "name each"),
+    (lambda: tn.track_orders(tn.Measurement([gauge()])), "measurement = '': has no pulse train", 'kind = "pulses"'),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [15]), "orders = 15: is not seen by wheel", "lower orders"),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [0]), "orders = [0.0]: must be positive", "[1, 2, 4]"),
+    (
+        lambda: tn.track_orders(tn.Measurement([wheel()]), [1], between=(33.0, 99.0)),
+        "between = [33.0, 99.0]: is outside the recording, 0 to 19.99 s",
+        "rising times",
+    ),
+    (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
+    (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),
+    (lambda: rotated().cut(1, "weel"), "channel = 'weel': is no channel", '"wheel"'),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [1], bandwidth=-1),
+        "bandwidth = -1: must be positive",
+        "",
+    ),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [60]),
+        "gauge.rate = 100: is too low for order 60",
+        "record faster",
+    ),
+    (
+        lambda: tn.synchronous_average(gauge(), rotated().rotation, turns=90),
+        "gauge.turns = 90: does not come twice",
+        "record longer",
+    ),
+    (
+        lambda: tn.measured_order_map(wheel(), rotated().rotation, highest=15.0),
+        "wheel.highest = 15: is not seen by 20 pulses a turn",
+        "below 10",
+    ),
     (
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
