@@ -1,5 +1,6 @@
 """The public names and their homes: for type checkers, and for ``__init__.py``, which imports them when first used."""
 
+from trunnion.animation.animate import animate as animate
 from trunnion.design.assessment.assess import assess as assess
 from trunnion.design.comparison.compare import compare as compare
 from trunnion.design.envelope import envelope as envelope

@@ -305,9 +305,30 @@ FATIGUE = [
 ]
 """What fatigue refuses."""
 
+
+def animate(what, **arguments):
+    from trunnion import animate as shown
+
+    return shown(free(), what, **arguments)
+
+
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
     *FATIGUE,
+    # what moves
+    (lambda: animate("mod"), "what = 'mod': is no motion of a line", 'did you mean "mode"?'),
+    (lambda: animate("turning", mode=1), "mode = 1: does not belong to turning", "turning takes speed"),
+    (lambda: animate("mode", mode=9), "mode = 9: is not a mode that vibrates", "give 1 to"),
+    (lambda: animate("mode", mode=True), "mode = True: is not a mode that vibrates", "give 1 to"),
+    (
+        lambda: animate("response", speed=90.0),
+        "driveline.what = 'response': is free–free and has joint",
+        "ask for motion",
+    ),
+    (lambda: animate("disturbance", speed=90.0), "driveline.what = 'disturbance': is free–free", "ask for motion"),
+    (lambda: animate("transient"), "driveline.scenario: has no scenario", "[[scenario]]"),
+    (lambda: animate("run-up"), "speeds: are not known", "give the lowest and the highest"),
+    (lambda: animate("mode").save("line.mp4"), "output = 'line.mp4': is nothing an animation", "end it in one of"),
     # excitations
     (lambda: Disk(inertia=1, excitation=[{"order": 2}]), "Disk.excitation 1 amplitude: is missing", "40 N*m"),
     (

@@ -51,7 +51,7 @@ LAYERS = (
     {"design/limits"},
     {"design", "design/sensitivity", "design/comparison", "design/optimisation", "design/tolerance"},
     {"design/remedies"},
-    {"pictures"},
+    {"pictures", "animation", "animation/player"},
     {"reporting"},
     {"studies/shared"},
     {"studies/two_shaft_cardan", "studies/bicardan_elastic", "studies/double_tripod", "studies/gear_rattle"},
