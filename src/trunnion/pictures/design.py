@@ -14,7 +14,7 @@ from trunnion.design.optimisation.result import Optimum
 from trunnion.design.sensitivity.result import Sensitivities, SensitivityQuantity, share_of, smaller, too_large
 from trunnion.design.tolerance.tolerance_study import ToleranceStudy
 from trunnion.errors import InputError
-from trunnion.floquet.tolerance.certify import StabilityCertificate
+from trunnion.floquet.certificate.certify import StabilityCertificate
 from trunnion.pictures.picture import (
     EVEN,
     MARGIN,
