@@ -25,7 +25,7 @@ from trunnion.errors import InputError
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine
 
 STATED = 1e-13
-"""What numbers of a line may be wrong by, relative: their computation from what a description states is not enclosed."""
+"""What numbers of a line may be wrong by, relative: how they follow from a description is not enclosed."""
 AFFINE = (
     "stiffness", "damping", "mesh_stiffness", "mesh_damping", "loss_factor", "inertia", "fork_offset", "plane",
     "load_torque", "viscous_load", "quadratic_load",
@@ -103,7 +103,18 @@ def box_coefficients(
     kept_tangents = {s: wave for s, wave in tangents.items() if wave is not None}
     middle = assembly.coefficients(table[:1])
     return BoxCoefficients(
-        speed, stiffness, damping, torque, inertia, constant, viscous, quadratic, kept_tangents, shift, over_mass, middle
+        speed,
+        stiffness,
+        damping,
+        torque,
+        inertia,
+        constant,
+        viscous,
+        quadratic,
+        kept_tangents,
+        shift,
+        over_mass,
+        middle,
     )
 
 
@@ -207,7 +218,9 @@ def _tangent(assembly: Assembly, s: int, ranges: Sequence[Range], many: int, las
         second = 0.5 * over * (over + 2 * np.tan(most) ** 2) * half**2 / 2
         slope = np.tan(h) / np.cos(h) ** 2 * half
         value = np.tan(h) ** 2
-        return affine(float(value), {2 + j: float(slope)}, many, last, float(second * OUTWARD + STATED * (value + 1e-3)))
+        return affine(
+            float(value), {2 + j: float(slope)}, many, last, float(second * OUTWARD + STATED * (value + 1e-3))
+        )
     return None
 
 
@@ -248,7 +261,7 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
         element = line.elements[compliance.shafts[0]]
         if has_stages(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
             raise InputError(
-                "has stages, and its load varies within the box, which a certificate does not follow from stage to stage",
+                "has stages, and its load varies within the box: whether it stays in one stage is not followed",
                 element=line.names[compliance.shafts[0]], value=float(torque),
                 remedy="write a Shaft of its stiffness under load, or give one speed and no tolerance of loads",
             )  # fmt: skip
@@ -300,5 +313,5 @@ def _require_even(assembly: Assembly, speeds: tuple[float, float]) -> None:
 
 
 def _rotor_at(assembly: Assembly) -> Callable[[int], int]:
-    at = {station: place for station, place in assembly.topology.disks}
+    at = dict(assembly.topology.disks)
     return lambda station: at.get(station, assembly.topology.stations[station].element)

@@ -125,6 +125,7 @@ class _BoxLine:
         zero, one = self.number(0.0), self.number(1.0)
         for s, station in enumerate(topo.stations):
             b = station.before
+            state: tuple[Wave, ...]
             if station.link is LinkKind.ROOT:
                 state = zero, one, zero, one, zero, zero
             elif station.link is LinkKind.SHAFT:
@@ -134,7 +135,7 @@ class _BoxLine:
                 state = self._behind_joint(found, s, b, laws[s])
             else:
                 over = 1 / float(topo.ratio_values[s])
-                state = tuple(  # type: ignore[assignment]
+                state = tuple(
                     part[b] * over
                     for part in (
                         found.lead, found.speed, found.acceleration, found.relative, found.relative_slope,
@@ -184,7 +185,7 @@ class _BoxLine:
         )
 
     def matrix(self) -> BoxMatrix:
-        topo, co, n = self.assembly.topology, self.co, self.assembly.topology.size
+        co, n = self.co, self.assembly.topology.size
         motion, zero = self.walk(), self.number(0.0)
         mass = [zero] * n
         damping = [[zero] * n for _ in range(n)]

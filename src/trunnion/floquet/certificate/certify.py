@@ -21,7 +21,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
 from trunnion.equations.topology import LinkKind
-from trunnion.errors import InputError
+from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.certificate.box_coefficients import Range, require_linear
 from trunnion.floquet.certificate.judge import JudgedBox, judge
@@ -59,6 +59,7 @@ class StabilityCertificate(Result):
     undecided_high: Array = variable("open_box variable", words="what stays open, SI units", name="high")
     proved_low: Array = variable("proved_box variable", words="what was proved, SI units")
     proved_high: Array = variable("proved_box variable", words="what was proved, SI units")
+    decay: float = variable("", "1/s", "rate at which every disturbance in what was proved dies out at least")
     units: tuple[str, ...] = internal("of the parameters")
     unit: str = internal("of speeds in print")
     findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
@@ -89,17 +90,25 @@ class StabilityCertificate(Result):
         many = f"{count} tolerance{'s' if count > 1 else ''}"
         what = f"{many}, from {self.words.ends(*self.speeds)}" if count else f"from {self.words.ends(*self.speeds)}"
         if self.verdict == "proved stable":
-            yield f"proved stable: every line within {what}" if count else f"proved stable: the line at every speed {what}"
+            yield (
+                f"proved stable: every line within {what}"
+                if count
+                else f"proved stable: the line at every speed {what}"
+            )
         elif self.counterexample is not None:
             values = ", ".join(f"{n} = {v:.9g}" for n, v in self.counterexample.items() if n != "speed")
             at = self.words.speed(self.counterexample["speed"])
-            yield f"not stable {'within ' if count else ''}{what}: at {at} the line{values and f' with {values}'} is unstable"
+            which = f"the line with {values}" if values else "the line"
+            yield f"not stable {'within ' if count else ''}{what}: at {at} {which} is unstable"
         else:
             rest = "the rest is proved stable" if self.undecided_share < 1 else "no part of it is proved stable"
             ended = f"; {self.ended}" if self.ended else ""
             inside = "within " if count else ""
             yield f"undecided {inside}{what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
-        yield f"  {self.boxes} box{'es' if self.boxes != 1 else ''}"
+        boxes = f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
+        where = "" if self.verdict == "proved stable" else " where proved"
+        known = np.isfinite(self.decay)
+        yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
 
 
 @keeps_time
@@ -166,6 +175,7 @@ def certify_stability(
         undecided_high=space.values(left[:, 1]),
         proved_low=space.values(proved[:, 0]),
         proved_high=space.values(proved[:, 1]),
+        decay=min(found.decays, default=np.nan),
         units=tuple(s.unit for s in spreads),
         unit=speed_unit(assembly.line),
         findings=left_out("certify_stability", assembly.line),
@@ -198,7 +208,9 @@ class _Space:
         columns += [s.low + shares[:, k] * (s.high - s.low) for k, s in enumerate(self.spreads, start=1)]
         found = np.stack(columns, axis=1)
         # The ends themselves, to the last figure.
-        found[:, 0] = np.where(shares[:, 0] <= 0, self.speeds[0], np.where(shares[:, 0] >= 1, self.speeds[1], found[:, 0]))
+        found[:, 0] = np.where(
+            shares[:, 0] <= 0, self.speeds[0], np.where(shares[:, 0] >= 1, self.speeds[1], found[:, 0])
+        )
         return found
 
     def span(self, box: Array) -> tuple[float, float]:
@@ -224,7 +236,11 @@ class _Space:
         if self.spreads:
             table = table_at(self.assembly, self.spreads, values[None, 1:])
             line = self.assembly.packed.line_at(table[0])
-        if stability(line, float(values[0])).verdict is not Verdict.UNSTABLE:
+        try:
+            verdict = stability(line, float(values[0])).verdict
+        except ComputationError:  # too stiff to be followed: no counterexample
+            return None
+        if verdict is not Verdict.UNSTABLE:
             return None
         names = ("speed", *(s.label for s in self.spreads))
         return line, dict(zip(names, values.tolist(), strict=True))
@@ -238,6 +254,7 @@ class _BoxSearch:
     most: int
     report_progress: Callable[[float], None]
     proved: list[Array] = field(default_factory=list)
+    decays: list[float] = field(default_factory=list)
     counterexample: dict[str, float] | None = None
     unstable: Driveline | None = None
     judged: int = 0
@@ -260,9 +277,10 @@ class _BoxSearch:
             return
         with to_the_end():  # a box takes tenths of a second at most
             self.judged += 1
-            if self.space.judged(whole, by_energy=True).proved:
+            found = self.space.judged(whole, by_energy=True)
+            if found.proved:
                 self._todo.clear()
-                self.proved.append(whole)
+                self._keep(whole, found)
                 return
         open_share = 1.0
         while self._todo and self.judged < self.most:
@@ -274,7 +292,7 @@ class _BoxSearch:
                 found = self.space.judged(box)
                 self.judged += 1
                 if found.proved:
-                    self.proved.append(box)
+                    self._keep(box, found)
                     open_share -= float(np.prod(box[1] - box[0]))
                 elif found.doubtful and self._refuted(box):
                     self._put(box)
@@ -282,6 +300,10 @@ class _BoxSearch:
                 else:
                     self._halve(box, found.blame)
             self.report_progress(min(max(1 - open_share, 0.0), 0.999))
+
+    def _keep(self, box: Array, found: JudgedBox) -> None:
+        self.proved.append(box)
+        self.decays.append(found.decay)
 
     def _put(self, box: Array) -> None:
         self._count += 1

@@ -14,18 +14,17 @@ from trunnion.floquet.certificate.box_equations import NotEnclosed, box_matrix
 from trunnion.floquet.certificate.periodic_lyapunov import lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check
 
-FAR = 30.0
-"""Excess beyond which another P of the same box is not tried."""
-
 
 @dataclass(frozen=True)
 class JudgedBox:
     """``proved``; ``excess``: below 1 proved; ``blame`` (1 + ranges,): what speed and each range bring of it;
-    ``doubtful``: whether not even the middle was found to be stable."""
+    ``decay``: rate [1/s] at which disturbances die out at least, where proved; ``doubtful``: whether not even the
+    middle was found to be stable."""
 
     proved: bool
     excess: float
     blame: Array
+    decay: float = 0.0
     doubtful: bool = False
 
 
@@ -48,7 +47,7 @@ def judge(
     series = lyapunov_series(box, modal, 0 if by_energy else None)
     found = check(box, modal, series)
     if found.proved:
-        return JudgedBox(True, found.excess, found.blame)
+        return JudgedBox(True, found.excess, found.blame, found.decay)
     at = series.parts[0].sum(axis=0)
     doubtful = not series.solved or not np.linalg.eigvalsh((at + at.conj().T) / 2)[0] > 0
-    return JudgedBox(False, found.excess, found.blame, doubtful)
+    return JudgedBox(False, found.excess, found.blame, doubtful=doubtful)

@@ -26,10 +26,14 @@ ENOUGH = 1e-5
 """What may be left of the equations, relative to their right side."""
 MOST_STEPS = 80
 """Steps of GMRES."""
+LOOKED = 3
+"""Steps between looks at what is left."""
 SKEWED = 1e3
 """Condition of the modes beyond which the undamped ones are taken in their place."""
 SIDES = (4, 8, 16, 32, 64, 128)
 """Harmonics of P beyond its mean, tried in turn."""
+UNSOLVED = 2
+"""Numbers of harmonics with which the equations were not solved, after which no more are tried."""
 FADED = 1e-5
 """Size of the last harmonics, relative to all, with which they are enough."""
 
@@ -104,9 +108,12 @@ def _energy_modes(scaled: Array, energy: Array) -> tuple[Complex, Array] | None:
 
 def lyapunov_series(box: BoxMatrix, modal: ModalBox, sides: int | None = None) -> LyapunovSeries:
     """P of a box; with ``sides`` harmonics of it, or as many as it needs."""
+    unsolved = 0
     for count in (sides,) if sides is not None else SIDES:
         found = _Solver.of(box, modal, count).series()
-        if sides is not None or found.solved and _faded(found.parts) or count >= SIDES[-1]:
+        unsolved += not found.solved
+        # Where more harmonics do not help the line is near to its limit, and a smaller box has to decide.
+        if sides is not None or (found.solved and _faded(found.parts)) or unsolved >= UNSOLVED:
             break
     return found
 
@@ -141,7 +148,9 @@ class _Solver:
         own = np.einsum("mii->mi", modal.h[0])[last]
         order = 1j * np.arange(-sides, sides + 1)[:, None, None] * box.rate * box.speed[0]
         over = order + (own.conj()[:, None] + own[None, :])
-        return cls(modal.h, _values(modal.h[0], times), order, 1 / over, modal.decay, box.speed, sides, times)
+        return cls(
+            modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay, box.speed, sides, times
+        )
 
     def series(self) -> LyapunovSeries:
         size = len(self.decay)
@@ -150,6 +159,8 @@ class _Solver:
         first, solved = self.solve(asked)
         parts = np.zeros((len(self.h), *asked.shape), dtype=complex)
         parts[0] = first
+        if not solved:
+            return LyapunovSeries(parts, False)
         grid = _values(first, self.times)
         own = np.einsum("ii->i", self.h[0, self.h.shape[1] // 2])
         for v in range(1, len(self.h)):
@@ -161,7 +172,9 @@ class _Solver:
             if v == 1:
                 right = right + self.order * first * (self.speed[1] / self.speed[0])
             energy = np.zeros_like(first)
-            energy[self.sides] = np.diag(_weights(own, np.einsum("ii->i", moved[moved.shape[0] // 2]), first[self.sides]))
+            energy[self.sides] = np.diag(
+                _weights(own, np.einsum("ii->i", moved[moved.shape[0] // 2]), first[self.sides])
+            )
             right = right + self.apply(energy)
             kept = np.einsum("ii->i", right[self.sides])
             right[self.sides] -= np.diag(kept)
@@ -185,25 +198,28 @@ class _Solver:
         if not (0 < norm < np.inf):
             return np.zeros_like(right), norm == 0
         basis, columns, steps = [start / norm], np.zeros((MOST_STEPS + 1, MOST_STEPS)), 0
-        answer, solved = np.zeros(1), False
+        answer: Array = np.zeros(0)
+        solved = False
         for steps in range(1, MOST_STEPS + 1):
             following = self.over * self.apply(basis[-1])
             for _ in range(2):
                 flat = np.array([one.ravel() for one in basis])
                 share = (flat.conj() @ following.ravel()).real
-                columns[: steps, steps - 1] += share
+                columns[:steps, steps - 1] += share
                 following = following - (share @ flat).reshape(following.shape)
             length = float(np.linalg.norm(following))
             columns[steps, steps - 1] = length
-            target = np.zeros(steps + 1)
-            target[0] = norm
-            answer, *_ = np.linalg.lstsq(columns[: steps + 1, :steps], target, rcond=None)
-            left = float(np.linalg.norm(columns[: steps + 1, :steps] @ answer - target))
-            if left <= ENOUGH * norm or length <= 1e-14 * norm:
+            last = length <= 1e-14 * norm or steps == MOST_STEPS
+            if last or steps % LOOKED == 0:
+                target = np.zeros(steps + 1)
+                target[0] = norm
+                answer = np.asarray(np.linalg.lstsq(columns[: steps + 1, :steps], target, rcond=None)[0])
+                left = float(np.linalg.norm(columns[: steps + 1, :steps] @ answer - target))
                 solved = left <= ENOUGH * norm
-                break
+                if solved or last:
+                    break
             basis.append(following / length)
-        found = np.tensordot(answer, np.array(basis[:steps]), 1)
+        found = np.asarray(np.tensordot(answer, np.array(basis[:steps]), 1), dtype=complex)
         return (found + found[::-1].conj().swapaxes(1, 2)) / 2, solved
 
 

@@ -5,12 +5,12 @@ Let ż = A(τ, p)z with τ = Ωt, A periodic, and P(τ, p) Hermitian and periodi
     N = Ω P′ + A*P + PA < 0 for all τ,     P(0, p) > 0,
 
 then every solution decays: V = z*Pz falls strictly, over a period by Φ*P(0)Φ < P(0), Φ the monodromy matrix, and with
-P(0) > 0 that is Stein's inequality, which puts all multipliers inside the unit circle (Stein 1952; Bittanti and Colaneri,
-Periodic Systems, 2009, section 6.2).
+P(0) > 0 that is Stein's inequality, which puts all multipliers inside the unit circle (Stein 1952; Bittanti and
+Colaneri, Periodic Systems, 2009).
 
-P is that of ``periodic_lyapunov``: P = Wᵀ* P_y W with harmonics that are floating-point numbers, and so exactly known;
-nothing is asked of how they were found. N is taken in modal coordinates, U*NU, with any invertible U. With A = A₀ + Σ p_v A_v + R
-from ``box_equations``,
+P is that of ``periodic_lyapunov``: P = W*P_yW with harmonics that are floating-point numbers, and so exactly known;
+nothing is asked of how they were found. N is taken in modal coordinates, U*NU, with any invertible U. With
+A = A₀ + Σ p_v A_v + R from ``box_equations``,
 
     U*NU = N₀ + Σ p_v N_v + Σ p_v p_w N_vw + (what R, rounding and WU ≠ I leave),
 
@@ -31,15 +31,20 @@ from trunnion.floquet.certificate.box_equations import BoxMatrix
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox
 from trunnion.floquet.certificate.waves import OUTWARD, UNIT
 
+HALVINGS = 12
+"""With which a decay rate is found."""
+
 
 @dataclass(frozen=True)
 class BoxVerdict:
     """``proved``; ``excess``: what C brings against the smallest decay, 1 where it just fails; ``blame`` (1 + ranges,):
-    what each parameter brings of it."""
+    what each parameter brings of it; ``decay``: rate [1/s] at which every disturbance dies out at least, 0 where
+    nothing is proved."""
 
     proved: bool
     excess: float
     blame: Array
+    decay: float = 0.0
 
 
 def check(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> BoxVerdict:
@@ -50,17 +55,32 @@ def check(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> BoxVerdict:
     with np.errstate(all="ignore"):
         bound = _Bound.of(box, modal, found)
         proved, excess, weight = _negative(bound.whole)
-        proved = proved and _positive(found)
+        proved = proved and bound.invertible and _positive(found)
         blame = np.array([weight @ one @ weight for one in bound.each])
-    return BoxVerdict(bool(proved), excess, np.nan_to_num(blame))
+        decay = _decay(bound, float(modal.decay.min())) if proved else 0.0
+    return BoxVerdict(bool(proved), excess, np.nan_to_num(blame), decay)
+
+
+def _decay(bound: _Bound, most: float) -> float:
+    """A rate μ with N + 2μP < 0, so that V falls as e^(−2μt) at least: halved in on."""
+    low, high = 0.0, 2 * most
+    for _ in range(HALVINGS):
+        middle = (low + high) / 2
+        moved = bound.whole + 2 * middle * bound.energy
+        proved = _negative(moved + 4 * UNIT * (np.abs(moved) + np.abs(bound.whole)))[0]
+        low, high = (middle, high) if proved else (low, middle)
+    return low
 
 
 @dataclass(frozen=True)
 class _Bound:
-    """C (D, D), and what each parameter brings of it (parameters, D, D)."""
+    """C (D, D), what each parameter brings of it (parameters, D, D), in the same sense a bound of P,
+    and whether WU ≠ I is so small that W has an inverse."""
 
     whole: Array
     each: Array
+    energy: Array
+    invertible: bool
 
     @classmethod
     def of(cls, box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> _Bound:
@@ -129,7 +149,8 @@ class _Bound:
         whole = (whole + whole.T) / 2
         whole[off] *= OUTWARD
         whole[~off] += 1e-13 * np.abs(whole).sum(axis=1)
-        return cls(whole, each)
+        energy = near.T @ (p_all * OUTWARD) @ near * OUTWARD
+        return cls(whole, each, (energy + energy.T) / 2, bool(e.sum(axis=1).max() < 0.5))
 
 
 def _products(p: Complex, h: Complex):  # type: ignore[no-untyped-def]

@@ -1,6 +1,6 @@
 """Periodic functions of an angle that also depend on a few parameters, with all that is left out bounded.
 
-A ``Wave`` is f(τ, p) = Σ_m (c_0m + Σ_v p_v c_vm) e^{imsτ} + g(τ, p) for −1 ≤ p_v ≤ 1, with |g| ≤ ``rest`` for all τ and p:
+A ``Wave`` is f(τ, p) = Σ_m (c_0m + Σ_v p_v c_vm) e^{imsτ} + g(τ, p) for −1 ≤ p_v ≤ 1, with |g| ≤ ``rest`` for all τ, p:
 a Fourier series in the angle, linear in the parameters. What products leave of second order in p, harmonics beyond the
 last one kept, and rounding go into the rest (*Taylor models*, after Makino and Berz, with Fourier series in place of
 polynomials). Sums of moduli of harmonics bound a wave from above.
@@ -33,7 +33,7 @@ SMALL = 1e-19
 
 @dataclass(frozen=True)
 class Wave:
-    """``parts`` (1 + parameters, 2K + 1): harmonics −K … K of the middle, then of what each parameter adds; ``rest``."""
+    """``parts`` (1 + parameters, 2K + 1): harmonics −K … K of the middle, then of what each parameter adds."""
 
     parts: Complex
     rest: float
