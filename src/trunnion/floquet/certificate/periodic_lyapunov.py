@@ -146,7 +146,7 @@ class _Solver:
         # Half as many again as P alone: what a product folds back over its ends is small.
         times = _smooth(2 * sides + 2 * min(last, sides + 8) + 1)
         own = np.einsum("mii->mi", modal.h[0])[last]
-        order = 1j * np.arange(-sides, sides + 1)[:, None, None] * box.rate * box.speed[0]
+        order: Complex = np.asarray(1j * np.arange(-sides, sides + 1)[:, None, None] * box.rate * box.speed[0])
         over = order + (own.conj()[:, None] + own[None, :])
         return cls(
             modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay, box.speed, sides, times
