@@ -11,7 +11,7 @@ from oracles.own_monodromy import Chains, Part
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.floquet.certificate.box_coefficients import Range
+from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.judge import judge
 
 RADIUS = 1e-9
@@ -104,7 +104,7 @@ def check(seed: int, boxes: int, size: int, simple: bool, points: int = 24) -> t
             if half:
                 columns = assembly.packed.resolve(f"{line.names[1 + i]}.{key}")
                 value = assembly.packed.value(columns.label)
-                ranges.append(Range(columns.label, columns, value * (1 - half), value * (1 + half)))
+                ranges.append(NumberRange(columns.label, columns, value * (1 - half), value * (1 + half)))
         ends = speed[b] * (1 - wide[b, 0]), speed[b] * (1 + wide[b, 0])
         proved[b] = judge(assembly, ends, ranges).proved or judge(assembly, ends, ranges, by_energy=True).proved
         assert not (proved[b] and unstable[b].any()), (seed, b)

@@ -37,7 +37,7 @@ STEEPEST = np.pi / 3
 
 
 @dataclass(frozen=True)
-class Range:
+class NumberRange:
     """One number of a line from ``low`` to ``high``, SI units."""
 
     label: str
@@ -68,7 +68,7 @@ class BoxCoefficients:
 
 
 def box_coefficients(
-    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[Range], last: int
+    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], last: int
 ) -> BoxCoefficients:
     """Of the box from ``speeds[0]`` to ``speeds[1]`` and over all ``ranges``, as waves of ``last`` harmonics."""
     topo, many = assembly.topology, 1 + len(ranges)
@@ -103,22 +103,12 @@ def box_coefficients(
     kept_tangents = {s: wave for s, wave in tangents.items() if wave is not None}
     middle = assembly.coefficients(table[:1])
     return BoxCoefficients(
-        speed,
-        stiffness,
-        damping,
-        torque,
-        inertia,
-        constant,
-        viscous,
-        quadratic,
-        kept_tangents,
-        shift,
-        over_mass,
-        middle,
-    )
+        speed=speed, stiffness=stiffness, damping=damping, torque=torque, inertia=inertia, constant=constant,
+        viscous=viscous, quadratic=quadratic, tangents=kept_tangents, shift=shift, over_mass=over_mass, middle=middle,
+    )  # fmt: skip
 
 
-def _products(assembly: Assembly, table: Array, co: LineCoefficients, ranges: Sequence[Range]) -> Array:
+def _products(assembly: Assembly, table: Array, co: LineCoefficients, ranges: Sequence[NumberRange]) -> Array:
     """What two tolerances of one element make of every damping together (compliance,): c = ηk/ω is linear in each."""
     found = np.zeros(co.damping.shape[1])
     for a, b in combinations(range(len(ranges)), 2):
@@ -132,7 +122,7 @@ def _products(assembly: Assembly, table: Array, co: LineCoefficients, ranges: Se
     return found
 
 
-def _elements(assembly: Assembly, one: Range) -> list[int]:
+def _elements(assembly: Assembly, one: NumberRange) -> list[int]:
     place = list(assembly.packed.place)
     return [place[column][0] for column in one.columns.index.tolist()]
 
@@ -186,7 +176,7 @@ def _put_twists(
 
 
 def _inverses(
-    assembly: Assembly, co: LineCoefficients, ranges: Sequence[Range], many: int, last: int
+    assembly: Assembly, co: LineCoefficients, ranges: Sequence[NumberRange], many: int, last: int
 ) -> dict[int, Wave]:
     """1/M of every unknown that turns all its inertia evenly and has one tolerance of them."""
     topo, found = assembly.topology, dict[int, Wave]()
@@ -203,7 +193,7 @@ def _inverses(
     return found
 
 
-def _tangent(assembly: Assembly, s: int, ranges: Sequence[Range], many: int, last: int) -> Wave | None:
+def _tangent(assembly: Assembly, s: int, ranges: Sequence[NumberRange], many: int, last: int) -> Wave | None:
     """t = tan²(β/2) of a Hooke's joint whose angle β scatters, to second order; None of any other."""
     place = assembly.topology.stations[s].element
     for j, one in enumerate(ranges):
@@ -224,7 +214,7 @@ def _tangent(assembly: Assembly, s: int, ranges: Sequence[Range], many: int, las
     return None
 
 
-def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[Range]) -> None:
+def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> None:
     """Refuse tolerances in which the equations are not linear, and what changes its kind with the speed.
 
     Raises
@@ -273,7 +263,7 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             )  # fmt: skip
 
 
-def _require_single(assembly: Assembly, one: Range, element: int, key: str) -> None:
+def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str) -> None:
     """Refuse what scatters in springs in series or with stages, of which only the whole enters the equations."""
     for compliance in assembly.topology.compliances:
         if element not in compliance.shafts or key in ("fork_offset", "plane", "inertia"):

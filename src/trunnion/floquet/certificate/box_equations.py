@@ -20,7 +20,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.topology import LinkKind, require_period
-from trunnion.floquet.certificate.box_coefficients import BoxCoefficients, Range, box_coefficients
+from trunnion.floquet.certificate.box_coefficients import BoxCoefficients, NumberRange, box_coefficients
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine, ahead, turning
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.hooke import CrossLaw
@@ -57,7 +57,7 @@ class BoxMatrix:
         return self.parts.shape[1] // 2
 
 
-def box_matrix(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[Range]) -> BoxMatrix:
+def box_matrix(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> BoxMatrix:
     """Of the box of all ``speeds`` and all values of ``ranges``.
 
     Raises
@@ -78,7 +78,7 @@ def period_rate(assembly: Assembly) -> float:
     return 1 / float(require_period(assembly.line, assembly.topology))
 
 
-def _harmonics_needed(assembly: Assembly, ranges: Sequence[Range], speeds: tuple[float, float]) -> int:
+def _harmonics_needed(assembly: Assembly, ranges: Sequence[NumberRange], speeds: tuple[float, float]) -> int:
     """So many that the harmonics of every joint fall below ``NEGLIGIBLE``, and products of two joints'."""
     topo, rate = assembly.topology, period_rate(assembly)
     table = assembly.table(2, speeds[0])

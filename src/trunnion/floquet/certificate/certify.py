@@ -23,7 +23,7 @@ from trunnion.equations.steady_base import refuse_dragged, require_steady_base, 
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.certificate.box_coefficients import Range, require_linear
+from trunnion.floquet.certificate.box_coefficients import NumberRange, require_linear
 from trunnion.floquet.certificate.judge import JudgedBox, judge
 from trunnion.floquet.stability.stability import stability
 from trunnion.floquet.tolerance.parameter_intervals import table_at
@@ -218,12 +218,12 @@ class _Space:
         low, high = self.values(box)[:, 0].tolist()
         return low * (1 - WIDER), high * (1 + WIDER)
 
-    def ranges(self, box: Array) -> list[Range]:
+    def ranges(self, box: Array) -> list[NumberRange]:
         """Its tolerances, moved outward."""
         low, high = self.values(box)
         wider = WIDER * np.maximum(np.abs(low), np.abs(high))
         ends = zip(self.spreads, (low - wider)[1:].tolist(), (high + wider)[1:].tolist(), strict=True)
-        return [Range(one.label, one.columns, least, most) for one, least, most in ends]
+        return [NumberRange(one.label, one.columns, least, most) for one, least, most in ends]
 
     def judged(self, box: Array, *, by_energy: bool = False) -> JudgedBox:
         """The verdict on one box."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import Assembly
-from trunnion.floquet.certificate.box_coefficients import Range
+from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.box_equations import NotEnclosed, box_matrix
 from trunnion.floquet.certificate.periodic_lyapunov import lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check
@@ -29,7 +29,7 @@ class JudgedBox:
 
 
 def judge(
-    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[Range], *, by_energy: bool = False
+    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], *, by_energy: bool = False
 ) -> JudgedBox:
     """Of all lines with numbers within ``ranges`` at all ``speeds`` [rad/s].
 
