@@ -619,7 +619,6 @@ PYTHON = [
     (lambda: line(tolerances={"of": "Shaft 1"}), "driveline.tolerances = ", "tn.Tolerance("),
     (lambda: line(tolerances=[3]), "driveline.tolerance 1 = 3: is not a tolerance", "tn.Tolerance("),
     (lambda: tn.tolerance_study(line(), speeds=10.0), "driveline.tolerances: are not stated", "[[tolerance]]"),
-    (lambda: tn.certify_stability(line(), speeds=(9.0, 10.0)), "driveline.tolerances: are not stated", "[[tolerance]]"),
     # questions about a line or a system
     (
         lambda: tn.System.from_function(
