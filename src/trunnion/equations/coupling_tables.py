@@ -55,7 +55,10 @@ def refuse_beyond(coupling: Coupling, name: str, number: Numbers) -> None:
         )  # fmt: skip
 
 
-def refuse_torque_tables(line: Driveline, remedy: str) -> None:
+CHANGES = "the torque changes here"
+
+
+def refuse_torque_tables(line: Driveline, remedy: str, why: str = CHANGES) -> None:
     """Refuse couplings whose stiffness follows the mean torque, where that changes.
 
     Raises
@@ -65,6 +68,6 @@ def refuse_torque_tables(line: Driveline, remedy: str) -> None:
     for name, element in line.parts:
         if isinstance(element, Coupling) and element.torques:
             raise InputError(
-                "follow the mean torque, by which the stiffness holds for small motions about it, and the torque "
-                "changes here", element=name, key="stiffnesses", remedy=remedy,
+                f"follow the mean torque, by which the stiffness holds for small motions about it, and {why}",
+                element=name, key="stiffnesses", remedy=remedy,
             )  # fmt: skip
