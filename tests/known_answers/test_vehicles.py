@@ -128,7 +128,7 @@ def test_what_slip_needs_is_said() -> None:
 
 
 def test_a_wheel_of_another_size_is_a_ratio_and_winds_the_line_up():
-    """Stated as a radius it is said to do nothing of the kind; as a ratio its slip pulls by F = C s, s = r_2/r_1 − 1."""
+    """Stated as a radius it is said to do nothing of the kind; as a ratio the two slips pull against each other."""
     first, second, stiffness, travel, pulls = 0.3, 0.297, 9e3, 25.0, 6e4
     ring = {"stiffness": stiffness, "damping": 30.0, "slip_stiffness": pulls, "travel_speed": travel, "inertia": 0.4}
     car = tn.Vehicle(name="car", mass=1200.0, wheel_radius=first)
@@ -143,9 +143,8 @@ def test_a_wheel_of_another_size_is_a_ratio_and_winds_the_line_up():
             ]
         )  # fmt: skip
 
-    with pytest.warns(
-        tn.InputRemark, match=r"rear.radius: is 297 mm beside a wheel_radius of 300 mm.*Ratio\(ratio=1.0101"
-    ):
+    said = r"rear.radius: is 297 mm beside a wheel_radius of 300 mm.*Ratio\(ratio=1.0101"
+    with pytest.warns(tn.InputRemark, match=said):
         driven(tn.Tyre(**ring, radius=second, name="rear", to="car"))
     ratio = tn.Ratio(ratio=first / second)
     line = driven(ratio, tn.Tyre(**ring, radius=first, name="rear", to="car"))
