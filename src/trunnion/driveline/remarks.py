@@ -98,7 +98,7 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             own, other = shown(tyre.radius, LENGTH), shown(vehicle.wheel_radius, LENGTH)
             yield (
                 DRAGGED,
-                f"{name}.radius: is {own} beside a wheel_radius of {other}, and it turns as fast as all others, with no "
+                f"{name}.radius: is {own} beside a wheel_radius of {other}; it turns as fast as all others, with no "
                 f"wind-up; for a wheel of another size write {other} and Ratio(ratio={ratio:.6g}) in front of the tyre",
             )
 
