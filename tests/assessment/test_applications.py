@@ -333,7 +333,7 @@ def test_equal_within_one_degree_up_to_rounding() -> None:
 # ---- What is shipped -------------------------------------------------------------------------------------------------
 
 
-LONG = ("four-wheel-drive", "passenger-car")
+LONG = ("four-wheel-drive", "passenger-car", "rolling-mill-strip")
 
 
 @pytest.mark.parametrize(
