@@ -18,7 +18,7 @@ from typer.testing import CliRunner, Result
 import trunnion as tn
 from trunnion.cli import app
 from trunnion.floquet.charts import cost_model
-from trunnion.studies.shared.result import Reproduction
+from trunnion.papers.shared.result import Reproduction
 
 pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
 

@@ -19,7 +19,7 @@ from trunnion.cli.ending import EndedBy
 from trunnion.cli.failures import Interrupted, answer
 from trunnion.cli.readers import TABLES_ANYWHERE
 from trunnion.cli.reproduce import reproduce
-from trunnion.cli.study import analyze
+from trunnion.cli.stability import analyze
 from trunnion.cli.typed import callback
 from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark

@@ -1,1 +1,0 @@
-"""Published studies, a folder a paper: numbers as printed, what is computed anew, errata; and the catalogue."""
