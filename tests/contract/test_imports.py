@@ -47,6 +47,8 @@ LAYERS = (
     {"design/limits"},
     {"design", "design/sensitivity", "design/comparison", "design/optimisation", "design/tolerance"},
     {"design/remedies"},
+    # Asks any of the analyses by its name in the registry, at very many points.
+    {"studies"},
     {"pictures"},
     {"reporting"},
     {"papers/shared"},

@@ -20,6 +20,7 @@ from trunnion.cli.failures import Interrupted, answer
 from trunnion.cli.readers import TABLES_ANYWHERE
 from trunnion.cli.reproduce import reproduce
 from trunnion.cli.stability import analyze
+from trunnion.cli.study import study
 from trunnion.cli.typed import callback
 from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark
@@ -127,6 +128,7 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     analyze,
     *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
     callback("misfire", "Every cylinder out of work in turn: the worst, and the torques with it.", orders.misfire),
+    study,
     reproduce,
     serve_app,
     warm_up,

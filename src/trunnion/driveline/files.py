@@ -138,6 +138,20 @@ def loads(text: str, *, source: str = "") -> Driveline:
     return _loads(text, source, None)
 
 
+def read_toml(path: str | os.PathLike[str]) -> dict[str, Any]:
+    """The tables of a TOML file that describes something else than a driveline.
+
+    Raises
+    ------
+    InputError : it cannot be read, or is not TOML.
+    """
+    text = _read(Path(path))
+    try:
+        return _toml(text)
+    except InputError as error:
+        raise _located(error, Path(path).name) from None
+
+
 def _loads(text: str, source: str, place_of: Place | None) -> Driveline:
     try:
         return _driveline(_toml(text), source, place_of)

@@ -1,0 +1,196 @@
+"""``trunnion study``: one analysis at very many points, and what is done of it."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from trunnion.cli import output
+from trunnion.cli.readers import TABLES_ANYWHERE, read_time
+from trunnion.cli.typed import Json, Within
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.studies.result import Study
+    from trunnion.studies.runner import Progress
+
+OF_STORES = ("status", "resume", "show", "export")
+"""What can be asked of a store that is there."""
+EVERY = 0.2
+"""Seconds between two states of the line of progress on a terminal."""
+
+
+def study(
+    what: Annotated[
+        str, typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what of a STORE.")
+    ],
+    store: Annotated[
+        str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say.")
+    ] = None,
+    outputs: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="PATH",
+            help="Of export: file ending in .nc, .csv or .parquet; of show: .png, .pdf or .svg; repeat it for more.",
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=0, help="Processes of this machine; default: one per core; 0 computes here."),
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler instead: tcp://host:8786."),
+    ] = None,
+    memory: Annotated[
+        str | None,
+        typer.Option("--memory", metavar="SIZE", help='Of a process of this machine at most: "2 GiB".'),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Compute a few points alone, and say what all would cost.")
+    ] = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="First read back all that is there; compute anew what is damaged.")
+    ] = False,
+    within: Within = None,
+    as_json: Json = False,
+) -> None:
+    """Ask an analysis at very many points, on all cores or a cluster; resume, show and export what is kept.
+
+    Example: trunnion study truck-study.toml, then trunnion study show truck.zarr
+    """
+    from trunnion.studies.extra import require_all
+
+    if not dry_run:
+        require_all()
+    if what in OF_STORES:
+        if store is None:
+            raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
+        _of_store(what, store, outputs or [], workers, scheduler, memory, verify, within, as_json)
+        return
+    if store is not None:
+        raise InputError("is nothing that is asked of a store", key="study", value=what,
+                         remedy=nearest(what, OF_STORES))  # fmt: skip
+    if dry_run:
+        from trunnion.studies.study import study_cost
+
+        cost = study_cost(what, tables_anywhere=TABLES_ANYWHERE.get(), workers=workers)
+        output.write_json("study", cost.to_dict()) if as_json else output.say(str(cost))
+        return
+    from trunnion.studies.study import study as run_study
+
+    seconds = None if within is None else read_time(within, "--within")
+    with _reported(seconds) as report:
+        found = run_study(what, workers=workers, scheduler=scheduler, memory=memory, verify=verify, progress=report,
+                      tables_anywhere=TABLES_ANYWHERE.get())  # fmt: skip
+    _say(found, as_json)
+
+
+def _of_store(
+    what: str, store: str, outputs: list[Path], workers: int | None, scheduler: str | None, memory: str | None,
+    verify: bool, within: str | None, as_json: bool,
+) -> None:  # fmt: skip
+    if what == "status":
+        _status(store, as_json)
+    elif what == "resume":
+        from trunnion.studies.study import resumed
+
+        seconds = None if within is None else read_time(within, "--within")
+        with _reported(seconds) as report:
+            found = resumed(store, workers=workers, scheduler=scheduler, memory=memory, verify=verify, progress=report)
+        _say(found, as_json)
+    elif what == "export":
+        from trunnion.studies.exports import ENDINGS, export
+
+        if not outputs:
+            raise InputError("is missing", key="--output", remedy=f"give a file ending in one of {', '.join(ENDINGS)}")
+        paths = [export(store, path) for path in outputs]
+        output.write_json("study", {"written": [str(path) for path in paths]}) if as_json else output.written(paths)
+    else:
+        from trunnion.studies.result import read
+
+        found = read(store)
+        _say(found, as_json, whole=False)
+
+
+def _status(store: str, as_json: bool) -> None:
+    from trunnion.studies.cost import in_time
+    from trunnion.studies.store import Store
+
+    opened = Store.open(Path(store))
+    counts = opened.counts()
+    if as_json:
+        about = {"points": counts.points, "done": counts.done, "failed": counts.failed, "missing": counts.missing,
+                 "seconds": counts.seconds, "reasons": dict(counts.reasons), **opened.about["computed_by"]}  # fmt: skip
+        output.write_json("study", {"store": store, "analysis": opened.question.analysis, **about})
+        return
+    output.say(f"{opened.question.analysis} in {store}: {counts.points} points, {counts.done} done, {counts.failed} "
+               f"failed, {counts.missing} missing")  # fmt: skip
+    if counts.seconds:
+        output.say(f"  {in_time(counts.seconds)} of computing so far")
+    for sentence, count in counts.reasons:
+        output.say(f"  failed at {count}: {sentence}")
+
+
+def _say(found: Study, as_json: bool, *, whole: bool = True) -> None:
+    """The study in words, or what it says as JSON; exit code 1 where points are missing that were asked for."""
+    if as_json:
+        content = {key: value for key, value in vars(found).items() if isinstance(value, str | int)}
+        output.write_json("study", {**content, "missing": found.missing, "reasons": dict(found.reasons)})
+    else:
+        output.say(str(found))
+    if whole:
+        output.finish(found.outcome, [Path(found.store)])
+
+
+@contextmanager
+def _reported(within: float | None) -> Iterator[Callable[[Progress], None]]:
+    """Progress on stderr; Ctrl-C and a time limit end the run with what it has."""
+    terminal = sys.stderr.isatty()
+    last = 0.0 if terminal else time.monotonic()
+    named = False
+
+    def report(state: Progress) -> None:
+        nonlocal last, named
+        if state.dashboard and not named:
+            named = True
+            output.note(f"{state.workers} workers; watch them at {state.dashboard}")
+        now = time.monotonic()
+        if now - last < (EVERY if terminal else output.LONG):
+            return
+        last = now
+        line = progress_line(state)
+        if terminal:
+            print(f"\r{line:<100}", end="", file=sys.stderr, flush=True)
+        else:
+            output.note(line)
+
+    with output.stoppable(within), output.compile_notice():
+        try:
+            yield report
+        finally:
+            if terminal:
+                print("\r" + " " * 100 + "\r", end="", file=sys.stderr, flush=True)
+
+
+def progress_line(state: Any) -> str:
+    """One line about how far a study is."""
+    from trunnion.studies.cost import in_bytes, in_time
+
+    parts = [f"study: {100 * state.share:.1f} %", f"{state.rate:.3g} points/s"]
+    if state.left < float("inf"):
+        parts.append(f"about {in_time(max(state.left, 1.0))} left")
+    if state.failed:
+        parts.append(f"{state.failed} failed")
+    if held := state.bytes:
+        parts.append(f"workers hold {in_bytes(held)}")
+    return ", ".join(parts)
