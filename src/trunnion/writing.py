@@ -130,9 +130,21 @@ def folder_to_disk(folder: Path) -> None:
         os.close(opened)
 
 
-def file_to_disk(path: Path) -> None:
-    """Wait until a file that others wrote is on the disk, with its name."""
-    _to_disk(path)
+@contextmanager
+def scratch_folder(within: Path) -> Iterator[Path]:
+    """A temporary folder below ``within``, removed afterwards."""
+    temporary = within / _own_prefix()
+    temporary.mkdir()
+    try:
+        yield temporary
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def move_durably(made: Path, path: Path) -> None:
+    """Move a file to its place, in the same file system, once it is on the disk, and wait for its name there."""
+    _to_disk(made)
+    os.replace(made, path)
     folder_to_disk(path.parent)
 
 

@@ -1,13 +1,15 @@
 """Shards of Zarr v3, each a whole one of several blocks: what readers of other programs open, with checksums inside.
 
-Zarr writes a file beside and renames it, but waits for no disk. So a shard counts once its files are on the disk and
-have been read back, and a note beside says so; until then its blocks stay.
+Zarr waits for no disk, and reads what is there before it writes the last, shorter shard. So a shard is made in a folder
+of its own, read back, and moved to its place once it is on the disk; it counts when a note beside says so, and until
+then its blocks stay.
 """
 
 from __future__ import annotations
 
 import json
 import re
+import shutil
 import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -20,7 +22,7 @@ from trunnion.studies.extra import zarr
 from trunnion.studies.parts import Part
 from trunnion.studies.points import FAILED, Evaluated
 from trunnion.studies.quantities import LETTERS, Quantity
-from trunnion.writing import file_to_disk, write_durably
+from trunnion.writing import move_durably, scratch_folder, write_durably
 
 STATUS = "status"
 CHUNK = 1 << 14
@@ -98,17 +100,19 @@ def write_shard(
     ComputationError : the disk is full or fails.
     """
     first, last = part.shard_rows(shard)
-    group = zarr().open_group(str(folder), mode="r+")
     files = {}
-    for name, content in _contents(part, quantities, values, found):
-        array = group[name]
-        array[first:last] = content
-        path = file_of(folder, name, shard, content.ndim)
-        file_to_disk(path)
-        file_to_disk(path.parent)  # its folder may be new
-        if np.asarray(array[first:last]).tobytes() != np.ascontiguousarray(content).tobytes():
-            raise DamagedShard(f"{path} does not read back as it was written")
-        files[name] = [path.stat().st_size, zlib.crc32(path.read_bytes())]
+    with scratch_folder(folder) as beside:
+        for name, content in _contents(part, quantities, values, found):
+            (beside / name).mkdir()
+            shutil.copyfile(folder / name / "zarr.json", beside / name / "zarr.json")
+            array = zarr().open_array(str(beside / name), mode="r+")
+            array[first:last] = content
+            if np.asarray(array[first:last]).tobytes() != np.ascontiguousarray(content).tobytes():
+                raise DamagedShard(f"shard {shard} of {folder / name} does not read back as it was written")
+            made, path = (file_of(where, name, shard, content.ndim) for where in (beside, folder))
+            files[name] = [made.stat().st_size, zlib.crc32(made.read_bytes())]
+            path.parent.mkdir(exist_ok=True)
+            move_durably(made, path)
     by_sentence: dict[str, list[int]] = {}
     for row, sentence in sorted(found.sentences.items()):
         by_sentence.setdefault(sentence, []).append(row)

@@ -264,8 +264,8 @@ class Store:
         """Remove what runs that were killed left, and files of blocks whose shard is whole."""
         for part in self.parts:
             folder = self.folder(part)
-            for name in ("blocks", "shards"):
-                sweep(folder / name)
+            for where in (folder, folder / "blocks", folder / "shards"):
+                sweep(where)
             shards = self.state(part).shards
             for name in _names(folder / "blocks", ".npz"):
                 if int(name[:-4]) // part.blocks_a_shard in shards:
