@@ -13,6 +13,7 @@ import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -161,13 +162,17 @@ class Sampling:
 
 
 def _sobol(size: int, seed: int, first: int, last: int) -> Array:
-    sequence = _sequence(size, seed)
-    sequence.reset()
-    if first:
-        sequence.fast_forward(first)
-    with warnings.catch_warnings():
+    with _TURN, warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # of a number that is no power of two: these continue
+        sequence = _sequence(size, seed)
+        sequence.reset()
+        if first:
+            sequence.fast_forward(first)
         return np.asarray(sequence.random(last - first))
+
+
+_TURN = Lock()
+"""A sequence moves on as it is read, and workers may have several threads."""
 
 
 @cache

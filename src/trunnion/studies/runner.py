@@ -2,8 +2,8 @@
 
 A task is some blocks, as many as take about a second by what blocks have taken so far: that changes what is sent
 together, never what a block holds. Dask ends a task whose worker has died several times, and with it innocent ones
-that were there by chance: these are run again alone, and only one that dies alone too is halved until the point is
-found, which is marked.
+that were there by chance: these are run again alone, with a note of the point that is at work. One at which a process
+dies twice is marked.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ import numpy as np
 from trunnion.errors import ComputationError, InputError, TrunnionError
 from trunnion.studies.extra import scale
 from trunnion.studies.parts import Part
-from trunnion.studies.points import FAILED, Evaluated, Question
-from trunnion.studies.store import State, Store, joined
-from trunnion.studies.task import Done, run_blocks, run_rows, where_it_runs
+from trunnion.studies.points import FAILED
+from trunnion.studies.store import State, Store
+from trunnion.studies.task import Done, rows_of_deaths, run_alone, run_blocks, where_it_runs
 from trunnion.waiting import time_is_up
 
 TASK = 1.0
@@ -35,7 +35,8 @@ MOST_BLOCKS = 256
 """Blocks of a task."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
-DIED = "the process that computed this point alone died: out of memory, or a crash of compiled code"
+ATTEMPTS = 3
+"""Times that a block is tried alone before its points are suspected one by one."""
 LOST = "the scheduler has gone; all blocks that were done are kept: run the study again to resume"
 
 
@@ -264,34 +265,30 @@ class Run:
             raise ComputationError(LOST)
 
     def _alone(self, part: Part, block: int) -> None:
-        """A block that was there when workers died, with nothing beside it; halved where it dies again."""
-        for _ in range(2 if self.store.question.batched else 1):
-            future = self._submit(run_blocks, part.number, (block,))
-            if not self._died(future):
-                self.finished(part, future.result())
-                return
-        values = part.values(block)
-        begun = monotonic()
-        found = self._halved(part, block, 0, len(values))
-        self.store.put(part, block, values, found, monotonic() - begun)
-        self.finished(part, [(block, len(values), int((found.status == FAILED).sum()), 0.0)])
-
-    def _halved(self, part: Part, block: int, first: int, last: int) -> Evaluated:
-        if last - first == 1:
-            for _ in range(2):
-                future = self._submit(run_rows, part.number, block, first, last)
+        """A block that was there when workers died, with nothing beside it. The points whose process dies twice at the
+        same place are marked; what a block of a batch holds is computed together as ever, unless it dies alone too."""
+        if self.store.question.batched:
+            for _ in range(ATTEMPTS):
+                future = self._submit(run_blocks, part.number, (block,))
                 if not self._died(future):
-                    return future.result()  # type: ignore[no-any-return]
-            return dead(self.store.question)
-        middle = (first + last) // 2
-        halves = []
-        for begin, end in ((first, middle), (middle, last)):
-            future = self._submit(run_rows, part.number, block, begin, end) if end - begin > 1 else None
-            if future is None or self._died(future):
-                halves.append(self._halved(part, block, begin, end))
-            else:
-                halves.append(future.result())
-        return joined(halves)
+                    self.finished(part, future.result())
+                    return
+        values, dead, begun = part.values(block), list[int](), monotonic()
+        trace = self.store.folder(part) / f"alone-{block}.txt"
+        seen = 0
+        for _ in range(ATTEMPTS * len(values)):
+            future = self._submit(run_alone, part.number, block, tuple(dead), str(trace))
+            if not self._died(future):
+                trace.unlink(missing_ok=True)
+                found = future.result()
+                self.store.put(part, block, values, found, monotonic() - begun)
+                self.finished(part, [(block, len(values), int((found.status == FAILED).sum()), 0.0)])
+                return
+            rows = rows_of_deaths(trace)
+            if len(rows) >= seen + 2 and rows[-1] == rows[-2] >= 0:
+                dead.append(rows[-1])
+                seen = len(rows)
+        raise ComputationError("workers die again and again over no point in particular: look at their machine")
 
     def _died(self, future: Any) -> bool:
         """Whether the workers died that ran it; once it has ended."""
@@ -303,12 +300,6 @@ class Run:
         if future.status == "error":
             raise _of_worker(future.exception())
         raise ComputationError(LOST)
-
-
-def dead(question: Question) -> Evaluated:
-    """What is kept of one point whose process died."""
-    values = {one.path: one.empty(1) for one in question.quantities}
-    return Evaluated(np.array([FAILED], dtype=np.uint8), values, {0: DIED})
 
 
 def _of_worker(error: BaseException) -> Exception:
@@ -360,7 +351,7 @@ def workers_here(processes: int, memory: str | float | None = None, dashboard: i
     """A client of processes of this machine, of one thread each, that nobody else reaches; its page too."""
     dask, distributed = scale("dask"), scale("distributed")
     settings = {
-        "distributed.scheduler.allowed-failures": 3,
+        "distributed.scheduler.allowed-failures": 1,
         "distributed.worker.daemon": True,
         "distributed.scheduler.worker-saturation": 1.1,
         "distributed.nanny.pre-spawn-environ": {

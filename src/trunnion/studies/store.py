@@ -266,6 +266,8 @@ class Store:
             folder = self.folder(part)
             for where in (folder, folder / "blocks", folder / "shards"):
                 sweep(where)
+            for left in folder.glob("alone-*.txt"):
+                left.unlink(missing_ok=True)
             shards = self.state(part).shards
             for name in _names(folder / "blocks", ".npz"):
                 if int(name[:-4]) // part.blocks_a_shard in shards:

@@ -11,9 +11,10 @@ import numpy as np
 
 from trunnion.errors import InputError
 from trunnion.studies.parts import Part
-from trunnion.studies.points import FAILED, Evaluated
-from trunnion.studies.store import Store
+from trunnion.studies.points import FAILED, Evaluated, Question
+from trunnion.studies.store import Store, joined
 
+DIED = "the process that computed this point alone died, twice: out of memory, or a crash of compiled code"
 Done = tuple[int, int, int, float]
 """Of a block: its number, points, how many failed, seconds."""
 
@@ -38,10 +39,43 @@ def run_blocks(path: str, identity: str, part: int, blocks: tuple[int, ...]) -> 
     return found
 
 
-def run_rows(path: str, identity: str, part: int, block: int, first: int, last: int) -> Evaluated:
-    """What comes of some rows of a block, which is not written."""
+def run_alone(path: str, identity: str, part: int, block: int, dead: tuple[int, ...], trace: str) -> Evaluated:
+    """What comes of a block, point by point, those that are known to be ``dead`` left out; nothing is written but to
+    ``trace``: a line for every beginning, then one for each point before it is computed."""
     store, this = _opened(path, identity, part)
-    return store.question.evaluated(this.design.paths, this.values(block)[first:last])
+    values, found = this.values(block), []
+    _note(trace, "begin")
+    for row in range(len(values)):
+        if row in dead:
+            found.append(died(store.question))
+            continue
+        _note(trace, str(row))
+        found.append(store.question.evaluated(this.design.paths, values[row : row + 1]))
+    return joined(found)
+
+
+def _note(trace: str, line: str) -> None:
+    with open(trace, "a", encoding="ascii") as file:
+        file.write(f"{line}\n")
+
+
+def rows_of_deaths(trace: Path) -> list[int]:
+    """The point that each beginning came to last; −1 where it came to none."""
+    if not trace.is_file():
+        return []
+    found: list[int] = []
+    for line in trace.read_text(encoding="ascii").split("\n")[:-1]:
+        if line == "begin":
+            found.append(-1)
+        else:
+            found[-1] = int(line)
+    return found
+
+
+def died(question: Question) -> Evaluated:
+    """What is kept of one point whose process died."""
+    values = {one.path: one.empty(1) for one in question.quantities}
+    return Evaluated(np.array([FAILED], dtype=np.uint8), values, {0: DIED})
 
 
 def where_it_runs(path: str) -> tuple[bool, int]:
