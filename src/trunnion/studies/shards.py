@@ -38,8 +38,8 @@ def array_names(paths: Sequence[str]) -> tuple[str, ...]:
     """Names of arrays for parameters and quantities, without what file systems refuse."""
     found: list[str] = []
     for path in paths:
-        plain = re.sub(r"[^\w.\[\] -]", "_", path)[:100].strip(" .") or "value"
-        found.append(plain if plain not in (*found, STATUS) else f"{plain} {len(found) + 1}")
+        plain = re.sub(r"[^\w.]+", "_", path)[:100].strip("._") or "value"
+        found.append(plain if plain not in (*found, STATUS) else f"{plain}_{len(found) + 1}")
     return tuple(found)
 
 
