@@ -368,6 +368,19 @@ ANALYSES = (
         pictures={"BifurcationDiagram.plot": "trunnion.pictures.chaos:bifurcations"},
     ),
     Analysis(
+        "measure",
+        "The signals that pickups and gauges on a test bench would record of a line, with what spoils them.",
+    ),
+    Analysis(
+        "track_orders",
+        "Amplitude and phase of orders over speed from measured pulses and signals, with their uncertainty.",
+        pictures={
+            "MeasuredOrders.plot": "trunnion.pictures.measured:orders",
+            "MeasuredOrderMap.plot": "trunnion.pictures.measured:order_map",
+        },
+        command="trunnion.cli.measured:track_orders",
+    ),
+    Analysis(
         "certify_chaos",
         "Regular, chaotic, unbounded or undecided, with reasons and one figure.",
         features="long motion",

@@ -3,6 +3,7 @@
 import os
 import re
 
+import numpy as np
 import pytest
 
 import trunnion as tn
@@ -54,6 +55,19 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def wheel():
+    """Ninety-nine turns of a wheel of 20 teeth, five a second."""
+    return tn.PulseTrain(np.arange(2000) / 100.0, 20, name="wheel")
+
+
+def gauge():
+    return tn.SampledSignal(np.sin(np.arange(2000.0)), 100.0, name="gauge")
+
+
+def rotated():
+    return tn.track_orders(tn.Measurement([wheel()]), [1])
 
 
 def damped():
@@ -774,6 +788,50 @@ PYTHON = [
         "0 rpm",
     ),
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
+    (lambda: tn.PulseTrain([0.1, 0.3, 0.2], 1), "pulses.times = 0.2: must rise", "take each once"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 0), "pulses.pulses_per_turn = 0: must be a whole number", "1 or more"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 9), "pulses.times = 2: holds less than two turns of 9 pulses", "record longer"),
+    (lambda: tn.PulseTrain(np.arange(9.0), 2, pitch_error=0.7), "pulses.pitch_error = 0.7: must be a share", "2 %"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 0.0), "signal.rate = 0: must be positive", "Hz"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 1.0, kind="torqe"), "signal.kind = 'torqe': is no kind", '"torque"'),
+    (
+        lambda: tn.SampledSignal([1.0, np.nan], 1.0),
+        "signal.values: has 1 sample that are no numbers",
+        "cut the gap out",
+    ),
+    (lambda: tn.Measurement([]), "measurement.channels: has no channel", "one or more"),
+    (lambda: tn.Measurement([wheel(), wheel()]), "measurement.name = 'wheel': names two channels", "name each"),
+    (lambda: tn.track_orders(tn.Measurement([gauge()])), "measurement = '': has no pulse train", 'kind = "pulses"'),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [15]), "orders = 15: is not seen by wheel", "lower orders"),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [0]), "orders = [0.0]: must be positive", "[1, 2, 4]"),
+    (
+        lambda: tn.track_orders(tn.Measurement([wheel()]), [1], between=(33.0, 99.0)),
+        "between = [33.0, 99.0]: is outside the recording, 0 to 19.99 s",
+        "rising times",
+    ),
+    (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
+    (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),
+    (lambda: rotated().cut(1, "weel"), "channel = 'weel': is no channel", '"wheel"'),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [1], bandwidth=-1),
+        "bandwidth = -1: must be positive",
+        "",
+    ),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [60]),
+        "gauge.rate = 100: is too low for order 60",
+        "record faster",
+    ),
+    (
+        lambda: tn.synchronous_average(gauge(), rotated().rotation, turns=90),
+        "gauge.turns = 90: does not come twice",
+        "record longer",
+    ),
+    (
+        lambda: tn.measured_order_map(wheel(), rotated().rotation, highest=15.0),
+        "wheel.highest = 15: is not seen by 20 pulses a turn",
+        "below 10",
+    ),
     (
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
@@ -849,12 +907,53 @@ PYTHON = [
     ),
     (
         lambda: tn.passing(
-            line(tn.Motor(inertia=0.5, name="motor", **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
+            line(tn.Motor(inertia=0.5, name="motor", pole_pairs=2, **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
             (5.0, 9.0),
-            torque=[torque(time=[0, 1], torque=[1, 1])],
         ),
-        "motor.curve: has a torque over speed",
-        "state its inertia as a Disk, and its torque in the scenario",
+        "motor.pole_pairs = 2: lets its torque lag behind its speed above",
+        "leave out pole_pairs: the torque then follows at once",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0)),
+        "torque: is missing",
+        "or a Motor in the line",
+    ),
+    (
+        lambda: tn.transient(line(engine(), Shaft(stiffness=1e4), Generator(inertia=1.0, power=1e3)), 1.0, speed=0.0),
+        "Generator 1.power = 1000: takes constant power, which has no torque at standstill",
+        "start at a positive speed",
+    ),
+    (
+        lambda: tn.transient(line(motor(gain=9.0, drive_share=1), Shaft(stiffness=1e4), PUMP), 1.0, speed=0.0),
+        "motor.drive_share = 1: is set by its converter to the speed at which the run begins",
+        "leave out drive_share",
+    ),
+    (
+        lambda: tn.transient(
+            line(motor(gain=9.0, torque_limit=5.0, drive_share=1), Shaft(stiffness=1e4), fan(load_torque=9.0)),
+            1.0,
+            speed=9.0,
+        ),
+        "motor.torque_limit = 5: would have to drive with",
+        "raise it, or lower the load",
+    ),
+    (
+        lambda: tn.transient(
+            line(engine(), Shaft(stiffness=1e4), propeller(damping_factor=3.0, quadratic_load=9.0)), 1.0, speed=9.0
+        ),
+        "propeller.damping_factor = 3: holds about one mean speed, which changes here",
+        "leave it out",
+    ),
+    (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], torque=[1, 2]),
+        "torque on pump.torque = [1, 2]: stands beside power",
+        "leave one of the two out",
+    ),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside power",
     ),
     (
         lambda: tn.passing(

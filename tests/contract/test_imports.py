@@ -36,6 +36,10 @@ LAYERS = (
     {"response/kinetostatics", "response/orders"},
     {"response/ranges"},
     {"response"},
+    # What was measured, beside what is computed.
+    {"measured/signals"},
+    {"measured/tracking"},
+    {"measured"},
     # Motions that do not repeat, or not linearly; they are compared with the responses below.
     {"motion", "motion/simulation", "motion/perturbation"},
     {"motion/orbits", "motion/transients"},

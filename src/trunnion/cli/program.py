@@ -133,6 +133,7 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     serve_app,
     warm_up,
     describe.catalogue,
+    describe.components,
     describe.new,
     describe.schema,
 )

@@ -6,6 +6,7 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.component_files import component, components
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
@@ -30,6 +31,7 @@ from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCro
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
@@ -76,6 +78,7 @@ __all__ = [
     "SNCurve",
     "Schedule",
     "Shaft",
+    "Sheet",
     "StiffnessVariation",
     "SwitchedOff",
     "TitleBlock",
@@ -93,6 +96,8 @@ __all__ = [
     "Tyre",
     "Vehicle",
     "ViscousDamper",
+    "component",
+    "components",
     "deg",
     "dump",
     "dumps",

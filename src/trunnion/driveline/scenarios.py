@@ -39,9 +39,20 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Disk, Element
+from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.parts import Dragged, Sprung
-from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Several, Speed, TableList, Time, Torque, optional
+from trunnion.driveline.quantities import (
+    Angle,
+    Dimensionless,
+    Maybe,
+    Power,
+    Several,
+    Speed,
+    TableList,
+    Time,
+    Torque,
+    optional,
+)
 from trunnion.driveline.record import Name, Named, Record, as_tuple, listed, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -81,6 +92,7 @@ class AppliedTorque(Record):
     breakdown_torque, breakdown_slip, synchronous_speed : [N m], 1, [rad/s]; instead, an asynchronous motor,
         T = 2 T_b s s_b/(s² + s_b²) with the slip s = 1 − ω/ω_s (Kloss).
     factor : of such a motor, shares of its torque at the points ``time``: a supply that comes and goes.
+    power : [W]; instead, constant power between the two points of ``speed``, T = P/ω; negative where it takes power.
 
     Raises
     ------
@@ -95,6 +107,8 @@ class AppliedTorque(Record):
     """
 
     what: ClassVar[str] = "torque"
+    below: ClassVar[bool] = False
+    """Whether the first value lasts below the points, as that of a machine's curve does from standstill on."""
     example: ClassVar[str] = 'on = "motor", time = ["0 s", "1 s"] and torque = ["0 N*m", "80 N*m"]'
 
     on: str = Field(description="name of the disk that it acts on")
@@ -122,6 +136,8 @@ class AppliedTorque(Record):
         default=(), description="shares of the motor's torque at the points of time"
     )
 
+    power: Maybe[Power] = optional(default=None, description="constant, between the two points of speed")
+
     @classmethod
     def called(cls, data: dict[str, Any]) -> str:
         """What it is, and where it acts."""
@@ -144,6 +160,8 @@ class AppliedTorque(Record):
         given = [key for key in _KLOSS if getattr(self, key) is not None]
         if given:
             self._check_motor(given)
+        elif self.power is not None:
+            self._check_power()
         elif self.factor:
             raise InputError("is of motors", key="factor", remedy="multiply the torques, or write breakdown_torque")
         elif self.table:
@@ -185,6 +203,16 @@ class AppliedTorque(Record):
         if len(self.factor) != len(self.time):
             problem = f"has {len(self.factor)} values for {len(self.time)} points of time"
             raise InputError(problem, key="factor", remedy="give one share for each point")
+
+    def _check_power(self) -> None:
+        beside = [key for key in ("torque", "table", "time", "angle", "factor") if getattr(self, key)]
+        if beside:
+            raise InputError("stands beside power", key=beside[0], remedy="leave one of the two out")
+        if len(self.speed) != 2 or not self.speed[0] > 0:
+            problem = "must be two positive speeds beside power"
+            raise InputError(problem, key="speed", remedy='write speed = ["100 rpm", "3000 rpm"], say')
+        if self.between != "lines":
+            raise InputError("is of tables", key="between", value=self.between, remedy="leave it out beside power")
 
     def _check_table(self) -> None:
         if len(self.variables) != 2 or self.torque:
@@ -404,7 +432,7 @@ def wrong_places_of(
     where: str = "",
 ) -> Iterator[InputError]:
     """What acts on no disk, or watches what is not there; ``where`` it stands."""
-    disks = [name for name, element in parts if isinstance(element, Disk)]
+    disks = [name for name, element in parts if isinstance(element, Rotor)]
     springs = [
         name
         for name, element in parts

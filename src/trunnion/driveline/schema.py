@@ -22,6 +22,7 @@ from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_s
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
@@ -102,6 +103,20 @@ _RULES: dict[str, dict[str, Any]] = {
     },
 }
 """Which keys go together; the classes check the same in words."""
+_OF_COMPONENT = {
+    "type": "object",
+    "description": "An element of the catalogue of components; keys beside it go beside or in place of its sheet's.",
+    "properties": {
+        "component": {
+            "type": "string",
+            "pattern": "^[A-Za-z0-9][A-Za-z0-9._+-]*/[A-Za-z0-9][A-Za-z0-9._+-]*(@[1-9][0-9]*)?$",
+            "description": "maker/type, or maker/type@2 for a version",
+        },
+        "type": {"enum": list(KINDS), "description": "that of the component, where it is written at all"},
+    },
+    "required": ["component"],
+    "not": {"required": ["sheet"]},
+}
 
 
 def json_schema() -> dict[str, Any]:
@@ -159,9 +174,10 @@ def json_schema() -> dict[str, Any]:
                 "minItems": 1,
                 "items": {
                     "type": "object",
-                    "oneOf": [{"$ref": f"#/$defs/{name}"} for name in definitions],
-                    "discriminator": {"propertyName": "type"},
-                    "required": ["type"],
+                    "oneOf": [
+                        *({"$ref": f"#/$defs/{name}"} for name in definitions),
+                        {"$ref": "#/$defs/ComponentElement"},
+                    ],
                 },
             },
         },
@@ -169,6 +185,8 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **definitions,
+            "ComponentElement": _OF_COMPONENT,
+            "Sheet": _model(Sheet),
             "TitleBlock": _model(TitleBlock),
             "Operation": operation,
             "LoadCase": _model(LoadCase),

@@ -36,11 +36,13 @@ class TorquePiece(NamedTuple):
 
 @dataclass(frozen=True)
 class TorqueAxis:
-    """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them."""
+    """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them, or
+    below the first alone."""
 
     variable: str
     knots: Array
     hold: bool
+    hold_below: bool = False
 
     def piece(self, value: float) -> int:
         """The piece that holds ``value``, at a knot the one above: −1 below the first knot, m − 1 above the last."""
@@ -66,7 +68,7 @@ class TorqueAxis:
 
     def beyond(self, piece: int) -> bool:
         """Whether a piece lies where the torque says nothing."""
-        return not self.hold and not 0 <= piece < len(self.knots) - 1
+        return not self.hold and not (0 <= piece < len(self.knots) - 1 or (piece < 0 and self.hold_below))
 
 
 @dataclass(frozen=True)
@@ -82,6 +84,8 @@ class PlacedTorque:
         """The polynomials of a piece of every axis."""
         if self.stated.is_motor:
             return self._motor(pieces)
+        if self.stated.power is not None:
+            return self._power(pieces[0])
         if self.stated.table:
             return self._bilinear(pieces)
         return self._curve(pieces[0])
@@ -129,19 +133,35 @@ class PlacedTorque:
         above[:2, : len(torque)] = np.outer(share, torque)
         return TorquePiece(since, 0.0, above, below)
 
+    def _power(self, piece: int) -> TorquePiece:
+        """P/ω between its two speeds; beyond them what it is there."""
+        power, (low, high) = float(self.stated.power or 0.0), self.stated.speed
+        above, below = np.zeros((POWERS, POWERS)), np.zeros(POWERS)
+        if piece == 0:
+            above[0, 0], below[1] = power, 1.0
+            return TorquePiece(0.0, 0.0, above, below)
+        above[0, 0] = power / (low if piece < 0 else high)
+        return TorquePiece(0.0, 0.0, above, _one())
+
     def value(self, time: float, speed: float, angle: float) -> float:
         """The torque [N m] at a time, where its disk has this speed and angle, both in its own sense."""
         given = {"time": time, "speed": speed, "angle": angle, "": 0.0}
         cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
-        u = given[self.axes[0].variable if self.axes else ""] - cell.first
+        u = given[self.first] - cell.first
         v = given[self.second] - cell.second
         powers = np.arange(POWERS)
         return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
 
     @property
+    def first(self) -> str:
+        """Its first variable; "" where there is none."""
+        return self.axes[0].variable if self.axes and self.stated.power is None else ""
+
+    @property
     def second(self) -> str:
-        """Its second variable: of a motor its speed, else that of the second axis; "" where there is none."""
-        if self.stated.is_motor:
+        """Its second variable: of a motor and of constant power its speed, else that of the second axis; "" where there
+        is none."""
+        if self.stated.is_motor or self.stated.power is not None:
             return "speed"
         return self.axes[1].variable if len(self.axes) > 1 else ""
 
@@ -149,8 +169,7 @@ class PlacedTorque:
         """What the kernel reads of a piece."""
         core, cell = line_kernel(), self.cell(pieces)
         codes = {"": core.NONE, "time": core.TIME, "speed": core.SPEED, "angle": core.TURNED}
-        first = self.axes[0].variable if self.axes else ""
-        head = [self.station, self.sense, self.sense, codes[first], cell.first, codes[self.second], cell.second]
+        head = [self.station, self.sense, self.sense, codes[self.first], cell.first, codes[self.second], cell.second]
         return np.concatenate([head, cell.above.ravel(), cell.below])
 
 
@@ -209,7 +228,7 @@ def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tupl
 def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
     station = disk_station(assembly, one.on, "torque")
     hold = one.hold or one.between == "steps"
-    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold) for key in one.variables)
+    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold, one.below) for key in one.variables)
     return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
 
 

@@ -44,12 +44,13 @@ from pydantic import model_validator
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.files import load, read_toml
+from trunnion.driveline.files import load
 from trunnion.driveline.parameters import SPEED
 from trunnion.driveline.quantities import RATIO, kind_of, parse
 from trunnion.driveline.record import Record, listed
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.toml_file import read_text, toml_of
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.floquet.tolerance.spread import read_tolerances
@@ -186,9 +187,9 @@ def read_study(path: str | os.PathLike[str]) -> tuple[StudyDescription, Path]:
     ------
     InputError : the file cannot be read, or describes no study.
     """
-    content = read_toml(path)
+    text = read_text(Path(path), "see docs/studies.md for one to start from")
     try:
-        return StudyDescription(**content), Path(path).parent
+        return StudyDescription(**toml_of(text)), Path(path).parent
     except InputError as error:
         raise error.each(lambda one: one.but(element=f"{Path(path).name}: {one.element or 'study'}")) from None
 

@@ -29,29 +29,25 @@ def ends_of(speeds: Sequence[float | str]) -> tuple[float, float]:
 
 
 def lasting(torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque]) -> Actions:
-    """What acts, tables lasting beyond their ends.
+    """What acts, tables lasting beyond their ends."""
+    return actions_of([one.but(hold=True) for one in torque], friction, ())
+
+
+def begun_line(line: Driveline, asked: Actions, first: float) -> tuple[LineSystem, Actions]:
+    """The line, ready to be followed from its ``first`` speed [rad/s], and all that acts on it.
 
     Raises
     ------
-    InputError : there is no torque.
+    InputError : a ConstantSpeed; no torque, neither given nor of a machine; what ``transient`` refuses.
     """
-    asked = actions_of([one.but(hold=True) for one in torque], friction, ())
-    if not asked[0]:
-        raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
-    return asked
-
-
-def begun_line(line: Driveline, asked: Actions, first: float) -> LineSystem:
-    """The line, ready to be followed from its ``first`` speed [rad/s].
-
-    Raises
-    ------
-    InputError : a ConstantSpeed; what ``transient`` refuses.
-    """
-    prepared = prepared_line(line, asked, first)
+    prepared, acting = prepared_line(line, asked, first)
     if not prepared.assembly.topology.free:
         raise InputError(
             "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
             remedy="leave it out, and put a Disk of the drive's inertia in its place",
         )  # fmt: skip
-    return prepared
+    if not acting[0]:
+        raise InputError(
+            "is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …), or a Motor in the line'
+        )
+    return prepared, acting

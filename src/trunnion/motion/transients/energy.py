@@ -123,7 +123,10 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
     kinetic = float(np.diff(np.square(moving) @ inertia / 2)[0])
     elastic, losses = _springs(piece, last.twist, run.state[[0, -1]], given, speed, weights, near, far)
     values = {key: float(weights @ power) for key, power in works.items()}
-    turned = sum(float(weights @ np.abs(power)) for power in works.values()) + abs(kinetic) + abs(elastic)
+    # Of what drives and what resists in one sum each part is turned over by itself.
+    apart = np.abs(power).sum(axis=1) + np.abs((load * speed)[:, moves]).sum(axis=1)
+    apart += np.abs(works["excitation"]) + np.abs(works["input"])
+    turned = float(weights @ apart) + abs(kinetic) + abs(elastic)
     total = [kinetic, elastic, *values.values(), losses]
     return np.array(total), turned
 

@@ -10,14 +10,15 @@ from numpy.typing import ArrayLike
 
 from trunnion.driveline.arguments import one_number, one_speed
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import LineSystem
+from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import actions_of, follow, prepared_line
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -94,7 +95,7 @@ def transient(
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
-    prepared = prepared_line(description, asked, begin)
+    prepared, acting = prepared_line(description, asked, begin)
     if not prepared.assembly.topology.free and not begin > 0:
         raise InputError(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
@@ -107,17 +108,27 @@ def transient(
             key="drive_share", remedy="start at a positive speed, or give the drive a torque",
         )  # fmt: skip
     angle = one_number(phase, "phase", "np.pi / 2, say")
-    place = Place(0.0, _start(prepared, start, begin, angle), angle=angle, speed=begin)
-    found = follow(prepared, place, length, asked, tolerance, most_steps)
+    state = _start(prepared, _balanced(description, prepared, asked, begin), start, begin, angle)
+    place = Place(0.0, state, angle=angle, speed=begin)
+    found = follow(prepared, place, length, acting, tolerance, most_steps)
     return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
 
 
-def _start(prepared: LineSystem, start: ArrayLike | None, speed: float, angle: float) -> Any:
+def _balanced(line: Driveline, prepared: LineSystem, asked: Actions, speed: float) -> LineSystem:
+    """The line with what balances its loads at the start: its machines by their curves, unless a torque on any of them
+    adds to that."""
+    machines = {name for name, e in line.parts if isinstance(e, Rotor) and e.tangent}
+    if not machines or speed <= 0 or machines & {one.on for one in asked[0]}:
+        return prepared
+    return line_system(line, speed, leaves=True, slips=True, linearised=True)
+
+
+def _start(prepared: LineSystem, balanced: LineSystem, start: ArrayLike | None, speed: float, angle: float) -> Any:
     if start is not None:
         return prepared.system.checked_start(start)
-    assembly = prepared.assembly
+    assembly = balanced.assembly
     loaded = speed != 0 and not imbalance(assembly, assembly.table(1, abs(speed)))[0]
-    state = prepared.twisted(angle) if loaded else prepared.rest(angle)
+    state = balanced.twisted(angle) if loaded else prepared.rest(angle)
     if speed <= 0:  # joints turn backwards, or not at all
         n = assembly.topology.size
         state[n : 2 * n] *= -1.0 if speed < 0 else 0.0
