@@ -14,7 +14,7 @@ from studies.asked import BATCH, CALLS, data_of, grid, line, stated
 
 import trunnion as tn
 import trunnion.writing as writing
-from trunnion.studies.points import Question
+from trunnion.studies.points import StudyQuestion
 from trunnion.studies.result import read
 from trunnion.studies.store import Store, _sealed
 
@@ -91,13 +91,13 @@ def test_full_disk(number, at, tmp_path, undisturbed) -> None:
 def computed(patch: pytest.MonkeyPatch) -> list[int]:
     """How many points every block has that is computed from now on."""
     counts: list[int] = []
-    old = Question.evaluated
+    old = StudyQuestion.evaluated
 
-    def evaluated(self: Question, paths: Any, values: Any) -> Any:
+    def evaluated(self: StudyQuestion, paths: Any, values: Any) -> Any:
         counts.append(len(values))
         return old(self, paths, values)
 
-    patch.setattr(Question, "evaluated", evaluated)
+    patch.setattr(StudyQuestion, "evaluated", evaluated)
     return counts
 
 

@@ -89,13 +89,13 @@ def test_a_scheduler_that_is_not_there(tmp_path) -> None:
 
 PRELOAD = """
 import os
-from trunnion.studies.points import Question
-if Question.result.__name__ == "result":
-    def deadly(self, paths, value, old=Question.result):
+from trunnion.studies.points import StudyQuestion
+if StudyQuestion.result.__name__ == "result":
+    def deadly(self, paths, value, old=StudyQuestion.result):
         if abs(value[1] - {speed!r}) < 1e-9:
             {action}
         return old(self, paths, value)
-    Question.result = deadly
+    StudyQuestion.result = deadly
 """
 
 

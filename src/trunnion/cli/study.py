@@ -19,7 +19,7 @@ from trunnion.errors import InputError
 
 if TYPE_CHECKING:
     from trunnion.studies.result import Study
-    from trunnion.studies.runner import Progress
+    from trunnion.studies.runner import StudyProgress
 
 OF_STORES = ("status", "resume", "show", "export")
 """What can be asked of a store that is there."""
@@ -153,13 +153,13 @@ def _say(found: Study, as_json: bool, *, whole: bool = True) -> None:
 
 
 @contextmanager
-def _reported(within: float | None) -> Iterator[Callable[[Progress], None]]:
-    """Progress on stderr; Ctrl-C and a time limit end the run with what it has."""
+def _reported(within: float | None) -> Iterator[Callable[[StudyProgress], None]]:
+    """StudyProgress on stderr; Ctrl-C and a time limit end the run with what it has."""
     terminal = sys.stderr.isatty()
     last = 0.0 if terminal else time.monotonic()
     named = False
 
-    def report(state: Progress) -> None:
+    def report(state: StudyProgress) -> None:
         nonlocal last, named
         if state.dashboard and not named:
             named = True

@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.studies.points import Evaluated
-from trunnion.studies.quantities import Quantity
+from trunnion.studies.quantities import StudyQuantity
 from trunnion.writing import write_durably
 
 VALUES = "value {}"
@@ -36,7 +36,9 @@ def address(identity: str, paths: tuple[str, ...], values: Array) -> str:
     return hashed.hexdigest()
 
 
-def write_block(path: Path, asked: str, quantities: tuple[Quantity, ...], found: Evaluated, seconds: float) -> None:
+def write_block(
+    path: Path, asked: str, quantities: tuple[StudyQuantity, ...], found: Evaluated, seconds: float
+) -> None:
     """Write what came of a block; ``asked`` is its address, ``seconds`` what it took."""
     about = {"address": asked, "seconds": seconds, "sentences": {str(k): v for k, v in sorted(found.sentences.items())}}
     arrays = {VALUES.format(k): found.values[one.path] for k, one in enumerate(quantities)}
@@ -45,7 +47,7 @@ def write_block(path: Path, asked: str, quantities: tuple[Quantity, ...], found:
     write_durably(path, content.getvalue())
 
 
-def read_block(path: Path, asked: str, quantities: tuple[Quantity, ...]) -> tuple[Evaluated, float]:
+def read_block(path: Path, asked: str, quantities: tuple[StudyQuantity, ...]) -> tuple[Evaluated, float]:
     """What came of a block, and the seconds it took.
 
     Raises

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.result import Result
-from trunnion.studies.description import Plan
+from trunnion.studies.description import StudyPlan
 from trunnion.studies.quantities import LETTERS
 from trunnion.studies.store import part_of
 
@@ -58,7 +58,7 @@ class StudyCost(Result):
         yield f"  at most {in_bytes(self.bytes)} in the store"
 
 
-def cost_of(plan: Plan, workers: int) -> StudyCost:
+def cost_of(plan: StudyPlan, workers: int) -> StudyCost:
     """Time a few points of a plan, all over it, and multiply."""
     question, design = plan.question, plan.design
     part = part_of(0, design, (), plan.block)

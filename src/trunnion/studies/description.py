@@ -54,8 +54,8 @@ from trunnion.driveline.toml_file import read_text, toml_of
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.floquet.tolerance.spread import read_tolerances
-from trunnion.studies.design import LARGEST, METHODS, MOST_LATIN, Axis, Design, Sampling, Scattering
-from trunnion.studies.points import Question, question_of, require_analysis
+from trunnion.studies.design import LARGEST, METHODS, MOST_LATIN, Sampling, Scattering, StudyAxis, StudyDesign
+from trunnion.studies.points import StudyQuestion, question_of, require_analysis
 
 MOST_VALUES = 1 << 24
 """Values of one parameter."""
@@ -170,11 +170,11 @@ class StudyDescription(Record):
 
 
 @dataclass(frozen=True)
-class Plan:
+class StudyPlan:
     """A study that is read against its line: what is asked, at which points, in blocks of how many, and where kept."""
 
-    question: Question
-    design: Design
+    question: StudyQuestion
+    design: StudyDesign
     block: int
     store: Path
     source: str
@@ -197,7 +197,7 @@ def read_study(path: str | os.PathLike[str]) -> tuple[StudyDescription, Path]:
 def plan_of(
     stated: StudyDescription, folder: Path, line: Driveline | None = None, source: str = "", *,
     tables_anywhere: bool = False,
-) -> Plan:  # fmt: skip
+) -> StudyPlan:  # fmt: skip
     """Read a study against its line, which a few points are computed of.
 
     Raises
@@ -212,15 +212,15 @@ def plan_of(
     if len(set(stated.quantities)) < len(stated.quantities):
         raise InputError("names one twice", element="study", key="quantities", value=list(stated.quantities),
                          remedy="leave one out")  # fmt: skip
-    bare = Question("", stated.analysis, stated.arguments, ())
+    bare = StudyQuestion("", stated.analysis, stated.arguments, ())
     vars(bare)["line"] = line
     design = _design(stated, line, bare)
     question = question_of(line, stated.analysis, stated.arguments, stated.quantities, design.paths, _tried(design))
     _require_possible(question, design)
-    return Plan(question, design, _block(stated, question), folder / stated.store, source)
+    return StudyPlan(question, design, _block(stated, question), folder / stated.store, source)
 
 
-def _design(stated: StudyDescription, line: Driveline, question: Question) -> Design:
+def _design(stated: StudyDescription, line: Driveline, question: StudyQuestion) -> StudyDesign:
     axes, spreads, taken = [], dict[str, object](), dict[str, str]()
     if stated.tolerances:
         if not line.tolerances_by_path:
@@ -242,7 +242,7 @@ def _design(stated: StudyDescription, line: Driveline, question: Question) -> De
                                  remedy="give points or values")  # fmt: skip
             spreads[one.path] = _scatter(one, columns.unit)
         elif one.values is not None:
-            axes.append(Axis(one.path, columns.unit, nominal, _values(one, columns.unit)))
+            axes.append(StudyAxis(one.path, columns.unit, nominal, _values(one, columns.unit)))
         else:
             axes.append(_grid(one, columns.unit, nominal))
     if spreads and stated.sampling is None:
@@ -259,7 +259,7 @@ def _design(stated: StudyDescription, line: Driveline, question: Question) -> De
         )
         sampling = stated.sampling
         plan = Sampling(sampling.method, sampling.points, sampling.seed, scattering)
-    made = Design(tuple(axes), plan)
+    made = StudyDesign(tuple(axes), plan)
     if not made.paths or made.size == 0:
         raise InputError(
             "is empty", element="study", key="parameter", remedy=f"write [[parameter]] with {StudyParameter.example}"
@@ -286,7 +286,7 @@ def _scatter(one: StudyParameter, unit: str) -> object:
     return scatter.given(0.0)
 
 
-def _grid(one: StudyParameter, unit: str, nominal: float) -> Axis:
+def _grid(one: StudyParameter, unit: str, nominal: float) -> StudyAxis:
     where = f"parameter {one.path}"
     points = _whole(one.points, "points", 1, MOST_VALUES, where)
     low, high = _number(one, "low", one.low, unit), _number(one, "high", one.high, unit)
@@ -295,7 +295,7 @@ def _grid(one: StudyParameter, unit: str, nominal: float) -> Axis:
     if one.log and low <= 0:
         raise InputError("must be positive on a logarithmic grid", element=where, key="low", value=one.low,
                          remedy="leave out log")  # fmt: skip
-    return Axis.of_grid(one.path, unit, nominal, low, high, points, one.log)
+    return StudyAxis.of_grid(one.path, unit, nominal, low, high, points, one.log)
 
 
 def _require_rise(one: StudyParameter, low: float, high: float) -> None:
@@ -332,7 +332,7 @@ def _whole(value: object, key: str, least: int, most: int, element: str) -> int:
     return value
 
 
-def _tried(design: Design) -> Array:
+def _tried(design: StudyDesign) -> Array:
     """A few points, at which it is seen what the quantities are: the middle one, the ends, and between."""
     size = design.size
     numbers = np.unique(np.array([size // 2, 0, size - 1, size // 4, 3 * size // 4, size // 3]))
@@ -340,7 +340,7 @@ def _tried(design: Design) -> Array:
     return np.array([values[size // 2], *(value for k, value in values.items() if k != size // 2)])
 
 
-def _require_possible(question: Question, design: Design) -> None:
+def _require_possible(question: StudyQuestion, design: StudyDesign) -> None:
     """Refuse ends that the line cannot have where the batch would never ask it."""
     if not question.batched:
         return
@@ -362,7 +362,7 @@ def _require_possible(question: Question, design: Design) -> None:
                 raise InputError(problem, element="parameter", key=axis.path, remedy="narrow its range") from None
 
 
-def _block(stated: StudyDescription, question: Question) -> int:
+def _block(stated: StudyDescription, question: StudyQuestion) -> int:
     if stated.block is not None:
         return _whole(stated.block, "block", 1, 1 << 20, "study")
     return BATCH if question.batched else BLOCKS.get(question.analysis, BLOCK)

@@ -31,7 +31,7 @@ LARGEST = 1 << 30
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
+class StudyAxis:
     """A parameter that takes each of some values: those of a grid, or stated ones."""
 
     path: str
@@ -41,7 +41,9 @@ class Axis:
     grid: tuple[float, float, int, bool] | None = None
 
     @classmethod
-    def of_grid(cls, path: str, unit: str, nominal: float, low: float, high: float, points: int, log: bool) -> Axis:
+    def of_grid(
+        cls, path: str, unit: str, nominal: float, low: float, high: float, points: int, log: bool
+    ) -> StudyAxis:
         """``points`` values from ``low`` to ``high``, even, or even in their logarithm."""
         return cls(path, unit, nominal, grid_values(low, high, points, log), (low, high, points, log))
 
@@ -52,7 +54,7 @@ class Axis:
         return {"path": self.path, "unit": self.unit, "nominal": self.nominal, **how}
 
     @classmethod
-    def of_content(cls, content: Mapping[str, Any]) -> Axis:
+    def of_content(cls, content: Mapping[str, Any]) -> StudyAxis:
         """What ``content`` says."""
         path, unit, nominal = content["path"], content["unit"], content["nominal"]
         if "grid" in content:
@@ -186,10 +188,10 @@ def _latin(size: int, points: int, seed: int) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class StudyDesign:
     """All points that a study asks for: of every row of the sampling plan (slowest) all that the axes make."""
 
-    axes: tuple[Axis, ...]
+    axes: tuple[StudyAxis, ...]
     sampling: Sampling | None = None
 
     @cached_property
@@ -208,7 +210,7 @@ class Design:
         return {one.path: one.nominal for one in self._varied}
 
     @property
-    def _varied(self) -> tuple[Scattering | Axis, ...]:
+    def _varied(self) -> tuple[Scattering | StudyAxis, ...]:
         return (*self._scattering, *self.axes)
 
     @property
@@ -242,10 +244,10 @@ class Design:
         return json.dumps(self.content, sort_keys=True)
 
     @classmethod
-    def of_content(cls, content: Mapping[str, Any]) -> Design:
+    def of_content(cls, content: Mapping[str, Any]) -> StudyDesign:
         """What ``content`` says."""
         sampling = content["sampling"] and Sampling.of_content(content["sampling"])
-        return cls(tuple(map(Axis.of_content, content["axes"])), sampling)
+        return cls(tuple(map(StudyAxis.of_content, content["axes"])), sampling)
 
     def values(self, places: Places) -> Array:
         """Values (points, parameters) of the points with these numbers, which rise."""
@@ -265,7 +267,7 @@ class Design:
             found.append(place)
         return found[::-1]
 
-    def places(self, asked: Design, numbers: Places) -> Places:
+    def places(self, asked: StudyDesign, numbers: Places) -> Places:
         """Numbers here of points of another design, found by their values: −1 where there are none.
 
         What one design varies and the other does not is what the line states there.
@@ -297,7 +299,7 @@ class Design:
         return np.where(none, -1, found)
 
 
-def refuse_latin(old: Sequence[Design], new: Design) -> None:
+def refuse_latin(old: Sequence[StudyDesign], new: StudyDesign) -> None:
     """Refuse a Latin hypercube of another size than one of the store: it would keep none of its points.
 
     Raises
@@ -315,7 +317,7 @@ def refuse_latin(old: Sequence[Design], new: Design) -> None:
             raise InputError(problem, element="sampling", key="points", value=plan.points, remedy=remedy)
 
 
-def missing_from(design: Design, earlier: Sequence[Design], numbers: Places) -> Flags:
+def missing_from(design: StudyDesign, earlier: Sequence[StudyDesign], numbers: Places) -> Flags:
     """Which of the points with these numbers none of the ``earlier`` designs has."""
     new = np.ones(len(numbers), dtype=bool)
     for one in earlier:

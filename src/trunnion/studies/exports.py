@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from trunnion.errors import InputError
-from trunnion.studies.design import Design
+from trunnion.studies.design import StudyDesign
 from trunnion.studies.extra import scale
-from trunnion.studies.parts import Part
+from trunnion.studies.parts import StudyPart
 from trunnion.studies.result import read
 from trunnion.studies.shards import array_names
 from trunnion.studies.store import Store
@@ -49,7 +49,7 @@ def export(store: str | os.PathLike[str], path: str | os.PathLike[str], *, missi
     return to
 
 
-def rows(store: Store, design: Design, missing: bool) -> Iterator[dict[str, Any]]:
+def rows(store: Store, design: StudyDesign, missing: bool) -> Iterator[dict[str, Any]]:
     """Columns by name of a stretch of points at a time, in the order in which the store has them."""
     names = array_names([*design.paths, *(one.path for one in store.question.quantities)])
     for part in store.parts:
@@ -72,7 +72,7 @@ def rows(store: Store, design: Design, missing: bool) -> Iterator[dict[str, Any]
             yield columns
 
 
-def _values(part: Part, design: Design, first: int, last: int) -> tuple[Any, Any]:
+def _values(part: StudyPart, design: StudyDesign, first: int, last: int) -> tuple[Any, Any]:
     """Values (points, parameters of ``design``) of rows of a part, and which of them ``design`` asks for."""
     numbers = part.numbers(first, last)
     if part.design.key == design.key:

@@ -14,22 +14,22 @@ from typing import Any
 import numpy as np
 
 from trunnion.arrays import Array, Places
-from trunnion.studies.design import Design, missing_from
+from trunnion.studies.design import StudyDesign, missing_from
 
 AT_ONCE = 1 << 18
 """Points of a design that are looked up together."""
 
 
 @dataclass(frozen=True)
-class Part:
+class StudyPart:
     """Number ``number`` of a store: a design less what the ``earlier`` ones have, in blocks and shards of points.
 
     block : points of a block. shard : of a shard, a whole number of blocks.
     """
 
     number: int
-    design: Design
-    earlier: tuple[Design, ...]
+    design: StudyDesign
+    earlier: tuple[StudyDesign, ...]
     block: int
     shard: int
 
@@ -42,9 +42,11 @@ class Part:
         }  # fmt: skip
 
     @classmethod
-    def of_content(cls, content: Mapping[str, Any], earlier: tuple[Design, ...]) -> Part:
+    def of_content(cls, content: Mapping[str, Any], earlier: tuple[StudyDesign, ...]) -> StudyPart:
         """What ``content`` says."""
-        return cls(content["number"], Design.of_content(content["design"]), earlier, content["block"], content["shard"])
+        return cls(
+            content["number"], StudyDesign.of_content(content["design"]), earlier, content["block"], content["shard"]
+        )
 
     @cached_property
     def _before(self) -> Array | None:

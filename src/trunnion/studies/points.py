@@ -30,7 +30,7 @@ from trunnion.errors import ComputationError, InputError, TrunnionError, short
 from trunnion.floquet.tolerance.many_lines import UNKNOWN, ManyLines
 from trunnion.registry import ANALYSES
 from trunnion.results.verdict import Verdict
-from trunnion.studies.quantities import Quantity
+from trunnion.studies.quantities import StudyQuantity
 
 MISSING, DONE, FAILED = 0, 1, 2
 """What is known of a point."""
@@ -51,13 +51,13 @@ class Evaluated:
 
 
 @dataclass(frozen=True)
-class Question:
+class StudyQuestion:
     """One analysis of one line, and the quantities of its result; ``paths`` are the parameters, in order."""
 
     line_text: str
     analysis: str
     arguments: Mapping[str, Any]
-    quantities: tuple[Quantity, ...]
+    quantities: tuple[StudyQuantity, ...]
 
     @cached_property
     def line(self) -> Driveline:
@@ -95,9 +95,9 @@ class Question:
         }
 
     @classmethod
-    def of_content(cls, content: Mapping[str, Any]) -> Question:
+    def of_content(cls, content: Mapping[str, Any]) -> StudyQuestion:
         """What ``content`` says."""
-        quantities = tuple(map(Quantity.of_content, content["quantities"]))
+        quantities = tuple(map(StudyQuantity.of_content, content["quantities"]))
         return cls(content["line"], content["analysis"], content["arguments"], quantities)
 
     @cached_property
@@ -256,7 +256,7 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
 def question_of(
     line: Driveline, analysis: str, arguments: Mapping[str, Any], quantities: tuple[str, ...],
     paths: tuple[str, ...], tried: Array,
-) -> Question:  # fmt: skip
+) -> StudyQuestion:  # fmt: skip
     """The question of a study; what its quantities are is seen on the first of the ``tried`` points that can be
     computed.
 
@@ -264,7 +264,7 @@ def question_of(
     ------
     InputError : an unknown quantity; nothing can be computed at any of these points.
     """
-    bare = Question(dumps(line), analysis, dict(arguments), ())
+    bare = StudyQuestion(dumps(line), analysis, dict(arguments), ())
     refused: Exception | None = None
     for value in tried:
         try:
@@ -275,8 +275,8 @@ def question_of(
         except (TypeError, ValueError) as error:
             raise InputError(f"are not taken by {analysis} ({short(str(error), 120)})", element="study",
                              key="arguments", remedy="see the signature of the analysis") from None  # fmt: skip
-        kinds = tuple(Quantity.of(path, result) for path in quantities)
-        return Question(bare.line_text, analysis, bare.arguments, kinds)
+        kinds = tuple(StudyQuantity.of(path, result) for path in quantities)
+        return StudyQuestion(bare.line_text, analysis, bare.arguments, kinds)
     if isinstance(refused, InputError):
         raise InputError(f"fails at each of {len(tried)} points tried: {refused}", key="analysis", value=analysis,
                          remedy="change arguments or parameters")  # fmt: skip

@@ -31,7 +31,7 @@ class UnknownQuantity(InputError):
 
 
 @dataclass(frozen=True)
-class Quantity:
+class StudyQuantity:
     """One quantity of every point: its path, what kind of value it is, unit, and what its codes mean."""
 
     path: str
@@ -46,12 +46,12 @@ class Quantity:
         return {**vars(self), "meanings": list(self.meanings), "codes": list(self.codes)}
 
     @classmethod
-    def of_content(cls, content: Mapping[str, Any]) -> Quantity:
+    def of_content(cls, content: Mapping[str, Any]) -> StudyQuantity:
         """What ``content`` says."""
         return cls(**{**content, "meanings": tuple(content["meanings"]), "codes": tuple(content["codes"])})
 
     @classmethod
-    def of(cls, path: str, result: object) -> Quantity:
+    def of(cls, path: str, result: object) -> StudyQuantity:
         """As a first result has it.
 
         Raises

@@ -17,9 +17,9 @@ from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.units import in_words
 from trunnion.results.variables import Attribute, Coordinate, Variable
-from trunnion.studies.design import Axis, Design
+from trunnion.studies.design import StudyAxis, StudyDesign
 from trunnion.studies.points import DONE, FAILED, MISSING
-from trunnion.studies.quantities import Quantity
+from trunnion.studies.quantities import StudyQuantity
 from trunnion.studies.shards import array_names
 from trunnion.studies.store import Store
 
@@ -38,8 +38,8 @@ class Study(Result):
     done: int = attribute("that are computed")
     failed: int = attribute("that could not be computed")
     version: str = attribute("of the package that computed it")
-    design: Design = internal("the points")
-    quantities: tuple[Quantity, ...] = internal("that are kept")
+    design: StudyDesign = internal("the points")
+    quantities: tuple[StudyQuantity, ...] = internal("that are kept")
     status: Any = internal("0 missing, 1 done, 2 failed", axes="point")
     values: Mapping[str, Any] = internal("quantities by path, as kept", axes="point")
     reasons: tuple[tuple[str, int], ...] = internal("why points failed, and how many")
@@ -83,7 +83,7 @@ class Study(Result):
         """The same in the shape of the design: (rows of the sampling plan,) parameters in order."""
         return np.asarray(self.quantity(path)).reshape(self.design.shape)
 
-    def axis(self, path: str) -> Axis:
+    def axis(self, path: str) -> StudyAxis:
         """A parameter with a grid or stated values.
 
         Raises
@@ -100,7 +100,7 @@ class Study(Result):
             raise InputError(f"is no {what} of the study", key=path, remedy=nearest(path, known))
         return path
 
-    def _quantity(self, path: str) -> Quantity:
+    def _quantity(self, path: str) -> StudyQuantity:
         self._known(path, [one.path for one in self.quantities], "quantity")
         return next(one for one in self.quantities if one.path == path)
 
@@ -149,7 +149,7 @@ class Study(Result):
         for axis in self.design.axes:
             yield axis.path, axis.unit, float(axis.values.min()), float(axis.values.max())
 
-    def _summary(self, one: Quantity) -> str:
+    def _summary(self, one: StudyQuantity) -> str:
         done = self.status == DONE
         if not done.any():
             return "nothing known"
@@ -169,7 +169,7 @@ class Study(Result):
         return ", ".join([*said, *(["…"] if len(order) > 6 else [])])
 
 
-def read(store: str | os.PathLike[str] | Store, design: Design | None = None, ended: str = "") -> Study:
+def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = None, ended: str = "") -> Study:
     """Read the points of a design, by default of the last part of a store, also while it grows.
 
     Raises

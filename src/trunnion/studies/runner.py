@@ -19,9 +19,9 @@ import numpy as np
 
 from trunnion.errors import ComputationError, InputError, TrunnionError
 from trunnion.studies.extra import scale
-from trunnion.studies.parts import Part
+from trunnion.studies.parts import StudyPart
 from trunnion.studies.points import FAILED
-from trunnion.studies.store import State, Store
+from trunnion.studies.store import PartState, Store
 from trunnion.studies.task import Done, rows_of_deaths, run_alone, run_blocks, where_it_runs
 from trunnion.waiting import time_is_up
 
@@ -41,7 +41,7 @@ LOST = "the scheduler has gone; all blocks that were done are kept: run the stud
 
 
 @dataclass
-class Progress:
+class StudyProgress:
     """How far a run is: points in all, done at its start and since, failed, seconds, and what the workers hold."""
 
     points: int
@@ -75,11 +75,11 @@ class Progress:
         return self.measure()
 
 
-Report = Callable[[Progress], None]
+Report = Callable[[StudyProgress], None]
 
 
 @dataclass
-class Run:
+class StudyRun:
     """One run over what a store lacks; ``client`` of Dask, or None to compute here."""
 
     store: Store
@@ -87,10 +87,10 @@ class Run:
     report: Report
     cores: int = 1
     seconds_a_block: float = 0.0
-    suspects: list[tuple[Part, int]] = field(default_factory=list)
+    suspects: list[tuple[StudyPart, int]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.states: dict[int, State] = {part.number: self.store.state(part) for part in self.store.parts}
+        self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
         points = sum(part.points for part in self.store.parts)
         before = sum(
             sum(
@@ -101,12 +101,12 @@ class Run:
             )
             for part in self.store.parts
         )
-        self.progress = Progress(points, before)
+        self.progress = StudyProgress(points, before)
 
-    def _has(self, part: Part, block: int) -> bool:
+    def _has(self, part: StudyPart, block: int) -> bool:
         return self.states[part.number].has(part, block)
 
-    def tasks(self) -> Iterator[tuple[Part, tuple[int, ...]]]:
+    def tasks(self) -> Iterator[tuple[StudyPart, tuple[int, ...]]]:
         """Missing blocks in turn, those that stand together as many as a task should have."""
         for part in self.store.parts:
             together: list[int] = []
@@ -151,7 +151,7 @@ class Run:
             for shard in range(part.shards):
                 self._compact(part, shard)
 
-    def _compact(self, part: Part, shard: int) -> None:
+    def _compact(self, part: StudyPart, shard: int) -> None:
         state = self.states[part.number]
         blocks = part.blocks_of(shard)
         if shard in state.shards or not all(block in state.blocks for block in blocks):
@@ -161,7 +161,7 @@ class Run:
         if not damaged:
             state.shards.add(shard)
 
-    def finished(self, part: Part, found: list[Done]) -> None:
+    def finished(self, part: StudyPart, found: list[Done]) -> None:
         """Count blocks that are done, and make their shards where these are whole."""
         state = self.states[part.number]
         for block, points, failed, seconds in found:
@@ -193,7 +193,7 @@ class Run:
 
     def _on_dask(self) -> str:
         arrived: queue.Queue[Any] = queue.Queue()
-        flight: dict[str, tuple[Any, Part, tuple[int, ...]]] = {}
+        flight: dict[str, tuple[Any, StudyPart, tuple[int, ...]]] = {}
         tasks = self.tasks()
         ended, more = "", True
         try:
@@ -247,7 +247,7 @@ class Run:
         except Exception:  # the scheduler is not there to be told
             return
 
-    def _arrived(self, future: Any, part: Part, blocks: tuple[int, ...]) -> None:
+    def _arrived(self, future: Any, part: StudyPart, blocks: tuple[int, ...]) -> None:
         if future.status == "finished":
             self.finished(part, future.result())
             return
@@ -264,7 +264,7 @@ class Run:
         if gone or any(future.status in ("cancelled", "lost") for future, *_ in flight.values()):
             raise ComputationError(LOST)
 
-    def _alone(self, part: Part, block: int) -> None:
+    def _alone(self, part: StudyPart, block: int) -> None:
         """A block that was there when workers died, with nothing beside it. The points whose process dies twice at the
         same place are marked; what a block of a batch holds is computed together as ever, unless it dies alone too."""
         if self.store.question.batched:

@@ -19,9 +19,9 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.studies.extra import zarr
-from trunnion.studies.parts import Part
+from trunnion.studies.parts import StudyPart
 from trunnion.studies.points import FAILED, Evaluated
-from trunnion.studies.quantities import LETTERS, Quantity
+from trunnion.studies.quantities import LETTERS, StudyQuantity
 from trunnion.writing import move_durably, scratch_folder, write_durably
 
 STATUS = "status"
@@ -43,7 +43,7 @@ def array_names(paths: Sequence[str]) -> tuple[str, ...]:
     return tuple(found)
 
 
-def make_arrays(folder: Path, part: Part, quantities: Sequence[Quantity], attributes: dict[str, Any]) -> None:
+def make_arrays(folder: Path, part: StudyPart, quantities: Sequence[StudyQuantity], attributes: dict[str, Any]) -> None:
     """A Zarr group with an array of every parameter and quantity and of the status, nothing in them."""
     library = zarr()
     group = library.open_group(str(folder), mode="w", zarr_format=3, attributes=attributes)
@@ -75,7 +75,7 @@ def make_arrays(folder: Path, part: Part, quantities: Sequence[Quantity], attrib
             make(name, "float64", float("nan"), about)
 
 
-def _chunk(part: Part) -> int:
+def _chunk(part: StudyPart) -> int:
     """Points of a chunk, a whole number of which make a shard."""
     chunk = part.shard
     while chunk > CHUNK and chunk % 2 == 0:
@@ -85,9 +85,9 @@ def _chunk(part: Part) -> int:
 
 def write_shard(
     folder: Path,
-    part: Part,
+    part: StudyPart,
     shard: int,
-    quantities: Sequence[Quantity],
+    quantities: Sequence[StudyQuantity],
     values: Array,
     found: Evaluated,
     seconds: float,
@@ -123,7 +123,9 @@ def write_shard(
     write_durably(note_of(folder, shard), json.dumps(about).encode())
 
 
-def _contents(part: Part, quantities: Sequence[Quantity], values: Array, found: Evaluated) -> Iterator[tuple[str, Any]]:
+def _contents(
+    part: StudyPart, quantities: Sequence[StudyQuantity], values: Array, found: Evaluated
+) -> Iterator[tuple[str, Any]]:
     names = array_names([*part.design.paths, *(q.path for q in quantities)])
     size = len(part.design.paths)
     yield from zip(names[:size], values.T, strict=True)
@@ -157,7 +159,7 @@ def read_note(folder: Path, shard: int) -> dict[str, Any]:
         raise DamagedShard(f"{note_of(folder, shard)} cannot be read ({error})") from None
 
 
-def read_shard(folder: Path, part: Part, shard: int, quantities: Sequence[Quantity]) -> Evaluated:
+def read_shard(folder: Path, part: StudyPart, shard: int, quantities: Sequence[StudyQuantity]) -> Evaluated:
     """Results of a shard; its checksums are compared.
 
     Raises

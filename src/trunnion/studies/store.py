@@ -30,10 +30,10 @@ import numpy as np
 
 from trunnion.errors import ComputationError, InputError
 from trunnion.studies.block_files import DamagedBlock, address, read_block, write_block
-from trunnion.studies.design import Design, refuse_latin
+from trunnion.studies.design import StudyDesign, refuse_latin
 from trunnion.studies.extra import zarr
-from trunnion.studies.parts import Part
-from trunnion.studies.points import FAILED, Evaluated, Question, computed_by
+from trunnion.studies.parts import StudyPart
+from trunnion.studies.points import FAILED, Evaluated, StudyQuestion, computed_by
 from trunnion.studies.shards import (
     DamagedShard,
     array_names,
@@ -53,13 +53,13 @@ KEEP_NAME = "give another store"
 
 
 @dataclass
-class State:
+class PartState:
     """What is there of a part: shards that are whole, and blocks outside of them that are done."""
 
     shards: set[int] = field(default_factory=set)
     blocks: set[int] = field(default_factory=set)
 
-    def has(self, part: Part, block: int) -> bool:
+    def has(self, part: StudyPart, block: int) -> bool:
         """Whether a block is done."""
         return block in self.blocks or block // part.blocks_a_shard in self.shards
 
@@ -69,12 +69,12 @@ class Store:
     """A store that is open, by its path; ``question`` and ``parts`` are what it says of itself."""
 
     path: Path
-    question: Question
+    question: StudyQuestion
     about: Mapping[str, Any]
-    parts: tuple[Part, ...]
+    parts: tuple[StudyPart, ...]
 
     @classmethod
-    def create(cls, path: Path, question: Question, design: Design, block: int, came_from: str) -> Store:
+    def create(cls, path: Path, question: StudyQuestion, design: StudyDesign, block: int, came_from: str) -> Store:
         """Make the store, or open the one that somebody else made meanwhile.
 
         Raises
@@ -116,18 +116,18 @@ class Store:
         if about["format"] != FORMAT:
             raise InputError(f"is of format {about['format']}, and this version reads {FORMAT}", key="store",
                              value=str(path), remedy="use the version of Trunnion that wrote it")  # fmt: skip
-        parts: list[Part] = []
+        parts: list[StudyPart] = []
         while (path / f"part-{len(parts)}" / "part.json").is_file():
             content = _unsealed(path / f"part-{len(parts)}" / "part.json")
-            parts.append(Part.of_content(content, tuple(part.design for part in parts)))
-        return cls(path, Question.of_content(about["question"]), about, tuple(parts))
+            parts.append(StudyPart.of_content(content, tuple(part.design for part in parts)))
+        return cls(path, StudyQuestion.of_content(about["question"]), about, tuple(parts))
 
     @property
     def identity(self) -> str:
         """Whose points these are, as it was written."""
         return str(self.about["identity"])
 
-    def require(self, question: Question) -> Store:
+    def require(self, question: StudyQuestion) -> Store:
         """Itself, if it is the store of this question, by this version.
 
         Raises
@@ -156,7 +156,7 @@ class Store:
                              key="store", value=str(self.path),
                              remedy="use the same versions, or give another store")  # fmt: skip
 
-    def extended(self, design: Design, block: int) -> Store:
+    def extended(self, design: StudyDesign, block: int) -> Store:
         """The store with a part that has what ``design`` asks for and no part has yet; itself where there is nothing.
 
         Raises
@@ -179,22 +179,22 @@ class Store:
                 return again
             self = again  # somebody else added another part first
 
-    def folder(self, part: Part) -> Path:
+    def folder(self, part: StudyPart) -> Path:
         """Where a part stands."""
         return self.path / f"part-{part.number}"
 
-    def state(self, part: Part) -> State:
+    def state(self, part: StudyPart) -> PartState:
         """What is there."""
         folder = self.folder(part)
         shards = {int(name[:-5]) for name in _names(folder / "shards", ".json")}
         blocks = {int(name[:-4]) for name in _names(folder / "blocks", ".npz")}
-        return State(shards, {block for block in blocks if block // part.blocks_a_shard not in shards})
+        return PartState(shards, {block for block in blocks if block // part.blocks_a_shard not in shards})
 
-    def block_path(self, part: Part, block: int) -> Path:
+    def block_path(self, part: StudyPart, block: int) -> Path:
         """The file of a block."""
         return self.folder(part) / "blocks" / f"{block:010}.npz"
 
-    def put(self, part: Part, block: int, values: Any, found: Evaluated, seconds: float) -> None:
+    def put(self, part: StudyPart, block: int, values: Any, found: Evaluated, seconds: float) -> None:
         """Write a block.
 
         Raises
@@ -204,7 +204,7 @@ class Store:
         asked = address(self.identity, part.design.paths, values)
         write_block(self.block_path(part, block), asked, self.question.quantities, found, seconds)
 
-    def block(self, part: Part, block: int) -> tuple[Evaluated, float]:
+    def block(self, part: StudyPart, block: int) -> tuple[Evaluated, float]:
         """What came of a block that stands in a file of its own, and the seconds it took.
 
         Raises
@@ -214,7 +214,7 @@ class Store:
         asked = address(self.identity, part.design.paths, part.values(block))
         return read_block(self.block_path(part, block), asked, self.question.quantities)
 
-    def compact(self, part: Part, shard: int) -> list[int]:
+    def compact(self, part: StudyPart, shard: int) -> list[int]:
         """Make a shard of its blocks, all of which are done, and remove their files; blocks that turn out damaged
         are removed and given back, to be computed again.
 
@@ -255,7 +255,7 @@ class Store:
         self._remove_blocks(part, shard)
         return []
 
-    def _remove_blocks(self, part: Part, shard: int) -> None:
+    def _remove_blocks(self, part: StudyPart, shard: int) -> None:
         for block in part.blocks_of(shard):
             with suppress(OSError):
                 self.block_path(part, block).unlink(missing_ok=True)
@@ -295,7 +295,7 @@ class Store:
                     self.block_path(part, block).unlink(missing_ok=True)
         return found
 
-    def stretches(self, part: Part) -> Iterator[tuple[int, int, Evaluated | None]]:
+    def stretches(self, part: StudyPart) -> Iterator[tuple[int, int, Evaluated | None]]:
         """Rows of a part from first to last, a shard or a block at a time, and what came of them; None: missing.
 
         Raises
@@ -323,7 +323,7 @@ class Store:
                 except DamagedBlock as error:
                     raise ComputationError(f"{error}: trunnion study resume {self.path} --verify") from None
 
-    def _shard(self, part: Part, shard: int) -> Evaluated:
+    def _shard(self, part: StudyPart, shard: int) -> Evaluated:
         try:
             return read_shard(self.folder(part), part, shard, self.question.quantities)
         except DamagedShard as error:
@@ -372,9 +372,9 @@ class Counts:
         return self.points - self.done - self.failed
 
 
-def part_of(number: int, design: Design, earlier: tuple[Design, ...], block: int) -> Part:
+def part_of(number: int, design: StudyDesign, earlier: tuple[StudyDesign, ...], block: int) -> StudyPart:
     """A part whose shards are whole blocks, of ``SHARD`` points or a block."""
-    return Part(number, design, earlier, block, block * max(1, SHARD // block))
+    return StudyPart(number, design, earlier, block, block * max(1, SHARD // block))
 
 
 def joined(found: list[Evaluated]) -> Evaluated:
@@ -395,7 +395,7 @@ def piece(found: Evaluated, first: int, last: int) -> Evaluated:
     return Evaluated(found.status[first:last], values, sentences)
 
 
-def _fill_part(folder: Path, part: Part, question: Question) -> None:
+def _fill_part(folder: Path, part: StudyPart, question: StudyQuestion) -> None:
     attributes = {"part": part.number, "parameters": list(part.design.paths)}
     folder.mkdir(exist_ok=True)
     make_arrays(folder, part, question.quantities, attributes)

@@ -12,9 +12,9 @@ from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.studies.cost import StudyCost, cost_of
-from trunnion.studies.description import Plan, as_description, plan_of, read_study
+from trunnion.studies.description import StudyPlan, as_description, plan_of, read_study
 from trunnion.studies.result import Study, read
-from trunnion.studies.runner import Progress, Run, memory_of, require_workers, workers_here, workers_of
+from trunnion.studies.runner import StudyProgress, StudyRun, memory_of, require_workers, workers_here, workers_of
 from trunnion.studies.store import Store
 from trunnion.waiting import keeps_time
 
@@ -31,7 +31,7 @@ def study(
     verify: bool = False,
     tables_anywhere: bool = False,
     within: float | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[StudyProgress], None] | None = None,
 ) -> Study:
     """Ask an analysis at very many points of a line, and keep every answer; what is there is not computed again.
 
@@ -46,7 +46,7 @@ def study(
     verify : first read everything back that is there, and compute anew what is damaged.
     tables_anywhere : as of ``load``, of the line.
     within : seconds after which it ends with what it has.
-    progress : called as progress(state), a ``Progress`` with share, rate, failures and memory.
+    progress : called as progress(state), a ``StudyProgress`` with share, rate, failures and memory.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def resumed(
     scheduler: str | None = None,
     memory: str | None = None,
     verify: bool = False,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Callable[[StudyProgress], None] | None = None,
 ) -> Study:
     """Compute what a store lacks, as ``study`` does, from what the store itself says."""
     store = Store.open(Path(path))
@@ -98,7 +98,7 @@ def resumed(
 
 def completed(
     store: Store, processes: int, scheduler: str | None, client: Any, memory: str | None, verify: bool,
-    progress: Callable[[Progress], None] | None,
+    progress: Callable[[StudyProgress], None] | None,
 ) -> str:  # fmt: skip
     """Compute what a store lacks; why it ended before all was done, or nothing."""
     store.path = store.path.absolute()
@@ -106,7 +106,7 @@ def completed(
         store.verify()
     store.tidy()
     report = progress or (lambda state: None)
-    run = Run(store, None, report)
+    run = StudyRun(store, None, report)
     run.compact_all()
     if run.progress.before == run.progress.points:
         return ""
@@ -156,7 +156,9 @@ def study_cost(
     return cost_of(plan, whole_number(workers or os.cpu_count() or 1, "workers", 1))
 
 
-def _plan(stated: str | os.PathLike[str] | Mapping[str, Any], line: Driveline | None, tables_anywhere: bool) -> Plan:
+def _plan(
+    stated: str | os.PathLike[str] | Mapping[str, Any], line: Driveline | None, tables_anywhere: bool
+) -> StudyPlan:
     if isinstance(stated, Mapping):
         return plan_of(as_description(stated), Path(), line, "a mapping", tables_anywhere=tables_anywhere)
     described, folder = read_study(stated)

@@ -10,8 +10,8 @@ from time import perf_counter
 import numpy as np
 
 from trunnion.errors import InputError
-from trunnion.studies.parts import Part
-from trunnion.studies.points import FAILED, Evaluated, Question
+from trunnion.studies.parts import StudyPart
+from trunnion.studies.points import FAILED, Evaluated, StudyQuestion
 from trunnion.studies.store import Store, joined
 
 DIED = "the process that computed this point alone died, twice: out of memory, or a crash of compiled code"
@@ -72,7 +72,7 @@ def rows_of_deaths(trace: Path) -> list[int]:
     return found
 
 
-def died(question: Question) -> Evaluated:
+def died(question: StudyQuestion) -> Evaluated:
     """What is kept of one point whose process died."""
     values = {one.path: one.empty(1) for one in question.quantities}
     return Evaluated(np.array([FAILED], dtype=np.uint8), values, {0: DIED})
@@ -83,7 +83,7 @@ def where_it_runs(path: str) -> tuple[bool, int]:
     return (Path(path) / "study.json").is_file(), os.getpid()
 
 
-def _opened(path: str, identity: str, part: int) -> tuple[Store, Part]:
+def _opened(path: str, identity: str, part: int) -> tuple[Store, StudyPart]:
     store = _store(path, identity, part)
     return store, store.parts[part]
 
