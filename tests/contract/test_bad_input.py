@@ -907,7 +907,7 @@ PYTHON = [
         "name pump, engine",
     ),
     (lambda: studied(analysis="stabilty"), "analysis = 'stabilty': is no analysis", 'did you mean "stability"?'),
-    (lambda: studied(analysis="basins"), "analysis = 'basins': takes no driveline alone", "known: assess"),
+    (lambda: studied(analysis="basins"), "analysis = 'basins': takes no driveline alone", "take assess"),
     (
         lambda: studied(arguments={"tolerence": 1e-6}),
         "arguments.tolerence = 1e-06: is no argument of stability",
@@ -957,10 +957,14 @@ PYTHON = [
     ),
     (
         lambda: studied(parameter=[{"path": "HookeJoint 1.angle"}]),
-        "parameter.HookeJoint 1.angle: needs low and high, or values, or a tolerance",
+        "parameter 1 HookeJoint 1.angle: needs low and high, or values, or a tolerance",
         "write path",
     ),
-    (lambda: studied(parameter=[ANGLES, ANGLES]), "varies HookeJoint 1.angle, as HookeJoint 1.angle does", "once"),
+    (
+        lambda: studied(parameter=[ANGLES, ANGLES]),
+        "parameter.path = 'HookeJoint 1.angle': varies HookeJoint 1.angle, as",
+        "once",
+    ),
     (
         lambda: studied(parameter=[{"path": "Disk 1.inertia", "tolerance": "5 %"}]),
         "study.sampling: is missing",
@@ -977,7 +981,11 @@ PYTHON = [
         "sampling.points = 100: must be a power of two",
         "write 128",
     ),
-    (lambda: studied(tolerances=True), "tolerances = True: asks for tolerances, and the line states none", "[[tol"),
+    (
+        lambda: studied(tolerances=True),
+        "study.tolerances = True: asks for tolerances, and the line states none",
+        "[[tol",
+    ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
     (

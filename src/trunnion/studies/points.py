@@ -239,7 +239,12 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
     if not isinstance(name, str) or name not in known:
         raise InputError("is no analysis", key="analysis", value=name, remedy=nearest(name, of_lines))
     if name not in of_lines:
-        raise InputError("takes no driveline alone", key="analysis", value=name, remedy=nearest("", of_lines))
+        raise InputError(
+            "takes no driveline alone",
+            key="analysis",
+            value=name,
+            remedy="take assess, stability or order_response, say",
+        )
     rest = [key for key in takes[name][1:] if key not in ("progress", "within", "client", "processes", "threads")]
     for key, value in arguments.items():
         if key not in rest:
