@@ -1,5 +1,6 @@
 """The public names and their homes: for type checkers, and for ``__init__.py``, which imports them when first used."""
 
+from trunnion.animation.animate import animate as animate
 from trunnion.design.assessment.assess import assess as assess
 from trunnion.design.comparison.compare import compare as compare
 from trunnion.design.envelope import envelope as envelope
@@ -18,6 +19,7 @@ from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
+from trunnion.driveline import Disturbance as Disturbance
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
@@ -55,6 +57,7 @@ from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
+from trunnion.driveline import TorqueFunction as TorqueFunction
 from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
@@ -88,10 +91,10 @@ from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError
 from trunnion.errors import InputError as InputError
 from trunnion.errors import InputRemark as InputRemark
+from trunnion.floquet.certificate.certify import certify_stability as certify_stability
 from trunnion.floquet.charts.stability_chart import load_chart as load_chart
 from trunnion.floquet.charts.stability_chart import stability_chart as stability_chart
 from trunnion.floquet.stability.stability import stability as stability
-from trunnion.floquet.tolerance.certify import certify_stability as certify_stability
 from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows

@@ -394,6 +394,7 @@ PICTURES: Mapping[str, str] = {key: address for one in ANALYSES for key, address
 """What describes the picture of a result: ``Class.method`` → address."""
 VIEWS: Mapping[str, str] = {
     "driveline": "trunnion.app.views.driveline:DrivelineView",
+    "live": "trunnion.app.views.live:LiveView",
     "verdict": "trunnion.app.views.verdict:VerdictView",
     "orders": "trunnion.app.views.orders:OrdersView",
     "stability": "trunnion.app.views.stability:StabilityView",

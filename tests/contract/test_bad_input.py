@@ -169,6 +169,13 @@ def torque(**given):
     return tn.AppliedTorque(on="pump", **given)
 
 
+FAULT = {"case": "three-phase short circuit", "frequency": "50 Hz", "amplitude": 9, "decay": 0.2}
+
+
+def disturbance(**given):
+    return tn.Disturbance(on="pump", **given)
+
+
 def unbalanced():
     """A straight line that nothing holds at a speed, excited by its rotation, whose drive is stronger than its load."""
     engine = Disk(inertia=1.0, load_torque=-30.0, excitation=[{"order": 2, "amplitude": 5.0}], name="engine")
@@ -309,9 +316,30 @@ FATIGUE = [
 ]
 """What fatigue refuses."""
 
+
+def animate(what, **arguments):
+    from trunnion import animate as shown
+
+    return shown(free(), what, **arguments)
+
+
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
     *FATIGUE,
+    # what moves
+    (lambda: animate("mod"), "what = 'mod': is no motion of a line", 'did you mean "mode"?'),
+    (lambda: animate("turning", mode=1), "mode = 1: does not belong to turning", "turning takes speed"),
+    (lambda: animate("mode", mode=9), "mode = 9: is not a mode that vibrates", "give 1 to"),
+    (lambda: animate("mode", mode=True), "mode = True: is not a mode that vibrates", "give 1 to"),
+    (
+        lambda: animate("response", speed=90.0),
+        "driveline.what = 'response': is free–free and has joint",
+        "ask for motion",
+    ),
+    (lambda: animate("disturbance", speed=90.0), "driveline.what = 'disturbance': is free–free", "ask for motion"),
+    (lambda: animate("transient"), "driveline.scenario: has no scenario", "[[scenario]]"),
+    (lambda: animate("run-up"), "speeds: are not known", "give the lowest and the highest"),
+    (lambda: animate("mode").save("line.mp4"), "output = 'line.mp4': is nothing an animation", "end it in one of"),
     # excitations
     (lambda: Disk(inertia=1, excitation=[{"order": 2}]), "Disk.excitation 1 amplitude: is missing", "40 N*m"),
     (
@@ -602,7 +630,6 @@ PYTHON = [
     (lambda: line(tolerances={"of": "Shaft 1"}), "driveline.tolerances = ", "tn.Tolerance("),
     (lambda: line(tolerances=[3]), "driveline.tolerance 1 = 3: is not a tolerance", "tn.Tolerance("),
     (lambda: tn.tolerance_study(line(), speeds=10.0), "driveline.tolerances: are not stated", "[[tolerance]]"),
-    (lambda: tn.certify_stability(line(), speeds=(9.0, 10.0)), "driveline.tolerances: are not stated", "[[tolerance]]"),
     # questions about a line or a system
     (
         lambda: tn.System.from_function(
@@ -845,6 +872,14 @@ PYTHON = [
     ),
     (
         lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("factor", 1.0, 2.0, 9_000), ("pump.inertia", 1.0, 2.0, 9_000), torque=[torque(**KLOSS)]
+        ),
+        "y = 9000: would need 302 GB of memory",
+        "ask for fewer values of x or y",
+    ),
+    (lambda: tn.Scenario(name="a", duration=1, per_hour=0), "scenario a.per_hour = 0: must be positive", "write 0.5"),
+    (
+        lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
         ),
         "x = 'speed': is what the line runs through",
@@ -1041,6 +1076,108 @@ PYTHON = [
         ),
         "propeller.damping_factor = 3: holds about one mean speed, which changes here",
         "leave it out",
+    ),
+    (
+        lambda: torque(formula="__import__('os')"),
+        "torque on pump.formula = \"__import__('os')\": cannot be read at character 12",
+        "write numbers",
+    ),
+    (lambda: torque(formula="open(t)"), "torque on pump.formula = 'open(t)': calls open, which is no function", "sin"),
+    (lambda: torque(formula="x"), "torque on pump.formula = 'x': says x, which is no name that it knows", "angle"),
+    (lambda: torque(formula="min(t)"), "torque on pump.formula = 'min(t)': gives min 1 arguments", "min takes 2"),
+    (lambda: torque(formula="1e999"), "torque on pump.formula = '1e999': has a number beyond 1e308", "smaller"),
+    (
+        lambda: torque(formula="step(speed)"),
+        "torque on pump.formula = 'step(speed)': jumps where the speed does",
+        "tanh",
+    ),
+    (
+        lambda: torque(formula="t+" * 3000),
+        "torque on pump.formula = 't+t+",
+        "has more than 4000 characters; write a table",
+    ),
+    (lambda: torque(formula=3), "torque on pump.formula = 3: is no text", "write formula"),
+    (
+        lambda: torque(formula="-" * 99 + "t"),
+        "torque on pump.formula = '---",
+        "write it shorter",
+    ),
+    (lambda: torque(formula="t", time=[0, 1]), "torque on pump.time = [0, 1]: stands beside formula", "leave one"),
+    (
+        lambda: torque(formula="t", between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside formula",
+    ),
+    (
+        lambda: torque(formula="t", since=2, until=1),
+        "torque on pump.until = 1: must lie behind since",
+        "leave it out, or raise it",
+    ),
+    (
+        lambda: torque(time=[0, 1], torque=[0, 1], since=2),
+        "torque on pump.since = 2: belongs to a formula",
+        "put it into the points of time",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0), torque=[torque(formula="sin(t)")]),
+        "torque on pump.until: goes on changing with time",
+        "say until when",
+    ),
+    (
+        lambda: tn.transient(
+            free(), 1.0, torque=[tn.TorqueFunction(on="pump", function=lambda t, w, a: "x")], speed=9.0
+        ),
+        "torque.function = 'str': gives no number",
+        "let it return the torque in N m",
+    ),
+    (lambda: disturbance(case="earthquake"), "disturbance on pump.case = 'earthquake': is no case", "tip-in"),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2),
+        "tip-in on pump.rise: is missing",
+        "needed are first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=0.1, fall=0.1),
+        "tip-in on pump.fall = 0.1: is of another case",
+        "it takes first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=-0.1),
+        "tip-in on pump.rise = -0.1: must not be negative",
+        "",
+    ),
+    (lambda: disturbance(**FAULT | {"decay": 0}), "three-phase short circuit on pump.decay = 0: must be positive", ""),
+    (
+        lambda: disturbance(**FAULT, since=2, until=1),
+        "three-phase short circuit on pump.until = 1: must lie behind since",
+        "times count from t = 0",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[1, 2], amplitudes=[1]),
+        "synchronous start on pump.amplitudes = [1]: has 1 values for 2 speeds",
+        "one for each speed",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[2, 1], amplitudes=[1, 1]),
+        "synchronous start on pump.speeds = [2, 1]: does not rise at point 2",
+        "put the lowest first",
+    ),
+    (
+        lambda: disturbance(
+            case="synchronous start", frequency=9, pole_pairs=2, speeds=range(20), amplitudes=range(20)
+        ),
+        "synchronous start on pump.speeds = range(0, 20): are more than 16",
+        "give fewer points",
+    ),
+    (
+        lambda: disturbance(case="impacts", peaks=[1, 1], width=0.2, spacing=0.1),
+        "impacts on pump.spacing = 0.1: is less than width",
+        "must not overlap",
+    ),
+    (
+        lambda: tn.transient(free(), 1.0, disturbance=["x"], speed=9.0),
+        "disturbance = 'x': is not a list of Disturbance",
+        "tn.Disturbance",
     ),
     (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
     (

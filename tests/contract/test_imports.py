@@ -32,6 +32,7 @@ LAYERS = (
     {"floquet/charts"},
     {"floquet/stability"},
     {"floquet/ranges", "floquet/tolerance"},
+    {"floquet/certificate"},
     {"floquet/tongues"},
     {"response/kinetostatics", "response/orders"},
     {"response/ranges"},
@@ -53,7 +54,7 @@ LAYERS = (
     {"design/remedies"},
     # Asks any of the analyses by its name in the registry, at very many points.
     {"studies"},
-    {"pictures"},
+    {"pictures", "animation", "animation/player"},
     {"reporting"},
     {"papers/shared"},
     {"papers/two_shaft_cardan", "papers/bicardan_elastic", "papers/double_tripod", "papers/gear_rattle"},

@@ -3,6 +3,7 @@
 Importing this package loads pydantic and nothing heavier; pint is loaded when the first unit is read.
 """
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
@@ -10,6 +11,7 @@ from trunnion.driveline.component_files import component, components
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
@@ -27,7 +29,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
@@ -45,6 +47,8 @@ __all__ = [
     "STARTERS",
     "CentrifugalPendulum",
     "AppliedTorque",
+    "Disturbance",
+    "TorqueFunction",
     "LevelCrossing",
     "FrictionTorque",
     "Scenario",

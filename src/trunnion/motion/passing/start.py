@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_speed, speeds_of
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.motion.transients.prepare import Actions, actions_of, prepared_line
@@ -29,7 +29,18 @@ def ends_of(speeds: Sequence[float | str]) -> tuple[float, float]:
 
 
 def lasting(torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque]) -> Actions:
-    """What acts, tables lasting beyond their ends."""
+    """What acts, tables lasting beyond their ends.
+
+    Raises
+    ------
+    InputError : a formula or a function of time without an end.
+    """
+    for one in torque:
+        if one.by_program and "time" in one.depends and one.until is None:
+            raise InputError(
+                "goes on changing with time, so that nothing settles", element=f"torque on {one.on}", key="until",
+                remedy="say until when it acts, or let it depend on speed and angle alone",
+            )  # fmt: skip
     return actions_of([one.but(hold=True) for one in torque], friction, ())
 
 

@@ -10,10 +10,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.machines import ElectricMachine, Generator, Machine, Motor, Propeller
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.loads import own_load
 from trunnion.errors import InputError
