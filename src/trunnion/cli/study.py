@@ -75,7 +75,8 @@ def study(
     if what in OF_STORES:
         if store is None:
             raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
-        _of_store(what, store, outputs or [], workers, scheduler, memory, verify, within, as_json)
+        given = {"workers": workers, "scheduler": scheduler, "memory": memory, "verify": verify}
+        _of_store(what, store, outputs or [], given, within, as_json)
         return
     if store is not None:
         raise InputError("is nothing that is asked of a store", key="study", value=what,
@@ -96,9 +97,8 @@ def study(
 
 
 def _of_store(
-    what: str, store: str, outputs: list[Path], workers: int | None, scheduler: str | None, memory: str | None,
-    verify: bool, within: str | None, as_json: bool,
-) -> None:  # fmt: skip
+    what: str, store: str, outputs: list[Path], given: dict[str, Any], within: str | None, as_json: bool
+) -> None:
     if what == "status":
         _status(store, as_json)
     elif what == "resume":
@@ -106,7 +106,7 @@ def _of_store(
 
         seconds = None if within is None else read_time(within, "--within")
         with _reported(seconds) as report:
-            found = resumed(store, workers=workers, scheduler=scheduler, memory=memory, verify=verify, progress=report)
+            found = resumed(store, progress=report, **given)
         _say(found, as_json)
     elif what == "export":
         from trunnion.studies.exports import ENDINGS, export
