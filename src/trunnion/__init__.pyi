@@ -91,10 +91,10 @@ from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError
 from trunnion.errors import InputError as InputError
 from trunnion.errors import InputRemark as InputRemark
+from trunnion.floquet.certificate.certify import certify_stability as certify_stability
 from trunnion.floquet.charts.stability_chart import load_chart as load_chart
 from trunnion.floquet.charts.stability_chart import stability_chart as stability_chart
 from trunnion.floquet.stability.stability import stability as stability
-from trunnion.floquet.tolerance.certify import certify_stability as certify_stability
 from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows

@@ -619,7 +619,6 @@ PYTHON = [
     (lambda: line(tolerances={"of": "Shaft 1"}), "driveline.tolerances = ", "tn.Tolerance("),
     (lambda: line(tolerances=[3]), "driveline.tolerance 1 = 3: is not a tolerance", "tn.Tolerance("),
     (lambda: tn.tolerance_study(line(), speeds=10.0), "driveline.tolerances: are not stated", "[[tolerance]]"),
-    (lambda: tn.certify_stability(line(), speeds=(9.0, 10.0)), "driveline.tolerances: are not stated", "[[tolerance]]"),
     # questions about a line or a system
     (
         lambda: tn.System.from_function(
@@ -860,6 +859,14 @@ PYTHON = [
         "wheel.highest = 15: is not seen by 20 pulses a turn",
         "below 10",
     ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("factor", 1.0, 2.0, 9_000), ("pump.inertia", 1.0, 2.0, 9_000), torque=[torque(**KLOSS)]
+        ),
+        "y = 9000: would need 302 GB of memory",
+        "ask for fewer values of x or y",
+    ),
+    (lambda: tn.Scenario(name="a", duration=1, per_hour=0), "scenario a.per_hour = 0: must be positive", "write 0.5"),
     (
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]

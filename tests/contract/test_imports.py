@@ -32,6 +32,7 @@ LAYERS = (
     {"floquet/charts"},
     {"floquet/stability"},
     {"floquet/ranges", "floquet/tolerance"},
+    {"floquet/certificate"},
     {"floquet/tongues"},
     {"response/kinetostatics", "response/orders"},
     {"response/ranges"},

@@ -244,3 +244,11 @@ def read_set(texts: Sequence[str] | None) -> dict[str, float]:
             raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
         values[key.strip()] = float(value)
     return values
+
+
+def place_of_line(asked: CommandInput, text: str, key: str) -> Path:
+    """Where a line is to be written."""
+    best = Path(text)
+    if best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir():
+        raise InputError("is no place for a driveline file", key=key, value=text, remedy="best.toml, say")
+    return best
