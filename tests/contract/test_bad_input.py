@@ -1344,7 +1344,7 @@ PYTHON = [
     ),
     (
         lambda: Coupling(torques=[-1, 2], stiffnesses=[1, 2]),
-        "Coupling.torques = -1: must not be negative",
+        "Coupling.torques = [-1, 2]: must not be negative",
         "0 or above",
     ),
     (lambda: Coupling(torques=[1, 2], stiffnesses=[0, 2]), "Coupling.stiffnesses = [0, 2]: must be positive", "leave"),
