@@ -6,8 +6,8 @@ turn more, over the ratio of the gears; a_f = n_e(a_n). With r = dn_e/da_n along
 
     J_i (ä_i + δ̈_i) = Σ_near r f − Σ_far f + torques,    f = k w (δ_f − r δ_n) + c d/dt(δ_f − r δ_n).
 
-All columns of the propagator, and the motions that joints and torques force, are carried by Dormand and Prince's pair of
-order 8 in steps of equal length, once more in half as many for its error.
+All columns of the propagator, and the motions that joints and torques force, are carried by Dormand and Prince's pair
+of order 8 in steps of equal length, once more in half as many for its error.
 """
 
 from __future__ import annotations

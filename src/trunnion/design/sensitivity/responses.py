@@ -22,6 +22,7 @@ from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
+from trunnion.floquet.stability.stability import LONG
 from trunnion.response.orders.response import response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
 from trunnion.steady.orders.amplitudes import OrderSpectrum
@@ -109,7 +110,8 @@ def spectrum_slopes(
     their torques do not balance, or a frequency of excitation moves.
     """
     assert not has_periodic_base(near.assembly)
-    together = max(1, MOST_NUMBERS // max(1, near.assembly.topology.size))
+    size = near.assembly.topology.size
+    together = max(1, MOST_NUMBERS // size) if size >= LONG else 1
     for begin in range(0, len(directions), together):
         keep_time()
         some = directions[begin : begin + together]
@@ -140,7 +142,8 @@ def _solved_together(near: Neighbourhood, speed: float, directions: Sequence[Dir
     for d, step in enumerate(steps):
         rows = 1 + len(CENTRAL) * d + np.arange(len(CENTRAL))
         own = np.insert(rows, 2, 0)  # in the order of their steps
-        change = {key: central(part[rows], step)[None] for key, part in whole.items()}
+        moves = np.any(beside[d] != row)  # a load case may state what the direction would move
+        change = {key: moves * central(part[rows], step)[None] for key, part in whole.items()}
         rough = {key: np.tensordot(FOURTH, whole[key][own], 1)[None] / step for key in ("amplitude", "mean")}
         around = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
         # Where the equations are not linear in a number, the fourth difference holds more than rounding.
