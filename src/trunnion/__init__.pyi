@@ -1,5 +1,6 @@
 """The public names and their homes: for type checkers, and for ``__init__.py``, which imports them when first used."""
 
+from trunnion.animation.animate import animate as animate
 from trunnion.design.assessment.assess import assess as assess
 from trunnion.design.comparison.compare import compare as compare
 from trunnion.design.envelope import envelope as envelope
@@ -18,6 +19,7 @@ from trunnion.driveline import ConstantSpeed as ConstantSpeed
 from trunnion.driveline import Coupling as Coupling
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
+from trunnion.driveline import Disturbance as Disturbance
 from trunnion.driveline import DoubleCardanJoint as DoubleCardanJoint
 from trunnion.driveline import Driveline as Driveline
 from trunnion.driveline import DualMassFlywheel as DualMassFlywheel
@@ -46,6 +48,7 @@ from trunnion.driveline import RzeppaJoint as RzeppaJoint
 from trunnion.driveline import Scenario as Scenario
 from trunnion.driveline import Schedule as Schedule
 from trunnion.driveline import Shaft as Shaft
+from trunnion.driveline import Sheet as Sheet
 from trunnion.driveline import Slider as Slider
 from trunnion.driveline import SlipClutch as SlipClutch
 from trunnion.driveline import SNCurve as SNCurve
@@ -54,6 +57,7 @@ from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
+from trunnion.driveline import TorqueFunction as TorqueFunction
 from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint
@@ -61,6 +65,8 @@ from trunnion.driveline import TunedDamper as TunedDamper
 from trunnion.driveline import Tyre as Tyre
 from trunnion.driveline import Vehicle as Vehicle
 from trunnion.driveline import ViscousDamper as ViscousDamper
+from trunnion.driveline import component as component
+from trunnion.driveline import components as components
 from trunnion.driveline import deg as deg
 from trunnion.driveline import dump as dump
 from trunnion.driveline import dumps as dumps
@@ -92,6 +98,17 @@ from trunnion.floquet.tolerance.certify import certify_stability as certify_stab
 from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
+from trunnion.measured.bench import measure as measure
+from trunnion.measured.signals.measurement import Measurement as Measurement
+from trunnion.measured.signals.measurement import PulseTrain as PulseTrain
+from trunnion.measured.signals.measurement import SampledSignal as SampledSignal
+from trunnion.measured.signals.read import read_measurement as read_measurement
+from trunnion.measured.tracking.by_angle import measured_order_map as measured_order_map
+from trunnion.measured.tracking.by_angle import synchronous_average as synchronous_average
+from trunnion.measured.tracking.pitch import pitch_errors as pitch_errors
+from trunnion.measured.tracking.run_ups import run_ups as run_ups
+from trunnion.measured.tracking.track import track_orders as track_orders
+from trunnion.measured.tracking.vold_kalman import vold_kalman as vold_kalman
 from trunnion.modes.bending import bending_speeds as bending_speeds
 from trunnion.modes.damper_optimum import damper_optimum as damper_optimum
 from trunnion.modes.natural_frequencies import natural_frequencies as natural_frequencies

@@ -364,7 +364,7 @@ ROWS: dict[str, Row] = {
     "transients": _row(
         refused={
             **_ONE_DRIVE,
-            **_AT_ONE_SPEED,
+            LAG: "equations of motion have no lagging torque",
             **_NO_PATH,
             "excitation that varies with speed or load": "its amplitude would change on the way",
         },

@@ -368,6 +368,19 @@ ANALYSES = (
         pictures={"BifurcationDiagram.plot": "trunnion.pictures.chaos:bifurcations"},
     ),
     Analysis(
+        "measure",
+        "The signals that pickups and gauges on a test bench would record of a line, with what spoils them.",
+    ),
+    Analysis(
+        "track_orders",
+        "Amplitude and phase of orders over speed from measured pulses and signals, with their uncertainty.",
+        pictures={
+            "MeasuredOrders.plot": "trunnion.pictures.measured:orders",
+            "MeasuredOrderMap.plot": "trunnion.pictures.measured:order_map",
+        },
+        command="trunnion.cli.measured:track_orders",
+    ),
+    Analysis(
         "certify_chaos",
         "Regular, chaotic, unbounded or undecided, with reasons and one figure.",
         features="long motion",
@@ -381,6 +394,7 @@ PICTURES: Mapping[str, str] = {key: address for one in ANALYSES for key, address
 """What describes the picture of a result: ``Class.method`` → address."""
 VIEWS: Mapping[str, str] = {
     "driveline": "trunnion.app.views.driveline:DrivelineView",
+    "live": "trunnion.app.views.live:LiveView",
     "verdict": "trunnion.app.views.verdict:VerdictView",
     "orders": "trunnion.app.views.orders:OrdersView",
     "stability": "trunnion.app.views.stability:StabilityView",

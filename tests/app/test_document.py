@@ -16,7 +16,7 @@ from trunnion.app.parts.document import Document
 from trunnion.app.parts.form import FieldGroup
 from trunnion.app.parts.variants import Sliders, difference
 from trunnion.app.views.driveline import DrivelineView
-from trunnion.driveline.files import dumps
+from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.errors import InputError
 
@@ -427,3 +427,27 @@ def test_a_call_reaches_public_functions_only() -> None:
             Call(name).evaluate(None)
     with pytest.raises(ValueError):
         Call("__class__", of=Call("tn.catalogue", ("gear-rattle",))).evaluate(None)
+
+
+def test_a_component_is_added_with_its_numbers_and_keeps_its_sheet() -> None:
+    document = Document(starter("two-shaft"))
+    count = len(document.line.elements)
+    document.add_element(1, "example/rubber-16")
+    added = document.line.elements[1]
+    assert len(document.line.elements) == count + 1 and not document.problems
+    assert added.but(name=None) == tn.component("example/rubber-16")
+    group = next(g for g in document.groups() if g.path == ("element", 1))
+    assert group.kind == "Coupling: example/rubber-16"
+    assert next(f.text for f in group.fields if f.path[-1] == "stiffness") == "80 kN*m/rad"
+    assert "sheet" not in group.addable and all(f.path[-1] != "sheet" for f in group.fields)
+    document.set_text(("element", 1, "stiffness"), "70 kN*m/rad")
+    assert document.line.elements[1].departures == {"stiffness": "80 kN*m/rad"}
+
+
+def test_a_file_that_names_a_component_opens_with_its_numbers_in_the_fields() -> None:
+    document = Document(starter("two-shaft"))
+    text = 'format = 1\n[[element]]\ntype = "ConstantSpeed"\n[[element]]\ncomponent = "example/rubber-16"\n'
+    document.replace_text(text + '[[element]]\ntype = "Disk"\ninertia = 1.0\n')
+    assert document.line.elements[1].sheet.component == "example/rubber-16"
+    assert document.data["element"][1]["type"] == "Coupling"
+    assert loads(document.toml) == document.line

@@ -3,6 +3,7 @@
 import os
 import re
 
+import numpy as np
 import pytest
 
 import trunnion as tn
@@ -54,6 +55,19 @@ from trunnion.driveline import (
 from trunnion.errors import InputError
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
+
+
+def wheel():
+    """Ninety-nine turns of a wheel of 20 teeth, five a second."""
+    return tn.PulseTrain(np.arange(2000) / 100.0, 20, name="wheel")
+
+
+def gauge():
+    return tn.SampledSignal(np.sin(np.arange(2000.0)), 100.0, name="gauge")
+
+
+def rotated():
+    return tn.track_orders(tn.Measurement([wheel()]), [1])
 
 
 def damped():
@@ -153,6 +167,13 @@ PUMP = Disk(inertia=1, name="pump")
 
 def torque(**given):
     return tn.AppliedTorque(on="pump", **given)
+
+
+FAULT = {"case": "three-phase short circuit", "frequency": "50 Hz", "amplitude": 9, "decay": 0.2}
+
+
+def disturbance(**given):
+    return tn.Disturbance(on="pump", **given)
 
 
 def unbalanced():
@@ -284,9 +305,30 @@ FATIGUE = [
 ]
 """What fatigue refuses."""
 
+
+def animate(what, **arguments):
+    from trunnion import animate as shown
+
+    return shown(free(), what, **arguments)
+
+
 # (what is done, how the message starts, what it must also say)
 PYTHON = [
     *FATIGUE,
+    # what moves
+    (lambda: animate("mod"), "what = 'mod': is no motion of a line", 'did you mean "mode"?'),
+    (lambda: animate("turning", mode=1), "mode = 1: does not belong to turning", "turning takes speed"),
+    (lambda: animate("mode", mode=9), "mode = 9: is not a mode that vibrates", "give 1 to"),
+    (lambda: animate("mode", mode=True), "mode = True: is not a mode that vibrates", "give 1 to"),
+    (
+        lambda: animate("response", speed=90.0),
+        "driveline.what = 'response': is free–free and has joint",
+        "ask for motion",
+    ),
+    (lambda: animate("disturbance", speed=90.0), "driveline.what = 'disturbance': is free–free", "ask for motion"),
+    (lambda: animate("transient"), "driveline.scenario: has no scenario", "[[scenario]]"),
+    (lambda: animate("run-up"), "speeds: are not known", "give the lowest and the highest"),
+    (lambda: animate("mode").save("line.mp4"), "output = 'line.mp4': is nothing an animation", "end it in one of"),
     # excitations
     (lambda: Disk(inertia=1, excitation=[{"order": 2}]), "Disk.excitation 1 amplitude: is missing", "40 N*m"),
     (
@@ -774,6 +816,50 @@ PYTHON = [
         "0 rpm",
     ),
     (lambda: tn.passing(free(), (5.0, 9.0), torque=[]), "torque: is missing", "tn.AppliedTorque"),
+    (lambda: tn.PulseTrain([0.1, 0.3, 0.2], 1), "pulses.times = 0.2: must rise", "take each once"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 0), "pulses.pulses_per_turn = 0: must be a whole number", "1 or more"),
+    (lambda: tn.PulseTrain([0.1, 0.2], 9), "pulses.times = 2: holds less than two turns of 9 pulses", "record longer"),
+    (lambda: tn.PulseTrain(np.arange(9.0), 2, pitch_error=0.7), "pulses.pitch_error = 0.7: must be a share", "2 %"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 0.0), "signal.rate = 0: must be positive", "Hz"),
+    (lambda: tn.SampledSignal([1.0, 2.0], 1.0, kind="torqe"), "signal.kind = 'torqe': is no kind", '"torque"'),
+    (
+        lambda: tn.SampledSignal([1.0, np.nan], 1.0),
+        "signal.values: has 1 sample that are no numbers",
+        "cut the gap out",
+    ),
+    (lambda: tn.Measurement([]), "measurement.channels: has no channel", "one or more"),
+    (lambda: tn.Measurement([wheel(), wheel()]), "measurement.name = 'wheel': names two channels", "name each"),
+    (lambda: tn.track_orders(tn.Measurement([gauge()])), "measurement = '': has no pulse train", 'kind = "pulses"'),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [15]), "orders = 15: is not seen by wheel", "lower orders"),
+    (lambda: tn.track_orders(tn.Measurement([wheel()]), [0]), "orders = [0.0]: must be positive", "[1, 2, 4]"),
+    (
+        lambda: tn.track_orders(tn.Measurement([wheel()]), [1], between=(33.0, 99.0)),
+        "between = [33.0, 99.0]: is outside the recording, 0 to 19.99 s",
+        "rising times",
+    ),
+    (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
+    (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),
+    (lambda: rotated().cut(1, "weel"), "channel = 'weel': is no channel", '"wheel"'),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [1], bandwidth=-1),
+        "bandwidth = -1: must be positive",
+        "",
+    ),
+    (
+        lambda: tn.vold_kalman(gauge(), rotated().rotation, [60]),
+        "gauge.rate = 100: is too low for order 60",
+        "record faster",
+    ),
+    (
+        lambda: tn.synchronous_average(gauge(), rotated().rotation, turns=90),
+        "gauge.turns = 90: does not come twice",
+        "record longer",
+    ),
+    (
+        lambda: tn.measured_order_map(wheel(), rotated().rotation, highest=15.0),
+        "wheel.highest = 15: is not seen by 20 pulses a turn",
+        "below 10",
+    ),
     (
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
@@ -849,12 +935,155 @@ PYTHON = [
     ),
     (
         lambda: tn.passing(
-            line(tn.Motor(inertia=0.5, name="motor", **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
+            line(tn.Motor(inertia=0.5, name="motor", pole_pairs=2, **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
             (5.0, 9.0),
-            torque=[torque(time=[0, 1], torque=[1, 1])],
         ),
-        "motor.curve: has a torque over speed",
-        "state its inertia as a Disk, and its torque in the scenario",
+        "motor.pole_pairs = 2: lets its torque lag behind its speed above",
+        "leave out pole_pairs: the torque then follows at once",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0)),
+        "torque: is missing",
+        "or a Motor in the line",
+    ),
+    (
+        lambda: tn.transient(line(engine(), Shaft(stiffness=1e4), Generator(inertia=1.0, power=1e3)), 1.0, speed=0.0),
+        "Generator 1.power = 1000: takes constant power, which has no torque at standstill",
+        "start at a positive speed",
+    ),
+    (
+        lambda: tn.transient(line(motor(gain=9.0, drive_share=1), Shaft(stiffness=1e4), PUMP), 1.0, speed=0.0),
+        "motor.drive_share = 1: is set by its converter to the speed at which the run begins",
+        "leave out drive_share",
+    ),
+    (
+        lambda: tn.transient(
+            line(motor(gain=9.0, torque_limit=5.0, drive_share=1), Shaft(stiffness=1e4), fan(load_torque=9.0)),
+            1.0,
+            speed=9.0,
+        ),
+        "motor.torque_limit = 5: would have to drive with",
+        "raise it, or lower the load",
+    ),
+    (
+        lambda: tn.transient(
+            line(engine(), Shaft(stiffness=1e4), propeller(damping_factor=3.0, quadratic_load=9.0)), 1.0, speed=9.0
+        ),
+        "propeller.damping_factor = 3: holds about one mean speed, which changes here",
+        "leave it out",
+    ),
+    (
+        lambda: torque(formula="__import__('os')"),
+        "torque on pump.formula = \"__import__('os')\": cannot be read at character 12",
+        "write numbers",
+    ),
+    (lambda: torque(formula="open(t)"), "torque on pump.formula = 'open(t)': calls open, which is no function", "sin"),
+    (lambda: torque(formula="x"), "torque on pump.formula = 'x': says x, which is no name that it knows", "angle"),
+    (lambda: torque(formula="min(t)"), "torque on pump.formula = 'min(t)': gives min 1 arguments", "min takes 2"),
+    (lambda: torque(formula="1e999"), "torque on pump.formula = '1e999': has a number beyond 1e308", "smaller"),
+    (
+        lambda: torque(formula="step(speed)"),
+        "torque on pump.formula = 'step(speed)': jumps where the speed does",
+        "tanh",
+    ),
+    (
+        lambda: torque(formula="t+" * 3000),
+        "torque on pump.formula = 't+t+",
+        "has more than 4000 characters; write a table",
+    ),
+    (lambda: torque(formula=3), "torque on pump.formula = 3: is no text", "write formula"),
+    (
+        lambda: torque(formula="-" * 99 + "t"),
+        "torque on pump.formula = '---",
+        "write it shorter",
+    ),
+    (lambda: torque(formula="t", time=[0, 1]), "torque on pump.time = [0, 1]: stands beside formula", "leave one"),
+    (
+        lambda: torque(formula="t", between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside formula",
+    ),
+    (
+        lambda: torque(formula="t", since=2, until=1),
+        "torque on pump.until = 1: must lie behind since",
+        "leave it out, or raise it",
+    ),
+    (
+        lambda: torque(time=[0, 1], torque=[0, 1], since=2),
+        "torque on pump.since = 2: belongs to a formula",
+        "put it into the points of time",
+    ),
+    (
+        lambda: tn.passing(free(), (5.0, 9.0), torque=[torque(formula="sin(t)")]),
+        "torque on pump.until: goes on changing with time",
+        "say until when",
+    ),
+    (
+        lambda: tn.transient(
+            free(), 1.0, torque=[tn.TorqueFunction(on="pump", function=lambda t, w, a: "x")], speed=9.0
+        ),
+        "torque.function = 'str': gives no number",
+        "let it return the torque in N m",
+    ),
+    (lambda: disturbance(case="earthquake"), "disturbance on pump.case = 'earthquake': is no case", "tip-in"),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2),
+        "tip-in on pump.rise: is missing",
+        "needed are first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=0.1, fall=0.1),
+        "tip-in on pump.fall = 0.1: is of another case",
+        "it takes first, last, rise",
+    ),
+    (
+        lambda: disturbance(case="tip-in", first=1, last=2, rise=-0.1),
+        "tip-in on pump.rise = -0.1: must not be negative",
+        "",
+    ),
+    (lambda: disturbance(**FAULT | {"decay": 0}), "three-phase short circuit on pump.decay = 0: must be positive", ""),
+    (
+        lambda: disturbance(**FAULT, since=2, until=1),
+        "three-phase short circuit on pump.until = 1: must lie behind since",
+        "times count from t = 0",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[1, 2], amplitudes=[1]),
+        "synchronous start on pump.amplitudes = [1]: has 1 values for 2 speeds",
+        "one for each speed",
+    ),
+    (
+        lambda: disturbance(case="synchronous start", frequency=9, pole_pairs=2, speeds=[2, 1], amplitudes=[1, 1]),
+        "synchronous start on pump.speeds = [2, 1]: does not rise at point 2",
+        "put the lowest first",
+    ),
+    (
+        lambda: disturbance(
+            case="synchronous start", frequency=9, pole_pairs=2, speeds=range(20), amplitudes=range(20)
+        ),
+        "synchronous start on pump.speeds = range(0, 20): are more than 16",
+        "give fewer points",
+    ),
+    (
+        lambda: disturbance(case="impacts", peaks=[1, 1], width=0.2, spacing=0.1),
+        "impacts on pump.spacing = 0.1: is less than width",
+        "must not overlap",
+    ),
+    (
+        lambda: tn.transient(free(), 1.0, disturbance=["x"], speed=9.0),
+        "disturbance = 'x': is not a list of Disturbance",
+        "tn.Disturbance",
+    ),
+    (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], torque=[1, 2]),
+        "torque on pump.torque = [1, 2]: stands beside power",
+        "leave one of the two out",
+    ),
+    (
+        lambda: torque(power=9.0, speed=[1, 2], between="cubic"),
+        "torque on pump.between = 'cubic': is of tables",
+        "leave it out beside power",
     ),
     (
         lambda: tn.passing(

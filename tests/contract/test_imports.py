@@ -36,6 +36,10 @@ LAYERS = (
     {"response/kinetostatics", "response/orders"},
     {"response/ranges"},
     {"response"},
+    # What was measured, beside what is computed.
+    {"measured/signals"},
+    {"measured/tracking"},
+    {"measured"},
     # Motions that do not repeat, or not linearly; they are compared with the responses below.
     {"motion", "motion/simulation", "motion/perturbation"},
     {"motion/orbits", "motion/transients"},
@@ -47,7 +51,7 @@ LAYERS = (
     {"design/limits"},
     {"design", "design/sensitivity", "design/comparison", "design/optimisation", "design/tolerance"},
     {"design/remedies"},
-    {"pictures"},
+    {"pictures", "animation", "animation/player"},
     {"reporting"},
     {"studies/shared"},
     {"studies/two_shaft_cardan", "studies/bicardan_elastic", "studies/double_tripod", "studies/gear_rattle"},

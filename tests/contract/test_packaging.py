@@ -13,7 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PROJECT = ROOT / "pyproject.toml"
 BESIDES = {"pydantic_core": "pydantic", "mpl_toolkits": "matplotlib", "llvmlite": "numba", "IPython": None,
-    "param": "panel", "tornado": "bokeh",
+    "PIL": "pillow", "param": "panel", "tornado": "bokeh", "nptdms": "npTDMS",
 }  # fmt: skip
 """Modules of another name than what brings them; None: imported only where it is there."""
 

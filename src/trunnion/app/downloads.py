@@ -17,6 +17,8 @@ TYPES = {
     "html": "text/html; charset=utf-8",
     "py": "text/x-python; charset=utf-8",
     "toml": "application/toml; charset=utf-8",
+    "gif": "image/gif",
+    "json": "application/json",
 }
 
 

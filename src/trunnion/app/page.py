@@ -123,7 +123,7 @@ class Page:
             side = view.of(variant)
             side.narrow(not one)
             above = [side.stamp] if one else [heading(titles[variant]), side.stamp]
-            pictures.append(column(*above, side.panel, min_width=460 if one else 240))  # two fit beside the sliders
+            pictures.append(column(*above, side.panel, min_width=300 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
         about = pane(markup("<p style='margin:0'>{}</p>", view.about))
         self.main.objects = [about, view.controls, whole, view.downloads]

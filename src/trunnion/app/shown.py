@@ -88,13 +88,21 @@ def _rule(check: Any) -> str:
 
 
 def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[str, ...]) -> bytes:
-    """A picture (png, svg) or the data (csv, nc) of a result."""
+    """A picture (png, svg) or the data (csv, nc) of a result, or what moves (html, gif, json)."""
     if ending in ("png", "svg"):
         return _picture(getattr(result, method)(**options), ending)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"data.{ending}"
-        write_numbers(result, path, result.data[list(columns)] if columns else None)
+        if ending in ("html", "gif", "json"):
+            result.save(path)
+        else:
+            write_numbers(result, path, result.data[list(columns)] if columns else None)
         return path.read_bytes()
+
+
+def scene(result: Any) -> str:
+    """A motion as the player reads it."""
+    return str(result.json)
 
 
 def report(result: Any) -> bytes:

@@ -1,4 +1,4 @@
-"""Commands about descriptions: the catalogue, starter files, the schema of the format."""
+"""Commands about descriptions: the catalogue, components, starter files, the schema of the format."""
 
 from __future__ import annotations
 
@@ -35,6 +35,41 @@ def catalogue(
         write_json("catalogue", {"name": name, "title": entry.title, "source": entry.source, "toml": text})
     else:
         typer.echo(f"# {entry.title}\n# {entry.source}\n\n{text}", nl=False)
+
+
+def components(
+    name: Annotated[str | None, typer.Argument(metavar="[MAKER/TYPE]", help="Print this one as an element.")] = None,
+    as_json: Json = False,
+) -> None:
+    """List the components whose sheets are typed in, or print one as an element of a file."""
+    from trunnion.driveline.component_files import FOLDER, find, user_folder
+    from trunnion.driveline.component_files import components as every
+    from trunnion.driveline.files import element_text
+
+    if name is None:
+        rows = [
+            {
+                "component": one.sheet.component,
+                "version": one.sheet.version,
+                "type": one.kind,
+                "source": f"{one.sheet.source}, {one.sheet.date}",
+                "kept": one.place,
+            }
+            for one in every()
+        ]
+        if as_json:
+            write_json("components", {"components": rows})
+            return
+        table(rows)
+        typer.echo(f"Your own files lie in {user_folder()}, or in {FOLDER} beside a line.")
+        return
+    found = find(name)
+    text = element_text(found.element())
+    if as_json:
+        sheet = found.sheet.stated
+        write_json("components", {"name": found.sheet.component, "type": found.kind, "sheet": sheet, "toml": text})
+        return
+    typer.echo(f'# component = "{found.sheet.component}" writes this in one line\n{text}', nl=False)
 
 
 def new(

@@ -19,7 +19,7 @@ OTHER_FILES = (".pdf", ".png", ".svg", ".json", ".txt", ".md", ".docx", ".xlsx",
 def check_report(path: Path) -> None:
     """Refuse where a report cannot be written: to a file, NAME.html, or into a folder."""
     if path.suffix.lower() in REPORTS:
-        _check_file(path, "report.html")
+        check_file(path, "report.html")
         return
     if path.suffix.lower() in OTHER_FILES and not path.is_dir():
         _refuse(path, "is no format of a report", f"write {path.with_suffix('.html')}, or name a folder")
@@ -43,10 +43,11 @@ def check_outputs(paths: Sequence[Path]) -> None:
         if not path.is_dir() and path.suffix.removeprefix(".").lower() not in (*FORMATS, *DATA_FORMATS):
             known = ", ".join(f".{ending}" for ending in (*FORMATS, *DATA_FORMATS))
             _refuse(path, "has no ending that names a format", f"end it in one of {known}")
-        _check_file(path, "chart.png")
+        check_file(path, "chart.png")
 
 
-def _check_file(path: Path, example: str) -> None:
+def check_file(path: Path, example: str) -> None:
+    """Refuse a folder in the place of a file, such as ``example``, and a place that cannot be written."""
     if path.is_dir():
         _refuse(path, "is a folder", f"name a file in it, such as {path / example}")
     if not path.parent.is_dir():

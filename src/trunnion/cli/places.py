@@ -19,18 +19,23 @@ DEFAULT_FOLDER = Path("trunnion-out")
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
 """Endings of commands whose results are no tables."""
 TABLES = (*PICTURES_AND_DATA, ".csv")
+PAGES = (".html", ".gif", ".json")
+"""Endings of what moves."""
 NOTHING = ()
 
 
 def check_places(to: list[Path] | None, endings: tuple[str, ...] = TABLES) -> None:
     """Refuse what cannot be written, before anything is computed; ``endings`` of files that the command writes."""
-    from trunnion.cli.files import check_folder, check_outputs
+    from trunnion.cli.files import check_file, check_folder, check_outputs
 
     for path in to or []:
         if endings != TABLES and path.suffix.lower() not in endings and not path.is_dir():
             remedy = f"end it in one of {', '.join(endings)}"
             raise InputError("is nothing this command writes", key="--output", value=str(path), remedy=remedy)
-    if to:
+    if to and endings == PAGES:
+        for path in to:
+            check_file(path, "motion.html")
+    elif to:
         check_outputs(to)
     else:
         check_folder(DEFAULT_FOLDER)
@@ -56,7 +61,8 @@ class CommandOutput:
     """What a command found, and what it shows of it where that is not the result's own.
 
     draw : its picture. table : as of ``write_numbers``. files : writes what stands in the default folder, given the
-    start of the names, where that is not a picture and the numbers. written : files that were written already.
+    start of the names, where that is not a picture and the numbers. save : writes a file asked for, where that is
+    neither a picture nor numbers. written : files that were written already.
     content : for JSON. text : in words, lines left to the terminal or, with ``wrap``, wrapped at the width of the
     tables, in a ``style`` of its own. more : prints what stands below them. outcome : one that failed is said after all
     else, with ``alone`` in place of the words, and the exit code is 1.
@@ -66,6 +72,7 @@ class CommandOutput:
     draw: Callable[[], Any] | None = None
     table: Any = None
     files: Callable[[Path], list[Path]] | None = None
+    save: Callable[[Path], Path] | None = None
     written: Sequence[Path] = ()
     content: Callable[[], Mapping[str, Any]] | None = None
     text: Callable[[], str] | None = None
@@ -94,6 +101,8 @@ class CommandOutput:
         return [DEFAULT_FOLDER / path.name for path in found]
 
     def _write(self, path: Path, unit: str) -> Path:
+        if self.save is not None:
+            return self.save(path)
         plot = self.draw or self.found.plot
         known = {"unit": unit} if "unit" in inspect.signature(plot).parameters else {}
         return write_result(path, self.found, partial(plot, **known), self.table)

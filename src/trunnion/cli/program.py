@@ -14,6 +14,7 @@ from typer.core import TyperGroup
 
 from trunnion._version import __version__
 from trunnion.cli import describe, orders, output
+from trunnion.cli.animate import animate
 from trunnion.cli.app import app as serve_app
 from trunnion.cli.ending import EndedBy
 from trunnion.cli.failures import Interrupted, answer
@@ -127,10 +128,14 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     analyze,
     *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
     callback("misfire", "Every cylinder out of work in turn: the worst, and the torques with it.", orders.misfire),
+    callback(
+        "animate", "The line in motion, in space: a page that plays it without a network, a GIF, or JSON.", animate
+    ),
     reproduce,
     serve_app,
     warm_up,
     describe.catalogue,
+    describe.components,
     describe.new,
     describe.schema,
 )

@@ -65,6 +65,9 @@ def analyze(
             help="Instead of the report with charts: the report that is handed in and signed, NAME-submission.html.",
         ),
     ] = False,
+    moving: Annotated[
+        bool, typer.Option("--live", help="Also a page on which the line moves, NAME-live.html beside the report.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
@@ -108,6 +111,9 @@ def analyze(
             left_out: tuple[str, ...] = (f"The report itself: the time limit of {within} left no time to draw it",)
         else:
             seen, left_out, written = _reported(given, file, to, size, limit)
+            if moving:
+                page, cannot = _live(seen, written[0])
+                left_out, written = (*left_out, *cannot), [*written, page]
     if as_json:
         output.write_json("analyze", overview_json(seen, written))
         return
@@ -147,6 +153,15 @@ def _reported(
     except KeyboardInterrupt:
         kept = f"the report without its chart is in {', '.join(map(str, written))}"
         raise KeyboardInterrupt(kept) from None
+
+
+def _live(seen: Overview, report: Path) -> tuple[Path, tuple[str, ...]]:
+    """The page on which the line moves, beside the report, and what it leaves out."""
+    from trunnion.reporting.live import beside, live
+
+    with output.progress("the line in motion"):
+        found, left_out = live(seen.line, seen.stability.speed if seen.stability else None)
+    return found.save(beside(report)), left_out
 
 
 def _submitted(given: OverviewAssessment, file: str, to: Path, left: float | None) -> tuple[Submission, list[Path]]:

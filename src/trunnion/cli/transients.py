@@ -67,7 +67,7 @@ def passing(
     --phase RADIANS  Angle of the input when it begins.
     """
     acting = line.scenario(_scenario(line, scenario))
-    found = tn.passing(line, (from_, to), torque=acting.torque, friction=acting.friction, phase=phase)
+    found = tn.passing(line, (from_, to), torque=acting.torques, friction=acting.frictions, phase=phase)
     content = {"scenario": acting.name, **found.to_dict()}
     return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
 
@@ -119,7 +119,7 @@ def capture_map(
     """
     acting = line.scenario(_scenario(line, scenario))
     found = tn.capture_map(
-        line, (from_, to), x, y, torque=acting.torque, friction=acting.friction, drive=drive or None,
+        line, (from_, to), x, y, torque=acting.torques, friction=acting.frictions, drive=drive or None,
         phases=phases, processes=processes, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit), outcome=found.outcome)

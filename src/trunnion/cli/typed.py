@@ -35,7 +35,7 @@ from trunnion.cli.command_input import (
     OptionReader,
     Texts,
 )
-from trunnion.cli.places import PICTURES_AND_DATA, TABLES, CommandOutput, answer, check_places
+from trunnion.cli.places import PAGES, PICTURES_AND_DATA, TABLES, CommandOutput, answer, check_places
 from trunnion.cli.readers import read_time
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -46,6 +46,7 @@ Within = Annotated[
 ]
 OUTPUT_HELP = {
     TABLES: "File ending in .png, .pdf, .svg, .nc or .csv; repeat it for more.",
+    PAGES: "File ending in .html, .gif or .json; repeat it for more.",
     PICTURES_AND_DATA: "File ending in .png, .pdf, .svg or .nc; repeat it for more.",
 }
 OPTION = re.compile(r"^(--[\w-]+(?:/--[\w-]+)?)(?:, (-\w))?(?: (\S+))?  (.*(?:\n {4}.*)*)\n?", re.MULTILINE)

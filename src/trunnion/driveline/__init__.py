@@ -3,12 +3,15 @@
 Importing this package loads pydantic and nothing heavier; pint is loaded when the first unit is read.
 """
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
 from trunnion.driveline.clutches import Clutch, Slider
+from trunnion.driveline.component_files import component, components
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
@@ -26,10 +29,11 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
 from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
@@ -43,6 +47,8 @@ __all__ = [
     "STARTERS",
     "CentrifugalPendulum",
     "AppliedTorque",
+    "Disturbance",
+    "TorqueFunction",
     "LevelCrossing",
     "FrictionTorque",
     "Scenario",
@@ -76,6 +82,7 @@ __all__ = [
     "SNCurve",
     "Schedule",
     "Shaft",
+    "Sheet",
     "StiffnessVariation",
     "SwitchedOff",
     "TitleBlock",
@@ -93,6 +100,8 @@ __all__ = [
     "Tyre",
     "Vehicle",
     "ViscousDamper",
+    "component",
+    "components",
     "deg",
     "dump",
     "dumps",

@@ -35,6 +35,7 @@ from trunnion.driveline.quantities import (
     optional,
 )
 from trunnion.driveline.record import Name, Record, WholeNumber, as_tuple, is_name
+from trunnion.driveline.sheet import Sheet
 from trunnion.errors import InputError, InputRemark
 
 if TYPE_CHECKING:
@@ -42,6 +43,14 @@ if TYPE_CHECKING:
 
 Doubt = tuple[str, str, str]
 """(key, what is odd, what to do about it)."""
+
+
+def _sheet(value: object) -> object:
+    if value is None or isinstance(value, Sheet):
+        return value
+    if not isinstance(value, dict):
+        raise InputError("is no sheet", value=value, remedy='write component = "maker/type", or tn.component(...)')
+    return Sheet(**value)
 
 
 class Element(Record):
@@ -52,12 +61,16 @@ class Element(Record):
     name : how messages, parameters and plots call it; by default its kind and ordinal, as "Shaft 2".
     after : name of the earlier element it hangs on, where a branch leaves the chain; by default the previous
         element.
+    sheet : the maker's sheet that its numbers come from, see ``Sheet``; ``trunnion.component`` writes it.
     """
 
     _part_of: tuple[str, Element] | None = PrivateAttr(default=None)
 
     name: Name | None = Field(default=None, description="how messages, parameters and plots call the element")
     after: Name | None = Field(default=None, description="earlier element it hangs on; default: the previous one")
+    sheet: Annotated[Sheet | None, BeforeValidator(_sheet)] = Field(
+        default=None, description="maker's sheet that its numbers come from"
+    )
 
     def __init__(self, **data: Any) -> None:
         super().__init__(**data)
@@ -134,7 +147,29 @@ class Element(Record):
 
     def file_doubts(self) -> Iterator[Doubt]:
         """What earns a remark when it comes from a file, where nobody explores on purpose."""
-        yield from ()
+        if self.sheet is None:
+            return
+        try:
+            departures = self.departures
+        except InputError as error:
+            yield "sheet", f"holds numbers that make no {self.kind} ({error})", "read it anew by component"
+            return
+        for key, typed in departures.items():
+            remedy = "leave it out to have the sheet's, or sheet where the part is another one"
+            yield key, f"differs from {typed} of {self.sheet.component}", remedy
+
+    @property
+    def departures(self) -> dict[str, Any]:
+        """What was typed from its sheet, by key, where the element states something else now.
+
+        Raises
+        ------
+        InputError : what was typed makes no such element.
+        """
+        if self.sheet is None or not self.sheet.numbers:
+            return {}
+        typed = type(self)(**self.sheet.numbers)
+        return {key: one for key, one in self.sheet.numbers.items() if getattr(typed, key) != getattr(self, key)}
 
 
 class ConstantSpeed(Element):

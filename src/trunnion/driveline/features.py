@@ -28,6 +28,7 @@ from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
@@ -339,6 +340,8 @@ FEATURES = (
 
 NOT_FEATURES = {
     "Element.name": "a label",
+    "Element.sheet": "where its numbers come from",
+    **dict.fromkeys((f"Sheet.{key}" for key in Sheet.model_fields), "where numbers come from"),
     "PressureCurve.load": "a label",
     "Shaft.tensile_strength": "a rating, which checks compare with",
     **dict.fromkeys(

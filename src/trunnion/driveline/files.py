@@ -17,18 +17,17 @@ Reading, writing and reading again gives an equal driveline: units are written w
 
 from __future__ import annotations
 
-import errno
 import os
-import re
-import tomllib
 import warnings
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
+from trunnion.driveline.component_files import find
 from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
@@ -47,30 +46,29 @@ from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
+from trunnion.driveline.toml_file import read_text, toml_of
 from trunnion.driveline.torque_file import with_torque_files
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.reading import below
 from trunnion.writing import written_whole
 
 Made = TypeVar("Made", bound=Record)
-Place = Callable[[str], Path]
-"""Where a table lies that a description names; raises InputError where it may not be read."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The folder of a description, and whether what it names may lie elsewhere."""
+
+    folder: Path
+    anywhere: bool
+
+    def place_of(self, named: str) -> Path:
+        """Where a table lies that it names; InputError where that may not be read."""
+        return self.folder / named if self.anywhere else below(self.folder, named, ELSEWHERE)
+
+
 ELSEWHERE = "put the table beside it, or allow it: tn.load(path, tables_anywhere=True), trunnion --tables-anywhere …"
 FORMAT = 1
-LARGEST_FILE = 4_000_000
-"""Bytes of a driveline file; examples have a few thousand."""
-DEEPEST_KEY = 60
-# No possessive quantifiers: Python before 3.11.4 reads some of them wrongly.
-_OPENING = re.compile(r"""#|\"{3}|'{3}|["']""")
-_CLOSING = {
-    "#": re.compile(r"\n"),
-    "'''": re.compile(r"'{3,5}"),
-    "'": re.compile(r"['\n]"),
-    '"""': re.compile(r'\\.|"{3,5}', re.DOTALL),
-    '"': re.compile(r'\\.|["\n]'),
-}
-"""What ends a comment or a quoted text of TOML; a backslash takes the next character with it."""
-_DEEP_KEY = re.compile(rf"(?<![\w-])(?:[\w-]+[ \t]*\.[ \t]*){{{DEEPEST_KEY}}}")
 _DAMPING = ("damping_ratio", "damping_ratio_frequency")
 TOP_KEYS = (
     "format",
@@ -112,12 +110,7 @@ def load(path: str | os.PathLike[str], *, tables_anywhere: bool = False) -> Driv
     ...     print(tn.load(path).names[3])
     HookeJoint 1
     """
-    folder = Path(path).parent
-
-    def table(named: str) -> Path:
-        return folder / named if tables_anywhere else below(folder, named, ELSEWHERE)
-
-    return _loads(_read(Path(path)), Path(path).name, table)
+    return _loads(read_text(Path(path)), Path(path).name, Surroundings(Path(path).parent, tables_anywhere))
 
 
 def loads(text: str, *, source: str = "") -> Driveline:
@@ -138,9 +131,9 @@ def loads(text: str, *, source: str = "") -> Driveline:
     return _loads(text, source, None)
 
 
-def _loads(text: str, source: str, place_of: Place | None) -> Driveline:
+def _loads(text: str, source: str, around: Surroundings | None) -> Driveline:
     try:
-        return _driveline(_toml(text), source, place_of)
+        return _driveline(toml_of(text), source, around)
     except InputError as error:
         raise _located(error, source) from None
 
@@ -185,6 +178,11 @@ def dumps(line: Driveline) -> str:
     return "\n".join(blocks)
 
 
+def element_text(element: Element) -> str:
+    """One element as a file states it, ``[[element]]`` and what belongs to it."""
+    return "\n".join(_element_blocks(element))
+
+
 def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
     """Write `line` to a TOML file; the file appears whole or stays as it was.
 
@@ -213,80 +211,9 @@ def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
         raise InputError(error.problem, key=str(path), remedy=remedy) from None
 
 
-def _read(path: Path) -> str:
-    try:
-        if path.is_file() and path.stat().st_size > LARGEST_FILE:
-            raise _too_large(str(path), path.stat().st_size)
-        with path.open("rb") as stream:  # a device has no size to ask for
-            raw = stream.read(LARGEST_FILE + 1)
-    except FileNotFoundError:
-        there = sorted(p.name for p in path.parent.glob("*.toml")) if path.parent.is_dir() else []
-        remedy = nearest(path.name, there) if there else 'check the path, or start one with "trunnion new two-shaft"'
-        raise InputError("file not found", key=str(path), remedy=remedy) from None
-    except IsADirectoryError:
-        raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
-    except ValueError:  # a null character
-        raise InputError("cannot be the name of a file", key=str(path), remedy="check the name") from None
-    except OSError as error:
-        if error.errno == errno.ENAMETOOLONG:
-            raise InputError("is too long for the name of a file", key=str(path), remedy="check the name") from None
-        if path.is_dir():  # Windows reports a folder as a denied permission
-            raise InputError("is a folder", key=str(path), remedy="name the driveline file in it") from None
-        raise InputError(f"cannot be read ({error.strerror})", key=str(path), remedy="check the file") from None
-    if len(raw) > LARGEST_FILE:
-        raise _too_large(str(path), len(raw))
-    if not raw.strip():
-        raise InputError("is empty", key=str(path), remedy='start from "trunnion new two-shaft"')
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = "\0"
-    if "\0" in text:
-        remedy = "save it as UTF-8 text, or name the driveline's TOML file"
-        raise InputError("is not a text file in UTF-8", key=str(path), remedy=remedy)
-    return text
-
-
-def _too_large(key: str, size: int) -> InputError:
-    problem = f"has {size} bytes, and the description of a driveline at most {LARGEST_FILE}"
-    return InputError(problem, key=key, remedy="name the driveline's TOML file")
-
-
-def _toml(text: str) -> dict[str, Any]:
-    if len(text) > LARGEST_FILE:
-        raise _too_large("", len(text))
-    remedy = 'write lines as key = value, with text and units in quotes: angle = "12 deg"'
-    if _DEEP_KEY.search(_without_texts(text)):
-        raise InputError(f"is not valid here: a key of more than {DEEPEST_KEY} parts", remedy="remove the extra dots")
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"is not valid TOML: {_cut(str(error))}", remedy=remedy) from None
-    except ValueError:  # Python refuses to read numbers of more than 4300 digits
-        raise InputError("is not valid TOML: a number of thousands of digits", remedy="write 1.2e4, say") from None
-    except RecursionError:
-        raise InputError("is not valid TOML: nested too deeply", remedy="remove the extra brackets") from None
-
-
-def _without_texts(text: str) -> str:
-    """TOML without its comments and with q for each quoted text, whether it ends or not; the text is read once."""
-    kept, place = [], 0
-    while opening := _OPENING.search(text, place):
-        mark = opening.group()
-        kept += [text[place : opening.start()], "" if mark == "#" else "q"]
-        closing = (found for found in _CLOSING[mark].finditer(text, opening.end()) if found.group()[0] != "\\")
-        place = next((found.end() - found.group().count("\n") for found in closing), len(text))
-    return "".join([*kept, text[place:]])
-
-
-def _cut(message: str) -> str:
-    """A parser's message, which may quote the file, with its place kept."""
-    what, at, place = message.rpartition(" (at ")
-    return f"{short(what, 120)}{at}{place}" if at else short(message, 120)
-
-
-def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Driveline:
-    """The driveline of a file's content, its tables where ``place_of`` says, or everything that is wrong with it."""
+def _driveline(table: dict[str, Any], source: str, around: Surroundings | None) -> Driveline:
+    """The driveline of a file's content, its tables and components found ``around`` it, or everything that is
+    wrong with it."""
     wrong = [
         InputError("unknown key", key=key, value=value, remedy=nearest(key, [k for k in TOP_KEYS if k not in table]))
         for key, value in table.items()
@@ -304,7 +231,7 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
             wrong.extend(error.problems)
 
     if "element" in table or not wrong:
-        read("elements", table.get("element"), lambda value: _elements(value, source, place_of))
+        read("elements", table.get("element"), lambda value: _elements(value, source, around))
     if "document" in table:
         read("document", table["document"], _document)
     if "operation" in table:
@@ -316,16 +243,16 @@ def _driveline(table: dict[str, Any], source: str, place_of: Place | None) -> Dr
     if "tolerance" in table:
         read("tolerances", table["tolerance"], lambda value: _each(value, "tolerance", Tolerance))
     if "scenario" in table:
-        read("scenarios", table["scenario"], lambda value: _scenarios(value, place_of))
+        read("scenarios", table["scenario"], lambda value: _scenarios(value, around))
     if wrong:
         wrong += problems_of([lambda: Driveline([Disk(inertia=1.0)], **rest)])  # its own keys
         raise InputError.together(wrong)
     return Driveline(**found, **rest)
 
 
-def _scenarios(tables: Any, place_of: Place | None) -> list[Scenario]:
-    if place_of is not None and isinstance(tables, list):
-        tables = [with_torque_files(table, place_of) if isinstance(table, dict) else table for table in tables]
+def _scenarios(tables: Any, around: Surroundings | None) -> list[Scenario]:
+    if around is not None and isinstance(tables, list):
+        tables = [with_torque_files(table, around.place_of) if isinstance(table, dict) else table for table in tables]
     return _each(tables, "scenario", Scenario)
 
 
@@ -340,7 +267,7 @@ def _check_format(table: dict[str, Any]) -> None:
         raise InputError("is not a known format", key="format", value=number, remedy=f"write format = {FORMAT}")
 
 
-def _elements(tables: Any, source: str, place_of: Place | None) -> list[Element]:
+def _elements(tables: Any, source: str, around: Surroundings | None) -> list[Element]:
     if isinstance(tables, dict):
         raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
     if not isinstance(tables, list) or not tables:
@@ -348,16 +275,21 @@ def _elements(tables: Any, source: str, place_of: Place | None) -> list[Element]
         raise InputError("has no elements", key="element", remedy=remedy)
     refuse_too_many(len(tables))
     seen: Counter[str] = Counter()
-    return all_made(partial(_element, table, i, seen, source, place_of) for i, table in enumerate(tables, start=1))
+    return all_made(partial(_element, table, i, seen, source, around) for i, table in enumerate(tables, start=1))
 
 
-def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: Place | None) -> Element:
+def _element(table: Any, place: int, seen: Counter[str], source: str, around: Surroundings | None) -> Element:
     if not isinstance(table, dict):
         raise InputError("is not a table", element=f"element {place}", value=table, remedy="write [[element]]")
     data = dict(table)
-    kind = data.pop("type", None)
     name = data.get("name")
     own = name if is_name(name) else None
+    if "component" in data:
+        try:
+            data = _of_component(data, around)
+        except InputError as error:
+            raise _about_component(error, f"{own} (element {place})" if own else f"element {place}") from None
+    kind = data.pop("type", None)
     if kind is None:
         near = [key for key in data if key.lower() in ("typ", "kind", "types", "element")]
         remedy = f"write type instead of {near[0]}" if near else 'write type = "Shaft", say'
@@ -374,8 +306,8 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
             # said again below, with the place in the file
             warnings.simplefilter("ignore", InputRemark)
             for key in TABLES:
-                if place_of is not None and isinstance(named := data.get(key), str):
-                    data[key] = _table_of(key, named, place_of)
+                if around is not None and isinstance(named := data.get(key), str):
+                    data[key] = _table_of(key, named, around)
             element = KINDS[kind](**data)
     except InputError as error:
         raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
@@ -383,6 +315,31 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, place_of: 
         remark = InputError(problem, element=label, key=key, value=data.get(key), remedy=remedy)
         warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
     return element
+
+
+def _of_component(data: dict[str, Any], around: Surroundings | None) -> dict[str, Any]:
+    """What an element states that names a component: what was typed of its sheet, and what stands beside it."""
+    found = find(data["component"], around.folder if around is not None else None)
+    stated = {key: value for key, value in data.items() if key != "component"}
+    if stated.get("type", found.kind) != found.kind:
+        remedy = f'write type = "{found.kind}", or leave it out'
+        raise InputError(f"is a {found.kind}", key="component", value=data["component"], remedy=remedy)
+    if "sheet" in stated:
+        remedy = "leave one of the two out: component reads the sheet anew, and sheet says what was read"
+        raise InputError("stands beside sheet", key="component", value=data["component"], remedy=remedy)
+    return {"type": found.kind, **found.fields, **stated}
+
+
+def _about_component(error: InputError, label: str) -> InputError:
+    """The same about the element that names a component; of a file of components the place, never its content."""
+
+    def one(found: InputError) -> InputError:
+        if not found.element:
+            return found.but(element=label)
+        where = ".".join(part for part in (found.element, found.key) if part)
+        return found.but(element=label, key="component", value=None, problem=f"{short(where, 100)} {found.problem}")
+
+    return error.each(one)
 
 
 TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
@@ -395,10 +352,10 @@ TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
 """What reads the table that a key of an element may name."""
 
 
-def _table_of(key: str, named: str, place_of: Place) -> tuple[Record, ...]:
+def _table_of(key: str, named: str, around: Surroundings) -> tuple[Record, ...]:
     """What the table holds that an element names; complaints say the place in the table, about that element."""
     try:
-        return TABLES[key](place_of(named))
+        return TABLES[key](around.place_of(named))
     except InputError as error:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"
@@ -477,11 +434,24 @@ def _located_one(error: InputError, source: str) -> InputError:
 def _element_blocks(element: Element) -> list[str]:
     stated = element.stated
     nested = {key: v for key, v in stated.items() if isinstance(v, tuple) and isinstance(v[0], Record)}
-    table = {"type": element.kind, **_table(element, *nested)}
+    table = {"type": element.kind, **_table(element, *nested, "sheet")}
     return [
         _block("[[element]]", table),
         *(_block(f"[[element.{key}]]", _table(one)) for key, several in nested.items() for one in several),
+        *(_table_blocks("element.sheet", element.sheet.stated) if element.sheet is not None else ()),
     ]
+
+
+def _table_blocks(header: str, table: dict[str, Any]) -> list[str]:
+    """A table, and the tables in it below it."""
+    below_it = {key: one for key, one in table.items() if isinstance(one, dict)}
+    lists = {key: one for key, one in table.items() if isinstance(one, list) and one and isinstance(one[0], dict)}
+    blocks = [_block(f"[{header}]", {key: one for key, one in table.items() if key not in (*below_it, *lists)})]
+    for key, one in below_it.items():
+        blocks += _table_blocks(f"{header}.{key}", one)
+    for key, several in lists.items():
+        blocks += [_block(f"[[{header}.{key}]]", one) for one in several]
+    return blocks
 
 
 def _table(record: Record, *without: str, speed_unit: str | None = None) -> dict[str, Any]:
@@ -491,7 +461,7 @@ def _table(record: Record, *without: str, speed_unit: str | None = None) -> dict
 
 
 def _scenario_blocks(scenario: Scenario, unit: str | None) -> list[str]:
-    nested = ("torque", "friction", "crossing")
+    nested = ("torque", "friction", "disturbance", "crossing")
     blocks = [_block("[[scenario]]", _table(scenario, *nested, speed_unit=unit))]
     for key in nested:
         blocks += [_block(f"[[scenario.{key}]]", _table(one, speed_unit=unit)) for one in getattr(scenario, key)]

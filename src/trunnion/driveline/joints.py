@@ -67,6 +67,7 @@ class Joint(Element):
                 f"is {angle / DEGREE:g} deg, more than most joints allow (45 deg)",
                 "check the angle",
             )
+        yield from super().file_doubts()
 
 
 class HookeJoint(Joint):

@@ -6,9 +6,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
 from trunnion.driveline.curve_points import TorquePoint
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT, TABLES
@@ -20,8 +22,9 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
@@ -102,6 +105,20 @@ _RULES: dict[str, dict[str, Any]] = {
     },
 }
 """Which keys go together; the classes check the same in words."""
+_OF_COMPONENT = {
+    "type": "object",
+    "description": "An element of the catalogue of components; keys beside it go beside or in place of its sheet's.",
+    "properties": {
+        "component": {
+            "type": "string",
+            "pattern": "^[A-Za-z0-9][A-Za-z0-9._+-]*/[A-Za-z0-9][A-Za-z0-9._+-]*(@[1-9][0-9]*)?$",
+            "description": "maker/type, or maker/type@2 for a version",
+        },
+        "type": {"enum": list(KINDS), "description": "that of the component, where it is written at all"},
+    },
+    "required": ["component"],
+    "not": {"required": ["sheet"]},
+}
 
 
 def json_schema() -> dict[str, Any]:
@@ -159,9 +176,10 @@ def json_schema() -> dict[str, Any]:
                 "minItems": 1,
                 "items": {
                     "type": "object",
-                    "oneOf": [{"$ref": f"#/$defs/{name}"} for name in definitions],
-                    "discriminator": {"propertyName": "type"},
-                    "required": ["type"],
+                    "oneOf": [
+                        *({"$ref": f"#/$defs/{name}"} for name in definitions),
+                        {"$ref": "#/$defs/ComponentElement"},
+                    ],
                 },
             },
         },
@@ -169,6 +187,8 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "$defs": {
             **definitions,
+            "ComponentElement": _OF_COMPONENT,
+            "Sheet": _model(Sheet),
             "TitleBlock": _model(TitleBlock),
             "Operation": operation,
             "LoadCase": _model(LoadCase),
@@ -182,6 +202,7 @@ def json_schema() -> dict[str, Any]:
             "Scenario": _model(Scenario),
             "AppliedTorque": _applied_torque(),
             "FrictionTorque": _model(FrictionTorque),
+            "Disturbance": _model(Disturbance),
             "LevelCrossing": _model(LevelCrossing),
             "Excitation": _model(Excitation),
             "PressureCurve": _model(PressureCurve),

@@ -7,18 +7,21 @@ that are known beforehand and where a speed or an angle comes to a knot, which i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.errors import InputError
+from trunnion.laws.formula import Formula, formula
 from trunnion.laws.torque_curve import KlossCurve
 
 POWERS = 4
@@ -36,11 +39,13 @@ class TorquePiece(NamedTuple):
 
 @dataclass(frozen=True)
 class TorqueAxis:
-    """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them."""
+    """One variable of a torque: "time", "speed" or "angle", its knots (m,), and whether it goes on beyond them, or
+    below the first alone."""
 
     variable: str
     knots: Array
     hold: bool
+    hold_below: bool = False
 
     def piece(self, value: float) -> int:
         """The piece that holds ``value``, at a knot the one above: −1 below the first knot, m − 1 above the last."""
@@ -66,7 +71,7 @@ class TorqueAxis:
 
     def beyond(self, piece: int) -> bool:
         """Whether a piece lies where the torque says nothing."""
-        return not self.hold and not 0 <= piece < len(self.knots) - 1
+        return not self.hold and not (0 <= piece < len(self.knots) - 1 or (piece < 0 and self.hold_below))
 
 
 @dataclass(frozen=True)
@@ -78,10 +83,41 @@ class PlacedTorque:
     sense: float
     axes: tuple[TorqueAxis, ...]
 
+    @cached_property
+    def formula(self) -> Formula | None:
+        """What is stated as a formula."""
+        return None if self.stated.formula is None else formula(self.stated.formula)
+
+    @cached_property
+    def called(self) -> CalledFunction | None:
+        """What is stated as a function in Python."""
+        return CalledFunction(self.stated.function) if isinstance(self.stated, TorqueFunction) else None
+
+    @cached_property
+    def program(self) -> Array:
+        """What the kernel reads of a formula; the side of every kink is as it is."""
+        if self.formula is None:
+            return np.zeros(0)
+        core, said = line_kernel(), self.formula
+        head = [len(said.instructions), said.kinks, *[0.0] * said.kinks]
+        steps = [number for one in said.instructions for number in (getattr(core, one.code), one.number)]
+        return np.array([*head, *steps, *[0.0] * said.depth], dtype=float)
+
+    def acts(self, pieces: Sequence[int]) -> bool:
+        """Whether a formula or a function acts, between since and until."""
+        if not self.axes:
+            return True
+        since, until = self.stated.since, self.stated.until
+        return (since is None or pieces[0] >= 0) and (until is None or pieces[0] < len(self.axes[0].knots) - 1)
+
     def cell(self, pieces: Sequence[int]) -> TorquePiece:
-        """The polynomials of a piece of every axis."""
+        """The polynomials of a piece of every axis; of what is a formula or a function, where it does not act."""
+        if self.stated.by_program:
+            return TorquePiece(0.0, 0.0, np.zeros((POWERS, POWERS)), _one())
         if self.stated.is_motor:
             return self._motor(pieces)
+        if self.stated.power is not None:
+            return self._power(pieces[0])
         if self.stated.table:
             return self._bilinear(pieces)
         return self._curve(pieces[0])
@@ -129,29 +165,89 @@ class PlacedTorque:
         above[:2, : len(torque)] = np.outer(share, torque)
         return TorquePiece(since, 0.0, above, below)
 
+    def _power(self, piece: int) -> TorquePiece:
+        """P/ω between its two speeds; beyond them what it is there."""
+        power, (low, high) = float(self.stated.power or 0.0), self.stated.speed
+        above, below = np.zeros((POWERS, POWERS)), np.zeros(POWERS)
+        if piece == 0:
+            above[0, 0], below[1] = power, 1.0
+            return TorquePiece(0.0, 0.0, above, below)
+        above[0, 0] = power / (low if piece < 0 else high)
+        return TorquePiece(0.0, 0.0, above, _one())
+
     def value(self, time: float, speed: float, angle: float) -> float:
         """The torque [N m] at a time, where its disk has this speed and angle, both in its own sense."""
         given = {"time": time, "speed": speed, "angle": angle, "": 0.0}
+        if self.stated.by_program and self.acts([axis.piece(time) for axis in self.axes]):
+            if self.called is not None:
+                return self.called.value(time, speed, angle)
+            return float(line_kernel().formula(self.program, 0, time, speed, angle, -1)[0])
         cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
-        u = given[self.axes[0].variable if self.axes else ""] - cell.first
+        u = given[self.first] - cell.first
         v = given[self.second] - cell.second
         powers = np.arange(POWERS)
         return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
 
     @property
+    def first(self) -> str:
+        """Its first variable; "" where there is none."""
+        plain = self.stated.power is None and not self.stated.by_program
+        return self.axes[0].variable if self.axes and plain else ""
+
+    @property
     def second(self) -> str:
-        """Its second variable: of a motor its speed, else that of the second axis; "" where there is none."""
-        if self.stated.is_motor:
+        """Its second variable: of a motor and of constant power its speed, else that of the second axis; "" where there
+        is none."""
+        if self.stated.is_motor or self.stated.power is not None:
             return "speed"
         return self.axes[1].variable if len(self.axes) > 1 else ""
 
-    def row(self, pieces: Sequence[int]) -> Array:
-        """What the kernel reads of a piece."""
+    def row(self, pieces: Sequence[int], program: int = 0) -> Array:
+        """What the kernel reads of a piece; ``program``: where that of a formula stands among the numbers."""
         core, cell = line_kernel(), self.cell(pieces)
+        if self.stated.by_program and self.acts(pieces):
+            code, place = (core.FORMULA, program) if self.called is None else (core.FUNCTION, self.called.address)
+            head = [self.station, self.sense, self.sense, code, place, core.NONE, 0.0]
+            return np.concatenate([head, cell.above.ravel(), cell.below])
         codes = {"": core.NONE, "time": core.TIME, "speed": core.SPEED, "angle": core.TURNED}
-        first = self.axes[0].variable if self.axes else ""
-        head = [self.station, self.sense, self.sense, codes[first], cell.first, codes[self.second], cell.second]
+        head = [self.station, self.sense, self.sense, codes[self.first], cell.first, codes[self.second], cell.second]
         return np.concatenate([head, cell.above.ravel(), cell.below])
+
+
+class CalledFunction:
+    """A function in Python that the kernels call back; its error is kept, and a torque of NaN ends the run."""
+
+    def __init__(self, function: Callable[[float, float, float], float]) -> None:
+        self.function, self.error = function, None
+        self._back = ctypes.CFUNCTYPE(ctypes.c_double, *[ctypes.c_double] * 3)(self._caught)
+        self.address = ctypes.cast(self._back, ctypes.c_void_p).value or 0
+
+    error: BaseException | None
+
+    def value(self, time: float, speed: float, angle: float) -> float:
+        """The torque [N m].
+
+        Raises
+        ------
+        InputError : what the function gives is no number. Anything that the function raises.
+        """
+        found = self.function(time, speed, angle)
+        try:
+            return float(found)
+        except (TypeError, ValueError):
+            raise InputError(
+                "gives no number", element="torque", key="function", value=type(found).__name__,
+                remedy="let it return the torque in N m",
+            ) from None  # fmt: skip
+
+    def _caught(self, time: float, speed: float, angle: float) -> float:
+        if self.error is not None:
+            return float("nan")
+        try:
+            return self.value(time, speed, angle)
+        except BaseException as error:
+            self.error = error
+            return float("nan")
 
 
 @dataclass(frozen=True)
@@ -209,7 +305,11 @@ def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tupl
 def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
     station = disk_station(assembly, one.on, "torque")
     hold = one.hold or one.between == "steps"
-    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold) for key in one.variables)
+    if one.by_program:
+        knots = [point for point in (one.since, one.until) if point is not None]
+        own = (TorqueAxis("time", np.array(knots), hold=True),) if knots else ()
+        return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), own)
+    axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold, one.below) for key in one.variables)
     return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
 
 

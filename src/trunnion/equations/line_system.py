@@ -189,12 +189,14 @@ class LineSystem(Portable):
         known: LineCoefficients | None = None,
         case: int = 0,
         applied: Array | None = None,
+        programs: Array | None = None,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
-        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row.
+        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row;
+        ``programs`` : of their formulas, which stand behind them.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -236,6 +238,8 @@ class LineSystem(Portable):
             begin += behind[-1].size
         if applied is not None:
             behind.append(applied.ravel())
+        if programs is not None:
+            behind.append(programs)
         pendulums = placed_pendulums(self.assembly, row)
         behind.append(released_numbers(clutches, strides[len(friction_sliders) :], pendulums))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]

@@ -425,7 +425,7 @@ class LineStations:
     """What the elements of a line come to, in order: its stations with their exact speeds over the input's, and the one
     ``behind`` each element; the springs between groups, the first station of each group and whether its rotation is
     prescribed; ``inertias`` as (station, element, number among its own), ``disks`` as (station, element), and what
-    the rotation of an inertia is called."""
+    the rotation of an inertia is called; the stations of the ``coordinates`` of every element."""
 
     stations: list[Station] = field(default_factory=list)
     speed_ratio: list[Fraction] = field(default_factory=list)
@@ -436,6 +436,7 @@ class LineStations:
     disks: list[tuple[int, int]] = field(default_factory=list)
     inertias: list[tuple[int, int, int]] = field(default_factory=list)
     called: list[str] = field(default_factory=list)
+    coordinates: list[tuple[int, ...]] = field(default_factory=list)
 
     def add(self, before: int, link: LinkKind, element: int, ratio: Fraction, **joint: Any) -> int:
         if link not in TIED:
@@ -517,6 +518,7 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
             own.append(here)
             turned.append(plane)
         found.behind.append(own[element.onward])
+        found.coordinates.append(tuple(own))
         coordinates.append([*zip(own, turned, strict=True)])
     return found
 

@@ -32,6 +32,7 @@ from trunnion.app.parts.form import (
     joints_of,
     names_of,
 )
+from trunnion.driveline.component_files import find
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
 from trunnion.driveline.kinds import KINDS
@@ -65,7 +66,7 @@ class Document:
 
     def __init__(self, text: str) -> None:
         self.line: Driveline = loads(text)
-        data = tomllib.loads(text)
+        data = _with_sheets(tomllib.loads(text))
         self._fresh = count(1)
         self._history = [_DocumentState(data, self._new_keys(data))]
         self._now = 0
@@ -138,11 +139,12 @@ class Document:
         self._mover = by
 
     def add_element(self, place: int, kind: str) -> None:
-        """A new element of a kind before ``place``, with the example of its kind."""
+        """A new element of a kind before ``place``, with the example of its kind, or a component, "maker/type"."""
         with self._changing() as data, self._names_kept(data):
             elements = data.setdefault("element", [])
             place = min(max(place, 0), len(elements))
-            elements.insert(place, {"type": kind} | _EXAMPLES.get(kind, {}))
+            made = find(kind).table if "/" in kind else {"type": kind} | _EXAMPLES.get(kind, {})
+            elements.insert(place, deepcopy(made))
             self._changed_keys["element",].insert(place, next(self._fresh))
 
     def add_limit(self, of: str) -> None:
@@ -219,7 +221,7 @@ class Document:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", InputRemark)
             loads(text)
-        data = tomllib.loads(text)
+        data = _with_sheets(tomllib.loads(text))
         self._take(data, self._new_keys(data))
 
     def undo(self) -> bool:
@@ -294,6 +296,17 @@ class Document:
             else:
                 self.problems = ()
                 self.toml = text  # as typed: what is stated stays so, be it a default
+
+
+def _with_sheets(data: dict[str, Any]) -> dict[str, Any]:
+    """The same with the numbers of its sheet in place of every component that is named."""
+    for table in data.get("element", []):
+        if "component" in table:
+            stated = {key: value for key, value in table.items() if key != "component"}
+            table_of_sheet = deepcopy(find(table["component"]).table)
+            table.clear()
+            table.update(table_of_sheet | stated)
+    return data
 
 
 def _section(path: Path) -> tuple[str, ...] | None:

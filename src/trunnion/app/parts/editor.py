@@ -10,7 +10,9 @@ import param
 from panel.custom import JSComponent
 
 from trunnion.app.parts.form import Field, FieldGroup
+from trunnion.driveline.component_files import components
 from trunnion.driveline.kinds import KINDS
+from trunnion.errors import InputError
 
 _SCRIPT = """
 function element(tag, attributes = {}, ...children) {
@@ -172,13 +174,13 @@ class Editor(JSComponent):
     """Table of elements; ``on_edit`` hears what the user does, as a dictionary with the key "do"."""
 
     groups = param.List(default=[])
-    kinds = param.List(default=list(KINDS))
+    kinds = param.List(default=[])
 
     _esm = _SCRIPT
     _stylesheets = [_STYLE]
 
     def __init__(self, on_edit: Callable[[dict[str, Any]], None], **params: Any) -> None:
-        super().__init__(**params)
+        super().__init__(kinds=[*KINDS, *_components()], **params)
         self._on_edit = on_edit
 
     def show(self, groups: tuple[FieldGroup, ...]) -> None:
@@ -187,6 +189,14 @@ class Editor(JSComponent):
 
     def _handle_msg(self, data: Any) -> None:
         self._on_edit(data)
+
+
+def _components() -> list[str]:
+    """Names of the components that can be added; none where a user's file of them is damaged."""
+    try:
+        return list(dict.fromkeys(one.sheet.component for one in components()))
+    except InputError:
+        return []
 
 
 def _field(field: Field) -> dict[str, Any]:

@@ -28,7 +28,7 @@ LISTS: tuple[tuple[str, ...], ...] = (
 )  # fmt: skip
 """Where a file lists tables that can be added and taken away."""
 SWITCHED_OFF, OFF_KIND = "switched_off", "switched off"
-_HIDDEN = ("type", "after", "name")
+_HIDDEN = ("type", "after", "name", "sheet")
 
 
 @dataclass(frozen=True)
@@ -224,8 +224,12 @@ def _element(place: int, table: Mapping[str, Any], name: str, left: _OpenErrors)
     if "after" in table or "after" in wanting:
         after = str(table.get("after", ""))
         fields.append(Field((*path, "after"), "after", after, "", left.said(owners, "after")))
-    addable = dict.fromkeys(k for k in (*known, "after") if k not in table and k != "name" and k not in shown)
-    return FieldGroup(path, name, kind, tuple(fields), tuple(addable), left.rest(owners))
+    out = ("name", "sheet", *shown)
+    addable = dict.fromkeys(k for k in (*known, "after") if k not in table and k not in out)
+    sheet = table.get("sheet")
+    source = str(sheet.get("component", "")) if isinstance(sheet, dict) else ""
+    shown_kind = f"{kind}: {source}" if source else kind
+    return FieldGroup(path, name, shown_kind, tuple(fields), tuple(addable), left.rest(owners))
 
 
 def _limit(place: int, table: Mapping[str, Any], left: _OpenErrors) -> FieldGroup:

@@ -29,6 +29,7 @@ Setting = str | float | int | bool | None
 """Of a view; one whose default is None is a number that is found by itself where none is typed."""
 NAMES = {
     "png": "PNG", "svg": "SVG", "csv": "CSV", "nc": "netCDF", "html": "HTML", "py": "Python", "toml": "TOML",
+    "gif": "GIF", "json": "JSON",
 }  # fmt: skip
 PICTURES = ("png", "svg")
 ANEW = "it is being computed anew"

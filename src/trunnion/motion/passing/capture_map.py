@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Flags
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, pack
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
@@ -135,7 +135,7 @@ def capture_map(
     x: Request,
     y: Request,
     *,
-    torque: Sequence[AppliedTorque],
+    torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
     drive: str | None = None,
     phases: int | ArrayLike = 8,
@@ -154,7 +154,8 @@ def capture_map(
     speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
     x, y : (parameter, first, last, how many), in SI units: "HookeJoint 1.angle", say, or "factor" of the drive torque.
     torque, friction : what acts, as in ``passing``.
-    drive : name of the disk whose torques the factor scales; by default the one that torques act on.
+    drive : name of the disk whose torques the factor scales; by default the one that torques act on, or the
+        line's Motor.
     phases : how many starting phases, even over half a turn and every other one half a turn on; or angles [rad].
     tolerance : error allowed per step.
     processes : that compute. More than one need ``if __name__ == "__main__":`` in a script.

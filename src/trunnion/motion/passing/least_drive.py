@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Flags
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
@@ -146,7 +146,7 @@ def least_drive(
     line: Driveline | Assembly,
     speeds: Sequence[float | str],
     *,
-    torque: Sequence[AppliedTorque],
+    torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
     drive: str | None = None,
     factors: tuple[float, float] = (0.1, 10.0),
@@ -164,7 +164,7 @@ def least_drive(
     line : a ``Driveline`` (or its ``Assembly``) without a ConstantSpeed.
     speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
     torque, friction : what acts, as in ``passing``.
-    drive : name of the disk whose torques are scaled; by default the one that torques act on.
+    drive : name of the disk whose torques are scaled; by default the one that torques act on, or the line's Motor.
     factors : the smallest and the largest that are tried, of the torque as it is given.
     points : how many of them first, evenly in the logarithm; then the least one is found by bisection.
     accuracy : of the least factor, relative: between it and one that does not pass.

@@ -20,10 +20,10 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
@@ -60,7 +60,7 @@ def passing(
     line: Driveline | Assembly,
     speeds: Sequence[float | str],
     *,
-    torque: Sequence[AppliedTorque],
+    torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
     phase: float = 0.0,
     tolerance: float = 1e-9,
@@ -72,7 +72,8 @@ def passing(
     ----------
     line : a ``Driveline`` (or its ``Assembly``) without a ConstantSpeed.
     speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
-    torque : what drives it, and what acts besides; tables over time last beyond their ends.
+    torque : what drives it, and what acts besides; tables over time last beyond their ends. A Motor of the line drives
+        by its own curve.
     friction : dry friction on its disks.
     phase : angle [rad] of the input when it begins; whether a line passes may depend on it.
     tolerance : error allowed per step. A second run at thirty times as much must end alike, or nothing is decided.
@@ -99,9 +100,9 @@ def passing(
     description = line.line if isinstance(line, Assembly) else line
     first, last = ends_of(speeds)
     asked = lasting(torque, friction)
-    prepared = begun_line(description, asked, first)
-    angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, asked, first, last)
-    made = _Follower(prepared, asked, first, last, angle, rigid)
+    prepared, acting = begun_line(description, asked, first)
+    angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, acting, first, last)
+    made = _Follower(prepared, acting, first, last, angle, rigid)
     run, kind = made.ending(tolerance)
     other = made.other_kind(kind, tolerance)
     return _result(description, made, run, kind, other, tolerance)

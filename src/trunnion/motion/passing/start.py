@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_speed, speeds_of
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.motion.transients.prepare import Actions, actions_of, prepared_line
@@ -33,25 +33,32 @@ def lasting(torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque])
 
     Raises
     ------
-    InputError : there is no torque.
+    InputError : a formula or a function of time without an end.
     """
-    asked = actions_of([one.but(hold=True) for one in torque], friction, ())
-    if not asked[0]:
-        raise InputError("is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …)')
-    return asked
+    for one in torque:
+        if one.by_program and "time" in one.depends and one.until is None:
+            raise InputError(
+                "goes on changing with time, so that nothing settles", element=f"torque on {one.on}", key="until",
+                remedy="say until when it acts, or let it depend on speed and angle alone",
+            )  # fmt: skip
+    return actions_of([one.but(hold=True) for one in torque], friction, ())
 
 
-def begun_line(line: Driveline, asked: Actions, first: float) -> LineSystem:
-    """The line, ready to be followed from its ``first`` speed [rad/s].
+def begun_line(line: Driveline, asked: Actions, first: float) -> tuple[LineSystem, Actions]:
+    """The line, ready to be followed from its ``first`` speed [rad/s], and all that acts on it.
 
     Raises
     ------
-    InputError : a ConstantSpeed; what ``transient`` refuses.
+    InputError : a ConstantSpeed; no torque, neither given nor of a machine; what ``transient`` refuses.
     """
-    prepared = prepared_line(line, asked, first)
+    prepared, acting = prepared_line(line, asked, first)
     if not prepared.assembly.topology.free:
         raise InputError(
             "prescribes the speed, so that nothing can capture the line", element="driveline", key="ConstantSpeed",
             remedy="leave it out, and put a Disk of the drive's inertia in its place",
         )  # fmt: skip
-    return prepared
+    if not acting[0]:
+        raise InputError(
+            "is missing", key="torque", remedy='give tn.AppliedTorque(on="motor", …), or a Motor in the line'
+        )
+    return prepared, acting

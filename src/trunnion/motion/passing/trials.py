@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
+from trunnion.driveline.applied_torque import AppliedTorque, TorqueFunction
 from trunnion.driveline.arguments import numbers, whole_number
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.machines import Motor
 from trunnion.driveline.parameters import pack
-from trunnion.driveline.scenarios import AppliedTorque
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.passing import passing_kind
@@ -52,9 +53,9 @@ class Trials:
             if path != FACTOR:
                 packed.resolve_axis(path).put(table, value)
         factor = values.get(FACTOR, 1.0)
-        torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in self.asked[0])
-        asked = (torque, *self.asked[1:])
-        prepared = begun_line(packed.line_at(table[0]), asked, self.first)
+        prepared, acting = begun_line(packed.line_at(table[0]), self.asked, self.first)
+        torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in acting[0])
+        asked = (torque, *acting[1:])
         rigid = rigid_time(prepared, asked, self.first, self.last)
         return [
             passing_kind(prepared, asked, self.first, self.last, float(phase), rigid, self.tolerance)
@@ -68,12 +69,14 @@ def trials_of(
 ) -> Trials:  # fmt: skip
     """Trials with what is left out chosen, and what is wrong refused."""
     description = line.line if isinstance(line, Assembly) else line
-    begun_line(description, asked, ends[0])
-    driven = list(dict.fromkeys(one.on for one in asked[0]))
+    acting = begun_line(description, asked, ends[0])[1][0]
+    known = list(dict.fromkeys(one.on for one in acting))
+    motors = [name for name, e in description.parts if isinstance(e, Motor) and name in known]
+    driven = list(dict.fromkeys(one.on for one in asked[0])) or motors or known
     if drive is None and len(driven) > 1:
         raise InputError("is missing, for torques act on several disks", key="drive", remedy=f"name {few(driven, 3)}")
-    if drive is not None and drive not in driven:
-        raise InputError("is given no torque", key="drive", value=drive, remedy=f"torques act on {few(driven, 3)}")
+    if drive is not None and drive not in known:
+        raise InputError("is given no torque", key="drive", value=drive, remedy=f"torques act on {few(known, 3)}")
     return Trials(description, asked, drive or driven[0], *ends, _phases(phases), tolerance)
 
 
@@ -81,6 +84,12 @@ def scaled(torque: AppliedTorque, factor: float) -> AppliedTorque:
     """A torque times a factor."""
     if (most := torque.breakdown_torque) is not None:
         return torque.but(breakdown_torque=factor * float(most))
+    if torque.power is not None:
+        return torque.but(power=factor * torque.power)
+    if isinstance(torque, TorqueFunction):
+        return torque.but(function=lambda *at: factor * torque.function(*at))
+    if torque.formula is not None:
+        return torque.but(formula=f"{factor!r}*({torque.formula})")
     if torque.table:
         return torque.but(table=(factor * np.array(torque.table)).tolist())
     return torque.but(torque=[factor * float(one) for one in torque.torque])

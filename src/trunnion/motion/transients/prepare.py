@@ -7,14 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
+from trunnion.driveline.elements import Rotor
+from trunnion.driveline.machines import Motor
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
+from trunnion.driveline.scenarios import LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
 from trunnion.equations.line_system import LineSystem, line_system
-from trunnion.equations.loads import refuse_curves
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
+from trunnion.motion.transients.machines import without_curves
 from trunnion.motion.transients.stepping import Found, Place, Stepper
 
 if TYPE_CHECKING:
@@ -31,44 +33,65 @@ def actions_of(
     return tuple(torque), tuple(friction), tuple(crossing)
 
 
-def driven_line(line: Driveline, asked: Actions) -> Driveline:
-    """The line as its torques drive it: a disk that is given one has no share any more."""
+def refuse_others(several: Sequence[object], kind: type, key: str) -> None:
+    """Refuse what is of another kind.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    for one in several:
+        if not isinstance(one, kind):
+            remedy = f"write [tn.{kind.__name__}(…)]"
+            raise InputError(f"is not a list of {kind.__name__}", key=key, value=one, remedy=remedy)
+
+
+def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Driveline, Actions]:
+    """The line as its torques drive it from an input ``speed`` [rad/s] on, and all that acts on it: a disk that is
+    given a torque has no share any more, and machines act by their curves."""
     kinds = {"torque": AppliedTorque, "friction": FrictionTorque, "crossing": LevelCrossing}
     for (key, kind), several in zip(kinds.items(), asked, strict=True):
-        for one in several:
-            if not isinstance(one, kind):
-                remedy = f"write [tn.{kind.__name__}(…)]"
-                raise InputError(f"is not a list of {kind.__name__}", key=key, value=one, remedy=remedy)
+        refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
     given = {one.on for one in asked[0]}
-    sharing = [name for name, e in line.parts if isinstance(e, Disk) and e.drive_share]
+    sharing = [name for name, e in line.parts if isinstance(e, Rotor) and bool(getattr(e, "drive_share", False))]
     replaced = [name for name in sharing if name in given]
     if not replaced:
-        return line
+        return _curved(line, asked, speed)
     left = [name for name in sharing if name not in given]
     if left:
         raise InputError(
             f"shares the drive with {replaced[0]}, which is given a torque instead", element=left[0],
             key="drive_share", remedy=f"give {left[0]} a torque too, or no drive_share",
         )  # fmt: skip
-    return line.replace_all({name: {"drive_share": None} for name in replaced})
+    disks = [name for name in replaced if not isinstance(line.elements[line.index(name)], Motor)]
+    plain = line.replace_all({name: {"drive_share": None} for name in disks}) if disks else line
+    return _curved(plain, asked, speed, frozenset(replaced))
 
 
-def prepared_line(line: Driveline, asked: Actions, speed: float) -> LineSystem:
-    """The line as its torques drive it, ready to be followed from an input ``speed`` [rad/s] of either sense.
+def _curved(
+    line: Driveline, asked: Actions, speed: float, driven: frozenset[str] = frozenset()
+) -> tuple[Driveline, Actions]:
+    plain, torques, frictions = without_curves(line, speed, driven)
+    return plain, (asked[0] + torques, asked[1] + frictions, asked[2])
+
+
+def prepared_line(line: Driveline, asked: Actions, speed: float) -> tuple[LineSystem, Actions]:
+    """The line as its torques drive it, ready to be followed from an input ``speed`` [rad/s] of either sense, and all
+    that acts on it.
 
     Raises
     ------
-    InputError : what acts where nothing can; a pendulum; a machine with a torque over speed; an excitation that varies
-        with it.
+    InputError : what acts where nothing can; a pendulum; a machine whose torque lags; an excitation that varies with
+        the speed.
     """
     refuse_pendulums(line)
-    prepared = line_system(driven_line(line, asked), abs(speed), leaves=True, slips=True)
-    refuse_curves(prepared.assembly.topology, "state its inertia as a Disk, and its torque in the scenario")
+    driven, acting = driven_line(line, asked, speed)
+    prepared = line_system(driven, abs(speed), leaves=True, slips=True)
     for one in prepared.torques:
         one.refuse_change()
-    return prepared
+    return prepared, acting
 
 
 def follow(
@@ -91,7 +114,8 @@ def follow(
     if asked[1] and prepared.clutches:
         raise InputError(
             "is not followed in a line with a slip clutch", element="friction", key="on", value=asked[1][0].on,
-            remedy="describe the brake as a torque over time, or the slip clutch as a Clutch",
+            remedy="describe the brake as a torque over time (a machine's curve with no torque at standstill), or the "
+            "slip clutch as a Clutch",
         )  # fmt: skip
     torques = placed_torques(prepared.assembly, asked[0])
     frictions = placed_frictions(prepared.assembly, asked[1])

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.quantities import TORQUE, against
 from trunnion.equations.line_system import LineSystem
@@ -36,8 +36,9 @@ from trunnion.results.variables import Attribute, Coordinate, Variable
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
     from trunnion.driveline.driveline import Driveline
-    from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing
+    from trunnion.driveline.scenarios import LevelCrossing
 
 BACKWARDS = 0.02
 """Share of the largest speed beyond which a line that turns against its sense does more than swing."""
@@ -97,7 +98,7 @@ class Transient(Result):
     def disks(self) -> tuple[str, ...]:
         """Names of the disks."""
         names = self.line.assembly.line
-        return tuple(n for n, e in names.parts if isinstance(e, Disk))
+        return tuple(n for n, e in names.parts if isinstance(e, Rotor))
 
     @cached_property
     def _stations(self) -> list[int]:
@@ -228,7 +229,7 @@ class Transient(Result):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What to read first: limits exceeded, standstill, turning back, an energy balance that is not close."""
-        own = left_out("transient", self.line.assembly.line)
+        own = left_out("transient", self.description)
         return by_gravity([*own, *self._judged(), *self._moved(), *self._balanced()])
 
     def _judged(self) -> Iterator[Finding]:
@@ -343,7 +344,7 @@ class Transient(Result):
         given = (torque, friction, crossing)
         asked: Any = tuple(old if new is None else tuple(new) for old, new in zip(self.asked, given, strict=True))
         description = self.description if line is None else line
-        prepared = prepared_line(description, asked, self.line.speed)
+        prepared, acting = prepared_line(description, asked, self.line.speed)
         same = prepared.names == self.line.names and prepared.shafts == self.line.shafts
         if not same or len(prepared.sliders) != len(self.line.sliders):
             remedy = "change numbers of the same line alone"
@@ -353,7 +354,7 @@ class Transient(Result):
             place = replace(place, state=prepared.system.within_limits(place.state), regime=LOCATED)
         tolerance = self.tolerance if tolerance is None else tolerance
         length = positive_time(duration, "give seconds")
-        found = follow(prepared, place, length, asked, tolerance, MOST_STEPS)
+        found = follow(prepared, place, length, acting, tolerance, MOST_STEPS)
         return self.joined(Transient.of(prepared, found, asked, tolerance, place.time, self.name, description))
 
     @classmethod

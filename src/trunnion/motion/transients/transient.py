@@ -8,16 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import LineSystem
+from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import actions_of, follow, prepared_line
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -31,6 +34,7 @@ def transient(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    disturbance: Sequence[Disturbance] = (),
     crossing: Sequence[LevelCrossing] = (),
     speed: float | str | None = None,
     phase: float = 0.0,
@@ -48,6 +52,7 @@ def transient(
     torque : what acts over time, speed or angle; several on one disk add up, and come to what the description puts
         there. A disk with a drive_share that is given a torque is driven by that instead.
     friction : dry friction that resists disks and keeps them at rest.
+    disturbance : short circuits, bites, impacts, tip-ins and brakes by name, which add to both.
     crossing : levels that are watched; the run ends at the first that ``ends``.
     speed : of the input when it begins [rad/s], by default the file's operating speed; 0 is standstill and negative
         turns backwards. Drives with a share go on giving what balances the loads at that speed, which must not be
@@ -84,17 +89,21 @@ def transient(
         duration = description.scenario(duration)
     if isinstance(duration, Scenario):
         scenario = duration
-        if torque or friction or crossing:
+        if torque or friction or crossing or disturbance:
             raise InputError("says what acts by itself", key="scenario", value=scenario.name, remedy="give a duration")
         duration, name = scenario.duration, scenario.name
         torque, friction, crossing = scenario.torque, scenario.friction, scenario.crossing
+        disturbance = scenario.disturbance
         speed = scenario.speed if speed is None else speed
     length = positive_time(duration, "give seconds, or the name of a scenario")
+    refuse_others(disturbance, Disturbance, "disturbance")
+    torque = [*torque, *(made for one in disturbance for made in one.torques)]
+    friction = [*friction, *(made for one in disturbance for made in one.frictions)]
     asked = actions_of(torque, friction, crossing)
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
-    prepared = prepared_line(description, asked, begin)
+    prepared, acting = prepared_line(description, asked, begin)
     if not prepared.assembly.topology.free and not begin > 0:
         raise InputError(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
@@ -107,17 +116,27 @@ def transient(
             key="drive_share", remedy="start at a positive speed, or give the drive a torque",
         )  # fmt: skip
     angle = one_number(phase, "phase", "np.pi / 2, say")
-    place = Place(0.0, _start(prepared, start, begin, angle), angle=angle, speed=begin)
-    found = follow(prepared, place, length, asked, tolerance, most_steps)
+    state = _start(prepared, _balanced(description, prepared, asked, begin), start, begin, angle)
+    place = Place(0.0, state, angle=angle, speed=begin)
+    found = follow(prepared, place, length, acting, tolerance, most_steps)
     return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
 
 
-def _start(prepared: LineSystem, start: ArrayLike | None, speed: float, angle: float) -> Any:
+def _balanced(line: Driveline, prepared: LineSystem, asked: Actions, speed: float) -> LineSystem:
+    """The line with what balances its loads at the start: its machines by their curves, unless a torque on any of them
+    adds to that."""
+    machines = {name for name, e in line.parts if isinstance(e, Rotor) and e.tangent}
+    if not machines or speed <= 0 or machines & {one.on for one in asked[0]}:
+        return prepared
+    return line_system(line, speed, leaves=True, slips=True, linearised=True)
+
+
+def _start(prepared: LineSystem, balanced: LineSystem, start: ArrayLike | None, speed: float, angle: float) -> Any:
     if start is not None:
         return prepared.system.checked_start(start)
-    assembly = prepared.assembly
+    assembly = balanced.assembly
     loaded = speed != 0 and not imbalance(assembly, assembly.table(1, abs(speed)))[0]
-    state = prepared.twisted(angle) if loaded else prepared.rest(angle)
+    state = balanced.twisted(angle) if loaded else prepared.rest(angle)
     if speed <= 0:  # joints turn backwards, or not at all
         n = assembly.topology.size
         state[n : 2 * n] *= -1.0 if speed < 0 else 0.0

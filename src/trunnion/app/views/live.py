@@ -1,0 +1,113 @@
+"""The line in motion, in space: turning, a mode, the response, a disturbance that grows, a run-up, a scenario."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from trunnion.animation.player.component import Player
+from trunnion.app.parts.calls import LINE, Call
+from trunnion.app.parts.widgets import column, pane, small
+from trunnion.app.views.base import (
+    VariantPane,
+    View,
+    ViewStep,
+    at_speed,
+    bounded,
+    count,
+    label_speed,
+    number,
+    optional,
+    select,
+    speed_range,
+)
+from trunnion.driveline.driveline import Driveline
+
+MOTIONS = {
+    "turning, shafts rigid": "turning",
+    "a mode": "mode",
+    "response to what excites it": "response",
+    "true periodic motion": "motion",
+    "the disturbance that grows fastest": "disturbance",
+    "run-up": "run-up",
+    "scenario of the file": "transient",
+}
+ASKS = {
+    "turning": ("speed",),
+    "mode": ("mode",),
+    "response": ("speed",),
+    "motion": ("speed",),
+    "disturbance": ("speed",),
+    "run-up": ("rate",),
+    "transient": ("scenario",),
+}
+"""Which controls a motion has."""
+
+
+class _LivePane(VariantPane["LiveView"]):
+    """The player, or why there is nothing to play."""
+
+    def make(self) -> None:
+        """Both, made once."""
+        # One WebGL context a page: the kept variant is drawn without.
+        self.player = Player(sizing_mode="stretch_width", flat=self.variant != "now")
+        self.text = pane()
+        self.panel = column(self.player, self.text)
+        self.parts = {("scene",): [self.player, self.text]}
+
+    def clear(self) -> None:
+        """Nothing to play."""
+        self.player.scene, self.text.object = "", ""
+
+    def show_scene(self, step: ViewStep, data: str) -> None:
+        """Play a motion."""
+        self.player.scene, self.text.object = data, ""
+
+    def refused(self, step: ViewStep, sentence: str) -> None:
+        """Why it cannot be shown."""
+        self.player.scene, self.text.object = "", small(sentence)
+
+
+class LiveView(View):
+    """One motion at a time."""
+
+    name = "live"
+    about = (
+        "The line in space, as it turns, swings and twists: drag to turn it, the wheel and + − to come closer, the "
+        "space bar to hold it. Twist is exaggerated as it says; bends and planes are true."
+    )
+    side = _LivePane
+    asks, asked_by = ASKS, ("what",)
+    defaults = {"what": "turning", "speed": None, "mode": 1, "rate": None, "scenario": ""}
+
+    fields = {
+        "what": lambda: select("Motion", options=MOTIONS, width=260),
+        "speed": lambda: optional("Speed", start=0.0, width=170),
+        "mode": lambda: count("Mode", 1, 1, 500),
+        "rate": lambda: number("Acceleration [rad/s²]", None, start=0.01, width=170),
+        "scenario": lambda: select("Scenario of the file", options=[]),
+    }
+
+    def adapt(self, line: Driveline) -> None:
+        """The unit of speeds, the scenarios."""
+        label_speed(self.widgets["speed"], line)
+        self.widgets["rate"].placeholder = "ten seconds for the range"
+        self.choose("scenario", [one.name for one in line.scenarios])
+        self.show_question()
+
+    def steps(self, line: Driveline) -> list[ViewStep]:
+        """The motion that is asked for."""
+        what = str(self.settings["what"])
+        more: dict[str, Any] = {}
+        match what:
+            case "mode":
+                more = {"mode": bounded(self.settings["mode"], 1, 500)}
+            case "run-up":
+                more = {"speeds": speed_range(line)}
+                if (rate := self.typed("rate")) is not None:
+                    more["acceleration"] = rate
+            case "transient":
+                more = {"scenario": str(self.settings["scenario"])}
+            case _:
+                more = {"speed": at_speed(line, self.typed("speed"))}
+        call = Call("tn.animate", (LINE, what), more)
+        return [ViewStep("animation", call, "scene", picture="", files=("html", "gif", "json"), title=what, soft=True)]

@@ -1,0 +1,106 @@
+"""Commands about measured data."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+import trunnion as tn
+from trunnion.cli import output
+from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
+from trunnion.cli.options import Progress, SpeedUnit, Unit
+from trunnion.cli.places import CommandOutput
+from trunnion.cli.readers import read_line
+from trunnion.cli.typed import Command
+from trunnion.errors import InputError
+from trunnion.results.speeds import speed_factor
+
+if TYPE_CHECKING:
+    from trunnion.measured.signals.measurement import Measurement
+
+DATA = typer.Argument(metavar="DATA", help="Measured signals: .csv, .mat, .h5, .wav, .mf4, .tdms, .uff.")
+Channels = Annotated[
+    str | None,
+    typer.Option("--channels", metavar="TOML", help="What its columns are; default: DATA ending in .channels.toml."),
+]
+
+
+def _recorded(file: str, texts: Texts) -> CommandInput:
+    unit = texts["unit"] or ""
+    speed_factor(unit or "rpm")
+    return CommandInput(tn.read_measurement(file, texts["channels"]), file, unit, texts)
+
+
+Recorded = Annotated["Measurement", DATA, CommandSubject(_recorded, {"unit": Unit, "channels": Channels})]
+
+
+def _line(asked: CommandInput, text: str, key: str) -> tn.Driveline:
+    return read_line(text)
+
+
+def _orders(asked: CommandInput, text: str, key: str) -> list[float]:
+    try:
+        return [float(one) for one in text.split(",")]
+    except ValueError:
+        raise InputError("is no list of orders", key=key, value=text, remedy='write "0.5,1,2"') from None
+
+
+def _reference_run(asked: CommandInput, text: str, key: str) -> Any:
+    """Pitch errors from a file, whose columns are those of the data where it has no description of its own."""
+    from trunnion.measured.signals.channel_file import beside
+
+    own, stated = beside(Path(text)), asked.texts["channels"]
+    channels = own if own.is_file() else stated or beside(Path(asked.file))
+    return tn.pitch_errors(tn.read_measurement(text, channels), unit=asked.unit or "rpm")
+
+
+def _between(asked: CommandInput, text: str, key: str) -> tuple[float, float]:
+    try:
+        first, last = (float(one) for one in text.split(":"))
+    except ValueError:
+        raise InputError("is no pair of times", key=key, value=text, remedy='write "3:27", in seconds') from None
+    return first, last
+
+
+@Command("track orders")
+def track_orders(
+    measurement: Recorded,
+    *,
+    orders: Annotated[list[float] | None, OptionReader(_orders)],
+    line: Annotated[Any, OptionReader(_line)],
+    reference: str = "",
+    calibration: Annotated[Any, OptionReader(_reference_run)],
+    between: Annotated[tuple[float, float] | None, OptionReader(_between)],
+    window: Annotated[int, NumberBounds(1, 1000)] = 8,
+    channel: str = "",
+    progress: Progress,
+    unit: SpeedUnit,
+) -> CommandOutput:
+    """Example: trunnion track-orders run-up.wav --line truck.toml --orders 1,2,4 -o orders.png
+
+    --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
+    --line FILE  Driveline that the channels are of: gives speed ratios.
+    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
+    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
+    --window  Turns of a window.
+    --channel  What is drawn; default the first.
+    """
+    found = tn.track_orders(
+        measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
+        unit=unit, progress=progress,
+    )  # fmt: skip
+    if channel:
+        found.column(channel)
+
+    def more() -> None:
+        output.table(found.table(), "Largest of each order")
+        output.findings(found.findings)
+
+    return CommandOutput(
+        found, draw=partial(found.plot, channel=channel), text=lambda: found.headline, more=more,
+        content=lambda: found.to_dict() | {"findings": output.findings_json(found.findings)},
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Orders of measured signals over speed."""

@@ -1,0 +1,549 @@
+"""Orders of measured channels, window by window of whole turns, with what noise and wheels leave uncertain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d
+from scipy.signal import firwin, kaiser_beta, upfirdn
+
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.driveline.arguments import numbers, whole_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
+from trunnion.measured.signals.measurement import TURN, Channel, Measurement, PulseTrain, SampledSignal
+from trunnion.measured.tracking.clocks import ClockCorrection, clock_correction
+from trunnion.measured.tracking.pitch import PitchErrors
+from trunnion.measured.tracking.places import speed_ratios
+from trunnion.measured.tracking.result import MeasuredOrders
+from trunnion.measured.tracking.rotation import (
+    MeasuredRotation,
+    RotationWindow,
+    WindowFit,
+    fitted,
+    is_whole,
+    rotation_windows,
+    tooth_means,
+)
+from trunnion.measured.tracking.run_ups import MeasuredRamp, longest_ramp, run_ups
+from trunnion.results.finding import Finding, Gravity, by_gravity
+from trunnion.results.units import figures
+from trunnion.waiting import keep_time
+
+WINDOW = 8
+SMOOTH_BESIDE = 3
+"""Coefficients of the polynomial beside the orders of a channel that is not the reference."""
+STEADY = 2e-3
+"""Relative change of speed within a window up to which amplitudes are taken as constant."""
+MOST_ORDERS, SHARE, ABOVE_NOISE = 12, 0.02, 4.0
+"""Orders found by themselves: how many, their least share of the largest, and the factor above the noise."""
+LEAKS = 0.05
+"""Share of an order that those half an order beside it may have from it."""
+HIGHEST = 24.0
+OVERSAMPLED = 16.0
+"""Samples per cycle of the highest order that a sampled signal keeps."""
+HALF_TAPS, STOPPED = 9, 125.0
+"""Half the length of the filter before samples are left out, in samples that stay, and its damping [dB]."""
+SAME_RATIO = 5e-4
+LIKE_A_WHEEL = 3.0
+"""Times of what pitch errors leave below which a whole order is not taken for the shaft's by itself."""
+SEEN, ALIKE = 3.0, 0.25
+"""Noise from which a wheel has pitch errors at all, and the share of what the second best tooth leaves that the best
+may leave."""
+
+
+def track_orders(
+    measurement: Measurement,
+    orders: Iterable[float] | None = None,
+    *,
+    line: Driveline | Assembly | None = None,
+    reference: str = "",
+    calibration: PitchErrors | None = None,
+    window: int = WINDOW,
+    between: tuple[float, float] | None = None,
+    unit: str = "",
+    progress: Callable[[float], None] | None = None,
+) -> MeasuredOrders:
+    """Amplitude and phase of orders over speed, of every channel, by least squares over windows of whole turns.
+
+    Orders, and phases, are taken by the mean rotation of the input, which the reference pickup gives: the angle at the
+    edge is known, and what repeats with the shaft averages out over whole turns.
+
+    Parameters
+    ----------
+    measurement : the signals; one channel at least is a pulse train.
+    orders : in cycles per turn of the input; default: those that stand out of the noise of the pulse trains, twelve at
+        most.
+    line : gives the speed ratio of each channel's place; without it ratios are counted, and the reference's shaft is
+        the input.
+    reference : name of the pulse train that the rotation is taken from; default the first.
+    calibration : pitch errors of the wheels, from ``pitch_errors``.
+    window : turns of the reference's shaft in a window.
+    between : first and last time [s]; default the longest run-up or run-down, or all where there is none.
+    unit : of speeds in print, default of the line, else rpm.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : no pulse train; a channel or order that cannot be; windows that do not tell the orders apart.
+
+    Examples
+    --------
+    >>> import numpy as np, trunnion as tn
+    >>> rotation = 2 * np.pi * np.arange(60 * 40) / 60
+    >>> times = (rotation - 1e-3 * np.cos(2 * rotation)) / 100.0
+    >>> found = tn.track_orders(tn.Measurement([tn.PulseTrain(times, 60, name="wheel")]), [2])
+    >>> round(float(abs(found.amplitude[0, 0, 0])), 7)
+    0.001
+    """
+    trains = measurement.pulses
+    if not trains:
+        raise InputError(
+            "has no pulse train, so nothing says how the shaft turned", key="measurement", value=measurement.source,
+            remedy='describe one channel as kind = "pulses"',
+        )  # fmt: skip
+    main = trains[0] if not reference else measurement.channel(reference)
+    if not isinstance(main, PulseTrain):
+        raise InputError("is no pulse train", key="reference", value=reference, remedy=f"take {trains[0].name}")
+    turns = whole_number(window, "window", 1)
+    given = None if line is None else assemble(line)
+    problem = _Tracking(measurement, main, {} if given is None else speed_ratios(given), calibration, turns)
+    stretch = _stretch(main, between)
+    problem.cut(stretch[0], stretch[1])
+    wanted = problem.own_orders() if orders is None else _orders_of(orders)
+    unit = unit or (speed_unit(given.line) if given is not None else "rpm")
+    return problem.result(wanted, unit, stretch, progress)
+
+
+def _orders_of(orders: Iterable[float]) -> Array:
+    found = np.unique(numbers(list(orders), "orders", "[1, 2, 4], say"))
+    if not (np.all(np.isfinite(found)) and np.all(found > 0)):
+        raise InputError("must be positive", key="orders", value=found.tolist(), remedy="[1, 2, 4], say")
+    return found
+
+
+def _stretch(main: PulseTrain, between: tuple[float, float] | None) -> MeasuredRamp:
+    whole = MeasuredRamp(float(main.times[0]), float(main.times[-1]), 0.0, 0.0)
+    if between is None:
+        return longest_ramp(run_ups(main)) or whole
+    first, last = (float(one) for one in between)
+    if not whole.first_time <= last > first <= whole.last_time:
+        raise InputError(
+            f"is outside the recording, {figures(whole.first_time)} to {figures(whole.last_time)} s", key="between",
+            value=[first, last], remedy="give two rising times in seconds",
+        )  # fmt: skip
+    return MeasuredRamp(first, last, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class _Tracked:
+    """What was found of one channel."""
+
+    amplitude: Complex
+    deviation: Array
+    residual: Array
+
+
+class _Tracking:
+    """One measurement, its reference and ratios."""
+
+    def __init__(
+        self,
+        measurement: Measurement,
+        main: PulseTrain,
+        places: dict[str, float],
+        calibration: PitchErrors | None,
+        turns: int,
+    ) -> None:
+        self.measurement, self.main, self.places = measurement, main, places
+        self.calibration, self.turns = calibration, turns
+        self.ratio = abs(places.get(main.at) or 1.0)
+        self.aligned: dict[str, tuple[Array, float]] = {}
+        self.findings: list[Finding] = list(measurement.findings)
+        if calibration is not None:
+            self.findings += calibration.findings
+
+    def cut(self, first: float, last: float) -> None:
+        """Keep what lies between two times."""
+        self.span = first, last
+        self.main = self.main.within(first, last)
+
+    def own_orders(self) -> Array:
+        """Whole and half orders that stand out of the noise of the pulse trains."""
+        found: dict[float, float] = {}
+        left: set[float] = set()
+        for train in self.measurement.pulses:
+            one = train.within(*self.span)
+            ratio, floor = self._ratio_of(one), pitch_floor(one)
+            for order, size in standing_out(one, np.zeros(one.pulses_per_turn), self.turns):
+                key = round(order * ratio, 6)
+                if size < LIKE_A_WHEEL * floor and float(order).is_integer():
+                    left.add(key)
+                else:
+                    found[key] = max(found.get(key, 0.0), size / ratio)
+        highest = min(HIGHEST, 0.45 * min(one.pulses_per_turn * self._ratio_of(one) for one in self.measurement.pulses))
+        strong = sorted((size, order) for order, size in found.items() if order <= highest)[::-1][:MOST_ORDERS]
+        kept = [order for size, order in strong if size >= SHARE * strong[0][0]]
+        if several := sorted(left - set(kept)):
+            words = ", ".join(f"{one:g}" for one in several[:8]) + (" …" if len(several) > 8 else "")
+            self.findings.append(
+                Finding(
+                    Gravity.NOTE,
+                    f"Whole orders no larger than the wheels' pitch errors, as stated, are not listed ({words}): name "
+                    "those that matter in orders.",
+                )
+            )
+        if not kept:
+            raise InputError(
+                "shows no order above its noise", key="measurement", value=self.measurement.source,
+                remedy="name the orders, or record longer",
+            )  # fmt: skip
+        return np.array(sorted(kept))
+
+    def _align(self, train: PulseTrain, ratio: float, orders: Array, own: Array) -> Array:
+        """Pitch errors of the reference run by the teeth of this one, which began at another tooth; ``own`` (tooth,)
+        is what repeats with the teeth of this run beside the orders."""
+        assert self.calibration is not None
+        pattern, spread = self.calibration.of(train)
+        place = shift_between(pattern, own, own_orders(orders, ratio), spread, train.name)
+        self.aligned[train.name] = np.roll(pattern, -place), spread
+        return self.aligned[train.name][0]
+
+    def _spread(self, train: PulseTrain) -> float:
+        """Standard deviation of each pitch error that is taken off."""
+        return self.aligned[train.name][1] if train.name in self.aligned else 0.0
+
+    def _ratio_of(self, train: PulseTrain) -> float:
+        """Turns of a pickup's shaft for one of the input: of the line, else counted."""
+        stated = self.places.get(train.at)
+        if stated is not None:
+            return abs(stated)
+        if train.name == self.main.name:
+            return self.ratio
+        return self.ratio * counted_ratio(train, self.main)
+
+    def result(
+        self, orders: Array, unit: str, stretch: MeasuredRamp, progress: Callable[[float], None] | None
+    ) -> MeasuredOrders:
+        """All channels at all windows."""
+        self._refuse_high(self.main, orders, self.ratio)
+        windows, fits, trend = self._windows(orders)
+        rotation = MeasuredRotation(windows, self.ratio)
+        corrections = self._clocks(windows)
+        found: dict[str, _Tracked] = {}
+        share = 1.0 / len(self.measurement.channels)
+        hidden: list[Flags] = []
+        floor: list[Array] = []
+        for place, recorded in enumerate(self.measurement.channels):
+            channel = corrections[recorded.clock].applied(recorded) if recorded.clock in corrections else recorded
+            if isinstance(channel, PulseTrain):
+                train, ratio = channel.within(*self.span), self._ratio_of(channel.within(*self.span))
+                self._refuse_high(train, orders, ratio)
+                self._check_ratio(train)
+                if train.name == self.main.name:
+                    found[train.name] = self._told(fits, train, orders)
+                else:
+                    found[train.name] = self._beside(train, ratio, windows, orders, trend)
+                own = is_whole(orders / ratio)
+                hidden.append(own if self.calibration is None else np.zeros_like(own))
+                size = pitch_floor(train)
+                left = 2 * self._spread(train) / np.sqrt(train.pulses_per_turn)
+                floor.append(np.where(own, size if self.calibration is None else left, 0.0))
+            else:
+                found[channel.name] = self._sampled(channel, windows, orders, trend)
+                hidden.append(np.zeros(len(orders), dtype=bool))
+                floor.append(np.zeros(len(orders)))
+            if progress:
+                progress(share * (place + 1))
+        names, bend = tuple(found), bent if trend else lambda amplitude: np.zeros(amplitude.shape)
+        amplitude = np.stack([one.amplitude for one in found.values()], axis=2)
+        self._say_hidden(names, orders, amplitude, np.stack(hidden, axis=1), np.stack(floor, axis=1))
+        if stretch.last_speed and between_words(stretch, unit):
+            self.findings.append(Finding(Gravity.NOTE, between_words(stretch, unit)))
+        return MeasuredOrders(
+            time=np.array([one.middle for one in windows]),
+            speed=np.array([one.speed for one in windows]),
+            order=orders,
+            channels=names,
+            places=tuple(one.at for one in self.measurement.channels),
+            kinds=tuple(
+                one.kind if isinstance(one, SampledSignal) else "rotation" for one in self.measurement.channels
+            ),
+            ratios=tuple(self._channel_ratio(one) for one in self.measurement.channels),
+            amplitude=amplitude,
+            deviation=np.stack([np.hypot(one.deviation, bend(one.amplitude)) for one in found.values()], axis=2),
+            hidden=np.stack(hidden, axis=1),
+            floor=np.stack(floor, axis=1),
+            residual=np.stack([one.residual for one in found.values()], axis=1),
+            acceleration=float(np.median([one.acceleration for one in windows])),
+            window=self.turns,
+            calibrated=self.calibration is not None,
+            rotation=rotation,
+            findings=by_gravity(self.findings),
+            unit=unit,
+        )
+
+    def _clocks(self, windows: tuple[RotationWindow, ...]) -> dict[str, ClockCorrection]:
+        """What brings other clocks than the reference's into its time."""
+        found: dict[str, ClockCorrection] = {}
+        for train in self.measurement.pulses:
+            if train.clock == self.main.clock or train.clock in found:
+                continue
+            correction = clock_correction(train, windows, self._ratio_of(train))
+            if correction is not None:
+                found[train.clock] = correction
+                grave = Gravity.NOTE if correction.knows_offset else Gravity.CAUTION
+                self.findings.append(Finding(grave, correction.sentence))
+        for one in self.measurement.channels:
+            if one.clock != self.main.clock and one.clock not in found:
+                raise InputError(
+                    "has a clock that no pulse train tells", element=one.name, key="clock", value=one.clock,
+                    remedy="record a wheel with the same clock too",
+                )  # fmt: skip
+        return found
+
+    def _channel_ratio(self, channel: Channel) -> float:
+        if isinstance(channel, PulseTrain):
+            return self._ratio_of(channel.within(*self.span))
+        return abs(self.places.get(channel.at) or 1.0)
+
+    def _windows(self, orders: Array) -> tuple[tuple[RotationWindow, ...], list[WindowFit], int]:
+        even = np.zeros(self.main.pulses_per_turn)
+        windows, fits = rotation_windows(self.main, self.ratio, self.turns, orders, even, 0)
+        change = max(abs(one.acceleration) * 2 * one.half / one.speed for one in windows)
+        trend = 0 if change < STEADY else 2
+        if trend:
+            windows, fits = rotation_windows(self.main, self.ratio, self.turns, orders, even, trend)
+        # What repeats with the teeth beside the orders asked for is taken for the wheel, else it would count as noise.
+        own = self._own_pattern(self.main, [(w.first, w.last) for w in windows], [fit.residual for fit in fits])
+        if self.calibration is not None:
+            own = self._align(self.main, self.ratio, orders, own)
+        windows, fits = rotation_windows(self.main, self.ratio, self.turns, orders, own, trend)
+        return windows, fits, trend
+
+    def _own_pattern(self, train: PulseTrain, places: list[tuple[int, int]], residuals: list[Array]) -> Array:
+        tooth = np.concatenate([train.tooth[first:last] for first, last in places])
+        means = tooth_means(np.concatenate(residuals), tooth, train.pulses_per_turn)[0]
+        return -np.asarray(np.nan_to_num(means - np.nanmean(means)))
+
+    def _told(self, fits: Sequence[WindowFit | None], train: PulseTrain, orders: Array) -> _Tracked:
+        nothing = np.full(len(orders), np.nan)
+        amplitude: Complex = np.array([nothing + 0j if fit is None else fit.amplitude for fit in fits])
+        deviation = np.array([nothing if fit is None else fit.deviation for fit in fits])
+        residual = np.array([np.nan if f is None else np.sqrt(f.residual @ f.residual / f.freedom) for f in fits])
+        sign = -1.0 if train.reversed else 1.0
+        return _Tracked(sign * amplitude, deviation, residual)
+
+    def _beside(
+        self, train: PulseTrain, ratio: float, windows: tuple[RotationWindow, ...], orders: Array, trend: int
+    ) -> _Tracked:
+        def fits_with(teeth: Array) -> tuple[list[WindowFit | None], list[tuple[int, int]]]:
+            fits: list[WindowFit | None] = []
+            places: list[tuple[int, int]] = []
+            angle = train.angle + teeth[train.tooth]
+            for one in windows:
+                keep_time()
+                begin, end = one.middle - one.half, one.middle + one.half
+                first, last = np.searchsorted(train.times, (begin, end))
+                if last - first < (SMOOTH_BESIDE + 2 * (trend + 1) * len(orders)) + 1:
+                    fits.append(None)
+                    places.append((0, 0))
+                    continue
+                times = train.times[first:last]
+                phase = one.angle(times)
+                y = angle[first:last] - ratio * phase
+                fits.append(fitted(y - y[0], one.local(times), phase, orders, SMOOTH_BESIDE, trend))
+                places.append((int(first), int(last)))
+            return fits, places
+
+        fits, places = fits_with(np.zeros(train.pulses_per_turn))
+        known = [(place, fit) for place, fit in zip(places, fits, strict=True) if fit is not None]
+        if known:
+            own = self._own_pattern(train, [place for place, _ in known], [fit.residual for _, fit in known])
+            if self.calibration is not None:
+                own = self._align(train, ratio, orders, own)
+            fits, _ = fits_with(own)
+        return self._told(fits, train, orders)
+
+    def _sampled(
+        self, signal: SampledSignal, windows: tuple[RotationWindow, ...], orders: Array, trend: int
+    ) -> _Tracked:
+        fastest = max(abs(one.speed) for one in windows) * float(orders[-1]) / TURN
+        if signal.rate < 2.5 * fastest:
+            raise InputError(
+                f"is too low for order {orders[-1]:g} at {figures(fastest)} Hz", element=signal.name, key="rate",
+                value=signal.rate, remedy="record faster, or ask for lower orders",
+            )  # fmt: skip
+        kept = thinned(signal, OVERSAMPLED * fastest)
+        times = kept.times
+        nothing = np.full(len(orders), np.nan)
+        amplitude, deviation, residual = [], [], []
+        for one in windows:
+            keep_time()
+            first, last = np.searchsorted(times, (one.middle - one.half, one.middle + one.half))
+            phase = one.angle(times[first:last])
+            y = kept.values[first:last]
+            fit = fitted(y, one.local(times[first:last]), phase, orders, SMOOTH_BESIDE, trend) if len(y) else None
+            amplitude.append(nothing + 0j if fit is None else fit.amplitude)
+            deviation.append(nothing if fit is None else fit.deviation)
+            residual.append(np.nan if fit is None else np.sqrt(fit.residual @ fit.residual / fit.freedom))
+        return _Tracked(np.array(amplitude), np.array(deviation), np.array(residual))
+
+    def _refuse_high(self, train: PulseTrain, orders: Array, ratio: float) -> None:
+        limit = train.pulses_per_turn * ratio / 2
+        if orders[-1] >= limit:
+            raise InputError(
+                f"is not seen by {train.name}: {train.pulses_per_turn} pulses a turn show orders below {limit:g}",
+                key="orders", value=float(orders[-1]), remedy="ask for lower orders, or leave the channel out",
+            )  # fmt: skip
+
+    def _check_ratio(self, train: PulseTrain) -> None:
+        """A pickup that turns otherwise than the line says: wrong pulses per turn, or another shaft."""
+        stated = self.places.get(train.at)
+        if stated is None or train.name == self.main.name or self.places.get(self.main.at) is None:
+            return
+        seen = counted_ratio(train, self.main) * self.ratio
+        if abs(seen / abs(stated) - 1) > SAME_RATIO:
+            fits = seen * train.pulses_per_turn / abs(stated)
+            raise InputError(
+                f"turns {figures(seen, 5)} times a turn of the input, where {train.at} turns {figures(abs(stated), 5)} "
+                "times", element=train.name, key="pulses_per_turn", value=train.pulses_per_turn,
+                remedy=f"{figures(fits, 5)} pulses a turn would fit; or correct its place or that of {self.main.name}",
+            )  # fmt: skip
+
+    def _say_hidden(
+        self, names: tuple[str, ...], orders: Array, amplitude: Complex, hidden: Flags, floor: Array
+    ) -> None:
+        for column, name in enumerate(names):
+            sizes = np.nanmax(np.abs(amplitude[:, :, column]), axis=0, initial=0.0)
+            weak = [
+                f"{orders[k]:g}" for k in range(len(orders)) if hidden[k, column] and sizes[k] < 4 * floor[k, column]
+            ]
+            if weak:
+                size = figures(1e6 * float(floor[:, column].max()), 3)
+                plural = "s" if len(weak) > 1 else ""
+                self.findings.append(
+                    Finding(
+                        Gravity.CAUTION,
+                        f"{name}: order{plural} {', '.join(weak)} may be the wheel's: its pitch errors, as stated, "
+                        f"leave {size} µrad at every whole order of its shaft; take a reference run (pitch_errors).",
+                    )
+                )
+
+
+def pitch_floor(train: PulseTrain) -> float:
+    """Rms amplitude [rad] of a whole order of a wheel whose N teeth are off by σ each: 2σ/√N."""
+    return float(train.pitch_error * TURN / train.pulses_per_turn * 2 / np.sqrt(train.pulses_per_turn))
+
+
+def bent(amplitude: Complex) -> Array:
+    """What quadratics over windows miss of a curve (window, order): h⁴|d⁴Y|/280 of windows of ± h, one after another.
+
+    The fourth difference of the middles, 2h apart, is 16h⁴ d⁴Y, and holds next to no noise; beside a narrow resonance
+    higher ones follow it, so it counts twice.
+    """
+    if len(amplitude) < 5:
+        return np.zeros(amplitude.shape)
+    fourth = np.abs(np.diff(amplitude, 4, axis=0)) / (8 * 280)
+    # What one order misses goes to the others of the window too.
+    whole = np.broadcast_to(np.sqrt((fourth**2).sum(axis=1, keepdims=True)), fourth.shape)
+    # The sharpest bend may lie between two windows.
+    return np.asarray(maximum_filter1d(np.pad(whole, ((2, 2), (0, 0)), mode="edge"), 3, axis=0, mode="nearest"))
+
+
+def own_orders(orders: Array, ratio: float) -> Array:
+    """Those of ``orders`` (order,) of the input that repeat with the teeth of a shaft, by its own turns."""
+    own = orders / ratio
+    return np.asarray(np.rint(own[is_whole(own)]))
+
+
+def shift_between(pattern: Array, own: Array, orders: Array, spread: float, name: str) -> int:
+    """At which tooth of ``pattern`` (tooth,) a run began whose teeth have ``own`` (tooth,), ``orders`` set aside.
+
+    Raises
+    ------
+    InputError : no tooth fits better than the others: another wheel, or one whose teeth cannot be told apart.
+    """
+    teeth = len(pattern)
+    waves = np.exp(2j * np.pi * np.multiply.outer(np.arange(teeth), orders) / teeth)
+    basis = np.linalg.qr(np.column_stack([np.ones(teeth), waves.real, waves.imag]))[0]
+    left = pattern - basis @ (basis.T @ pattern)
+    mine = own - basis @ (basis.T @ own)
+    if np.sqrt(np.mean(left**2)) < SEEN * spread and np.sqrt(np.mean(mine**2)) < SEEN * spread:
+        return 0  # even wheels
+    apart = np.array([np.mean((mine - np.roll(left, -shift)) ** 2) for shift in range(teeth)])
+    best = int(apart.argmin())
+    second = np.delete(apart, best).min(initial=np.inf)
+    if not apart[best] < ALIKE * second:
+        raise InputError(
+            "has other pitch errors than in the reference run, whose teeth cannot be found again", element=name,
+            key="calibration", remedy="take the reference run with the same wheel, or ask for fewer orders",
+        )  # fmt: skip
+    return best
+
+
+def between_words(stretch: MeasuredRamp, unit: str) -> str:
+    """ "Taken from the run-up between 3 and 27 s."."""
+    what = "run-up" if stretch.last_speed > stretch.first_speed else "run-down"
+    return f"Taken from the {what} between {figures(stretch.first_time, 4)} and {figures(stretch.last_time, 4)} s."
+
+
+def counted_ratio(train: PulseTrain, main: PulseTrain) -> float:
+    """Turns of a train's shaft for one of the main's, a fraction of small numbers where it is near to one."""
+    first, last = max(train.times[0], main.times[0]), min(train.times[-1], main.times[-1])
+    if not last > first:
+        raise InputError(
+            "was not recorded at the same time", element=train.name, key="times",
+            remedy=f"its clock and that of {main.name} differ: record them together",
+        )  # fmt: skip
+    turned = [np.diff(np.interp((first, last), one.times, one.angle))[0] for one in (train, main)]
+    ratio = float(turned[0] / turned[1])
+    simple = Fraction(ratio).limit_denominator(60)
+    return float(simple) if abs(float(simple) / ratio - 1) < SAME_RATIO else ratio
+
+
+def thinned(signal: SampledSignal, rate: float) -> SampledSignal:
+    """The same at fewer samples, ``rate`` a second at least [Hz], what would fold back filtered away.
+
+    Up to a quarter of the new rate it passes to 1e-6; what folds back onto that is damped as far. The ends, which the
+    filter does not see whole, are cut.
+    """
+    factor = int(signal.rate // rate)
+    half = HALF_TAPS * factor
+    if factor < 2 or len(signal.values) < 4 * half:
+        return signal
+    taps = firwin(2 * half + 1, 1.0 / factor, window=("kaiser", kaiser_beta(STOPPED)))
+    values = upfirdn(taps, np.asarray(signal.values, dtype=float), 1, factor)
+    whole = values[2 * HALF_TAPS : (len(signal.values) - 1) // factor + 1]
+    start = signal.start + HALF_TAPS * factor / signal.rate
+    return replace(signal, values=whole, rate=signal.rate / factor, start=start)
+
+
+def standing_out(train: PulseTrain, pattern: Array, turns: int) -> list[tuple[float, float]]:
+    """Whole and half orders of a pulse train's own shaft above its noise, with their amplitudes [rad]."""
+    length = 2 * max(1, turns // 2)
+    windows, fits = rotation_windows(train, 1.0, length, np.zeros(0), pattern, 0)
+    teeth = train.pulses_per_turn
+    power = np.zeros(length * teeth // 2 + 1)
+    for one, fit in zip(windows, fits, strict=True):
+        row = np.zeros(length * teeth)
+        place = (train.number[one.first : one.last] - train.number[one.first]) % (length * teeth)
+        row[place] = fit.residual
+        power += np.abs(2 * np.fft.rfft(row) / len(row)) ** 2
+    size = np.sqrt(power / len(fits))
+    # Each order against what stands around it at orders that are no halves.
+    noise = float(np.median(size[1:])) * 1.2
+    step = length // 2
+    halves = np.arange(step, len(size), step)
+    # A strong order that changes within the window reaches into those beside it.
+    beside = {at: max(float(size[at - step]), float(size[min(at + step, len(size) - 1)])) for at in halves.tolist()}
+    return [
+        (at / length, float(size[at]))
+        for at in halves.tolist()
+        if size[at] > max(ABOVE_NOISE * noise, LEAKS * beside[at])
+    ]

@@ -1,0 +1,83 @@
+"""docs/measured.md: its description is read, its examples run in order, its command answers."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pages
+from typer.testing import CliRunner
+
+import trunnion as tn
+from trunnion.cli.program import app
+from trunnion.measured.signals.channel_file import description_of
+
+
+def test_the_description_of_the_page() -> None:
+    (text,) = pages.blocks("measured", "toml")
+    found = description_of(tomllib.loads(text), "page")
+    assert abs(found.rate - 200e3) < 1e-6 and [one.label for one in found.columns] == ["input", "hub", "gauge"]
+    assert found.columns[2].unit_size == 1000.0 and found.columns[1].pitch_error == 0.01
+
+
+def test_examples_run_in_order() -> None:
+    text, names = pages.run_page("measured")
+    assert "measurement of 3 channels" in text and "pitch errors of 2 wheels" in text
+    found, line = names["found"], names["line"]
+    truth = tn.order_response(line, found.speed)
+    orders = np.round(truth.order, 9).tolist()
+    for k in (1, 2):
+        true = np.abs(truth.rotation[:, orders.index(k), truth.inertias.index("hub")])
+        got = np.abs(found.amplitude[:, found.row(k), found.column("hub")])
+        assert np.abs(got - true).max() < 5e-3 * true.max()
+        assert np.mean(np.abs(got - true) < found.half_width[:, found.row(k), found.column("hub")]) > 0.9
+
+
+def write_edges(run: tn.Measurement, path: Path) -> None:
+    """Times of edges as a counter writes them, with the description beside."""
+    longest = max(len(one.times) for one in run.pulses)
+    rows = np.full((longest, len(run.pulses)), np.nan)
+    for column, one in enumerate(run.pulses):
+        rows[: len(one.times), column] = one.times
+    names = ",".join(one.name for one in run.pulses)
+    np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt="%.12g")
+    channels = [
+        f'[[channel]]\ncolumn = "{one.name}"\nkind = "edges"\npulses_per_turn = {one.pulses_per_turn}\n'
+        f'at = "{one.at}"\nclock = "{one.clock}"\n'
+        for one in run.pulses
+    ]
+    path.with_suffix(".channels.toml").write_text("".join(channels), encoding="utf-8")
+
+
+def test_the_command(tmp_path: Path) -> None:
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), tn.HookeJoint(angle="12 deg"), tn.Shaft(stiffness=2e4, damping=25),
+         tn.Disk(inertia=0.5, name="hub")], operation=tn.Operation(speed="1500 rpm"),
+    )  # fmt: skip
+    tn.dump(line, tmp_path / "line.toml")
+    wheels = {"input": 30, "hub": 30}
+    bench = {"jitter": 1e-7, "pitch_error": 0.02, "wheels": 1}
+    write_edges(tn.measure(line, ("900 rpm", "1800 rpm"), 10.0, wheels, **bench), tmp_path / "run.csv")
+    straight = line.replace_all({"HookeJoint 1": {"angle": 0.0}})
+    write_edges(tn.measure(straight, 100.0, 10.0, wheels, seed=3, **bench), tmp_path / "straight.csv")
+    words = ["track-orders", str(tmp_path / "run.csv"), "--line", str(tmp_path / "line.toml"), "--orders", "2,4"]
+    words += ["--calibration", str(tmp_path / "straight.csv"), "--channel", "hub", "--reference", "input"]
+    done = CliRunner().invoke(app, [*words, "--json", "-o", str(tmp_path / "a.png"), "-o", str(tmp_path / "a.nc")])
+    assert done.exit_code == 0, done.output
+    content = json.loads(done.stdout)
+    assert content["order"] == [2, 4] and content["calibrated"] and content["channel"] == ["input", "hub"]
+    assert (tmp_path / "a.png").stat().st_size > 10_000 and (tmp_path / "a.nc").stat().st_size > 1000
+    text = CliRunner().invoke(app, [*words, "-u", "rpm", "-o", str(tmp_path / "a.csv")]).stdout
+    assert "2 orders of 2 channels" in text and "Largest of each order" in text
+    for wrong, said in (
+        (["--orders", "2,x"], "--orders = '2,x': is no list of orders"),
+        (["--between", "3"], "--between = '3': is no pair of times"),
+        (["--channel", "none"], "channel = 'none': is no channel"),
+        (["--reference", "none"], "channel = 'none': is no channel"),
+    ):
+        refused = CliRunner().invoke(app, [*words, *wrong, "-o", str(tmp_path / "b.png")])
+        assert refused.exit_code == 2 and said in refused.output, refused.output
+    missing = CliRunner().invoke(app, ["track-orders", str(tmp_path / "none.wav")])
+    assert missing.exit_code == 2 and "is not there" in missing.output

@@ -1,0 +1,96 @@
+"""Missing and double pulses against trains whose teeth are known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.measured.signals.edges import rising_edges
+
+
+def edges(rng: np.random.Generator, teeth: int, turns: int) -> np.ndarray:
+    """Times of all teeth of a shaft that speeds up and swings, with pitch errors: from its rotation by bisection."""
+    first, rise = rng.uniform(20, 200), rng.uniform(-2, 20)
+    size, order = rng.uniform(0, 0.3) / teeth, rng.integers(1, 5)
+    pattern = 0.03 * 2 * np.pi / teeth * rng.standard_normal(teeth)
+    target = 2 * np.pi * np.arange(teeth * turns) / teeth + np.tile(pattern, turns) + 1.0
+    low, high = np.zeros(len(target)), np.full(len(target), 4 * target[-1] / first + 1)
+    for _ in range(80):
+        time = (low + high) / 2
+        turned = first * time + rise * time**2 / 2
+        beyond = turned + size * np.sin(order * turned) > target
+        low, high = np.where(beyond, low, time), np.where(beyond, time, high)
+    return (low + high) / 2
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_every_tooth_is_found_again(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    teeth = int(rng.choice([12, 30, 60, 135]))
+    true = edges(rng, teeth, 30)
+    number = np.arange(len(true))
+    kept = rng.random(len(true)) > 0.01
+    kept[:3] = kept[-3:] = True
+    gap = np.diff(true, append=true[-1] + 1)
+    twice = kept & (rng.random(len(true)) < 0.01)
+    twice[-1] = False
+    extra = true[twice] + gap[twice] * rng.uniform(0.05, 0.3, int(twice.sum()))
+    train = tn.PulseTrain(np.sort(np.concatenate([true[kept], extra])), teeth)
+    assert train.missing == int((~kept).sum()) and train.double == int(twice.sum())
+    # Of a pair either edge may stay: numbers are those of the teeth all the same.
+    assert np.array_equal(train.number, number[kept])
+    off = np.abs(train.times - true[kept])
+    assert np.all((off == 0) | twice[kept]) and np.all(off < 0.35 * gap[kept])
+
+
+def test_the_mark_of_a_wheel_is_no_fault_of_the_pickup() -> None:
+    true = edges(np.random.default_rng(7), 60, 20)
+    marked = np.arange(len(true)) % 60 < 58
+    train = tn.PulseTrain(true[marked], 60, name="crank")
+    assert train.missing == 2 * 19 and train.double == 0
+    assert np.array_equal(train.number, np.flatnonzero(marked))
+    (finding,) = tn.Measurement([train]).findings
+    assert "a wheel with a mark" in str(finding)
+
+
+def test_a_train_without_faults_stays_as_it_is() -> None:
+    for seed in range(30):
+        true = edges(np.random.default_rng(1000 + seed), 24, 25)
+        train = tn.PulseTrain(true, 24)
+        assert (train.missing, train.double) == (0, 0) and np.array_equal(train.times, true)
+
+
+@pytest.mark.parametrize("chunk", [1_000_000, 4096, 97])
+@pytest.mark.parametrize("falling", [False, True])
+def test_edges_of_a_voltage(chunk: int, falling: bool) -> None:
+    """Flanks of a known shape with noise, cut into chunks anywhere: all times, once each."""
+    rng = np.random.default_rng(3)
+    rate, rise = 50_000.0, 8e-5
+    up = np.cumsum(rng.uniform(0.8e-3, 1.3e-3, 400))
+    down = up + 0.4e-3
+    time = np.arange(int(rate * (up[-1] + 2e-3))) / rate
+    volt = sum(
+        (np.tanh((time[None, :] - at[:, None]) / rise) * sign).sum(axis=0)
+        for at, sign in ((up[:200], 1.0), (up[200:], 1.0), (down[:200], -1.0), (down[200:], -1.0))
+    )
+    wanted = down if falling else up
+    noise = 0.02 * rng.standard_normal(len(time))
+    # A sample's noise over the slope of 12.5 kV/s is 1.6 µs.
+    for more, most in ((0.0 * noise, 1.5e-6), (noise, 9e-6)):
+        whole = 2.5 + volt + more
+        # The level is taken from the first chunk, which has to show some pulses.
+        parts = [whole[:4096], *(whole[at : at + chunk] for at in range(4096, len(whole), chunk))]
+        found = rising_edges(parts, rate, None, "ch", falling=falling)
+        assert len(found) == len(wanted)
+        assert np.abs(found - wanted).max() < most
+
+
+def test_noise_on_the_level_makes_no_second_edge() -> None:
+    rng = np.random.default_rng(5)
+    time = np.arange(200_000) / 100_000.0
+    volt = np.sin(2 * np.pi * 50 * time) + 0.05 * rng.standard_normal(len(time))
+    found = rising_edges([volt], 100_000.0, None, "ch", falling=False)
+    assert len(found) in (99, 100) and np.abs(np.diff(found) - 0.02).max() < 5e-4
+    plain = np.flatnonzero((volt[1:] > 0) & (volt[:-1] <= 0))
+    assert len(plain) > 2 * len(found)  # what a bare comparison would count
