@@ -184,6 +184,15 @@ class LineFamily(ChartFamily):
         ends = self._coefficients(self.x.values[:1], self.y.values[:1])
         return chain_program(self.assembly.topology, ends, self._by_speed)
 
+    @property
+    def needs_stages(self) -> bool:
+        """Whether its equations have terms that series do not take."""
+        return has_extra(self.program, self.batch(self.x.values[[0, -1]], self.y.values[[0, -1]]))
+
+    def phase(self, x: Array, y: Array) -> float:
+        """Radians of the highest mode over half a period, no less than these, on average of points (x, y)."""
+        return float((self.batch(x, y).frequency * np.sqrt(self.size) * self.period / 2).mean())
+
     def rates(self, x: Array, y: Array) -> LineRates:
         """The equations at points (x, y), each a case."""
         return LineRates.of(self.assembly, self.table(x, y), self.statically_twisted)
