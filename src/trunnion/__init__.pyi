@@ -91,10 +91,10 @@ from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError
 from trunnion.errors import InputError as InputError
 from trunnion.errors import InputRemark as InputRemark
+from trunnion.floquet.certificate.certify import certify_stability as certify_stability
 from trunnion.floquet.charts.stability_chart import load_chart as load_chart
 from trunnion.floquet.charts.stability_chart import stability_chart as stability_chart
 from trunnion.floquet.stability.stability import stability as stability
-from trunnion.floquet.tolerance.certify import certify_stability as certify_stability
 from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
@@ -145,6 +145,8 @@ from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
 from trunnion.motion.transients.transient import transient as transient
+from trunnion.papers.entries import catalogue as catalogue
+from trunnion.papers.reproduce import reproduce as reproduce
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
@@ -158,8 +160,8 @@ from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
-from trunnion.studies.entries import catalogue as catalogue
-from trunnion.studies.reproduce import reproduce as reproduce
+from trunnion.studies.study import study as study
+from trunnion.studies.study import study_cost as study_cost
 from trunnion.systems.events import Event as Event
 from trunnion.systems.family import PeriodicLinearFamily as PeriodicLinearFamily
 from trunnion.systems.gear_pair import base_radius as base_radius

@@ -30,11 +30,6 @@ def bent() -> tn.Driveline:
     )
 
 
-def unloaded() -> tn.Driveline:
-    """Two Hooke's joints and no load."""
-    return bent().replace("load", load_torque=0.0)
-
-
 def straight() -> tn.Driveline:
     """A shaft with stages and an excitation, for what is exact stage by stage."""
     stages = [(5e3, 0.001), (1e4, None)]
