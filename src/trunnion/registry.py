@@ -267,12 +267,14 @@ ANALYSES = (
             "FatigueLife.plot_damage": "trunnion.pictures.fatigue:damage",
         },
         command="trunnion.cli.fatigue:fatigue",
+        view="motion",
     ),
     Analysis(
         "passing",
         "Whether the line comes from one speed to another under its motor's torque, or is captured by a resonance.",
         pictures={"Passing.plot": "trunnion.pictures.transients:passing"},
         command="trunnion.cli.transients:passing",
+        view="motion",
     ),
     Analysis(
         "least_drive",

@@ -144,6 +144,12 @@ def belt(**changes):
     return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
 
 
+def long_line(inertias: int) -> Driveline:
+    """A chain with a joint at its front."""
+    chain = [e for _ in range(inertias) for e in (Shaft(stiffness=1e5, damping=1.0), Disk(inertia=0.1))]
+    return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
+
+
 def planetary(**changes: object) -> Planetary:
     return Planetary(**{"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"} | changes)
 
@@ -1836,6 +1842,11 @@ PYTHON = [
         lambda: Driveline([Shaft(stiffness=1.0)] * 100_000),
         "driveline: has 100000 elements, at most 5000 are taken; stability would need 1.6e+03 GB and 7.5e+02 h",
         "join neighbouring parts",
+    ),
+    (
+        lambda: tn.stability_chart(long_line(300), ("speed", 60, 300, 200), ("HookeJoint 1.angle", 0.0, 0.4, 150)),
+        "driveline: has 300 unknowns: a chart of 30000 points would take about",
+        "stability() at single speeds",
     ),
     (lambda: Driveline(3), "elements: must be a list, not a int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not a Disk", "tn.Driveline(["),
