@@ -13,6 +13,7 @@ from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
 from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
+from trunnion.driveline import Brake as Brake
 from trunnion.driveline import CentrifugalPendulum as CentrifugalPendulum
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
@@ -151,6 +152,7 @@ from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
+from trunnion.response.coupling_temperatures import coupling_temperatures as coupling_temperatures
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity
 from trunnion.response.kinetostatics import check_limits as check_limits

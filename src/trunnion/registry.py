@@ -126,6 +126,13 @@ ANALYSES = (
         view="orders",
     ),
     Analysis(
+        "coupling_temperatures",
+        "Where the temperature of elastic couplings settles by the heat of their damping, if anywhere.",
+        features="linear motion",
+        pictures={"CouplingTemperatures.plot": "trunnion.pictures.coupling_temperatures:coupling_temperatures"},
+        command="trunnion.cli.orders:coupling_temperatures",
+    ),
+    Analysis(
         "speed_sweep",
         "Torque and twist amplitude of every shaft over speed, all orders together; free–free lines included.",
         features="linear motion",
