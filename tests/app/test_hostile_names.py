@@ -33,6 +33,8 @@ TAGS = {"p", "div", "span", "table", "tr", "th", "td", "ul", "li", "pre", "b", "
 """All that a page of the application is made of."""
 SMALL = {"across": "4", "up": "3"}
 QUESTIONS = [
+    ("dashboard", {}),
+    ("live", {"what": "mode"}),
     ("driveline", {}),
     ("verdict", {}),
     ("joints", {}),
@@ -201,6 +203,8 @@ RAN = """() => {
   document.addEventListener('securitypolicyviolation', e => window.hits.push(e.violatedDirective + ' ' + e.sourceFile))
 }"""
 VIEWS = (
+    ("Dashboard", "[data-verdict]"),
+    ("Live", "canvas.view"),
     ("Driveline", "img[alt^='sketch']"),
     ("Verdict", "[data-verdict]"),
     ("Orders", ".bk-Canvas"),
