@@ -422,9 +422,10 @@ export function render({ model, el }) {
     const text = get("scene")
     if (!text) { player?.dispose(); player = null; root.replaceChildren(); root.style.display = "none"; return }
     root.style.display = ""
-    if (player) { player.options.theme = get("theme") || undefined; player.load(JSON.parse(text)); return }
+    if (player) { player.options.theme = get("theme") || undefined; player.load(JSON.parse(text)); player.mark(get("picked") ?? ""); return }
     player = mount(root, JSON.parse(text), { theme: get("theme") || undefined, flat: get("flat") || false, choice: get("choice") ?? 0,
       onpick: name => { if (own) { model.set("picked", name); model.save_changes() } else model.picked = name } })
+    player.mark(get("picked") ?? "")
   }
   show()
   model.on(own ? "change:scene" : "scene", show)
