@@ -203,9 +203,9 @@ RAN = """() => {
   document.addEventListener('securitypolicyviolation', e => window.hits.push(e.violatedDirective + ' ' + e.sourceFile))
 }"""
 VIEWS = (
-    ("Dashboard", "[data-verdict]"),
-    ("Live", "canvas.view"),
     ("Driveline", "img[alt^='sketch']"),
+    ("Dashboard", "[data-value=growth]"),
+    ("Live", "canvas.view"),
     ("Verdict", "[data-verdict]"),
     ("Orders", ".bk-Canvas"),
     ("Joints", "img[alt^='joints and forks']"),

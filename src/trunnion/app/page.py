@@ -66,7 +66,7 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 @keyframes late { from { visibility: hidden; } }
 .refusal, .refusal * { color: #8d0016; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
-.verdict { margin: 4px 0; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
+.verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
 .sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
 a { color: #00558a; }

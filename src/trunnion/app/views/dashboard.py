@@ -120,7 +120,7 @@ class _DashboardPane(VariantPane["DashboardView"]):
         rows = [row for row in data["rows"] if str(row["margin"]).strip()][:MOST_CHECKS]
         cells = joined(
             markup(
-                "<tr class='{2}'><td>{0}</td><td style='white-space:nowrap'>{1}</td></tr>",
+                "<tr class='{2}'><td>{0}</td><td>{1}</td></tr>",
                 row["check"],
                 row["margin"],
                 row["status"],
