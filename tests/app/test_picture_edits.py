@@ -1,5 +1,5 @@
-"""The picture is an editor: a part is clicked, or chosen by keyboard, and changed, moved, taken away or given a neighbour
-beside it; undo takes back."""
+"""The picture is an editor: a part is clicked, or chosen by keyboard, and changed, moved, taken away or given a
+neighbour beside it; undo takes back."""
 
 from __future__ import annotations
 
