@@ -14,7 +14,7 @@ from trunnion.cli.program import app
 
 
 def test_the_file_of_the_page(tmp_path: Path) -> None:
-    (text,) = pages.blocks("transients", "toml")
+    text, fault = pages.blocks("transients", "toml")
     file = tmp_path / "mill.toml"
     file.write_text(text, encoding="utf-8")
     line = tn.load(file)
@@ -25,6 +25,9 @@ def test_the_file_of_the_page(tmp_path: Path) -> None:
     assert content["scenario"] == "start and bite" and content["outcome"] == "reached"
     assert len(content["crossings"]) == 1 and content["energy_error"] < 1e-8
     assert (tmp_path / "start.png").stat().st_size > 10_000
+    more = text + "\n" + fault.replace('"generator"', '"motor"')  # belongs to the last scenario
+    (stated,) = tn.loads(more).scenarios[0].disturbance
+    assert stated.case == "two-phase short circuit" and stated.torques[0].until is None
     wrong = CliRunner().invoke(app, ["transient", str(file), "--scenario", "stat"])
     assert wrong.exit_code == 2 and "is not a scenario of this driveline" in wrong.output
     none = CliRunner().invoke(app, ["transient", "two-shaft-cardan"])

@@ -21,7 +21,15 @@ from trunnion.cli.command_input import (
 )
 from trunnion.cli.options import LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
-from trunnion.cli.readers import is_number, line_of_file, read_box_range, read_line, read_speed, read_speed_ends
+from trunnion.cli.readers import (
+    is_number,
+    line_of_file,
+    place_of_line,
+    read_box_range,
+    read_line,
+    read_speed,
+    read_speed_ends,
+)
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -41,13 +49,6 @@ def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[object
     path, *ends = (part.strip() for part in parts)
     low, high = (float(end) if is_number(end) else end for end in ends)
     return path, (low, high)
-
-
-def _place_of_line(asked: CommandInput, text: str, key: str) -> Path:
-    best = Path(text)
-    if best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir():
-        raise InputError("is no place for a driveline file", key=key, value=text, remedy="best.toml, say")
-    return best
 
 
 def _direction(asked: CommandInput, text: str, key: str) -> str:
@@ -89,7 +90,7 @@ def optimise(
     checks: bool = True,
     designs: int = 600,
     seed: Annotated[int, NumberBounds(0)] = 0,
-    write: Annotated[Path | None, OptionReader(_place_of_line)],
+    write: Annotated[Path | None, OptionReader(place_of_line)],
     load_case: LoadCase = None,
     unit: SpeedUnit,
     progress: Progress,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated, Any
 
 import trunnion as tn
 from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
-from trunnion.cli.options import Line, LineOfFile, Progress, Speed, SpeedRange, SpeedUnit
+from trunnion.cli.options import Line, Progress, Speed, SpeedRange, SpeedUnit
 from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
-from trunnion.cli.readers import read_box_range, read_speed
+from trunnion.cli.readers import place_of_line, read_box_range, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -135,19 +136,24 @@ def tolerance_study(
 
 @Command("certificate", writes=PICTURES_AND_DATA, part="certificate", within=True)
 def certify_stability(
-    line: LineOfFile,
+    line: Line,
     *,
     tolerance: Tolerances,
     speeds: SpeedRange,
     boxes: int = 20_000,
+    write: Annotated[Path | None, OptionReader(place_of_line)],
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
 
-    --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=1%"; default those of the file.
+    --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=1%"; default those of the file, or none.
     --boxes  Boxes judged before the rest is left undecided.
+    --write PATH  Write the line of a counterexample as a driveline file.
     """
     given = dict(tolerance) if tolerance else None
     found = tn.certify_stability(line, given, speeds, most_boxes=boxes, progress=progress)
-    return CommandOutput(found.in_unit(unit))
+    if write is None or found.unstable_line is None:
+        return CommandOutput(found.in_unit(unit))
+    tn.dump(found.unstable_line, write)
+    return CommandOutput(found.in_unit(unit), written=[write])

@@ -48,7 +48,7 @@ def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
         return tn.load(path, tables_anywhere=TABLES_ANYWHERE.get())
     # The studies load much that a file does not need.
     from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import entries
+    from trunnion.papers.entries import entries
 
     names = [e.name for e in entries()]
     if file in names:
@@ -244,3 +244,11 @@ def read_set(texts: Sequence[str] | None) -> dict[str, float]:
             raise InputError("is not NAME=VALUE", key="--set", value=text, remedy="write frequency=1.2, say")
         values[key.strip()] = float(value)
     return values
+
+
+def place_of_line(asked: CommandInput, text: str, key: str) -> Path:
+    """Where a line is to be written."""
+    best = Path(text)
+    if best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir():
+        raise InputError("is no place for a driveline file", key=key, value=text, remedy="best.toml, say")
+    return best

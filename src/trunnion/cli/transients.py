@@ -29,13 +29,14 @@ def transient(
     speed: Annotated[float | None, OptionReader(read_start)],
     tolerance: Tolerance = 1e-10,
     unit: SpeedUnit,
+    progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion transient mill.toml --scenario start -o start.png -o start.nc
 
     --scenario  Name of a [[scenario]] of the file; default: its only one.
     --speed  Of the input when it begins, instead of the scenario's.
     """
-    found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance)
+    found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance, progress=progress)
     return CommandOutput(found, content=lambda: _content(found, unit), outcome=found.outcome)
 
 
@@ -49,6 +50,12 @@ def _scenario(line: tn.Driveline, named: str) -> str:
     return named or known[0]
 
 
+def _acting(line: tn.Driveline, named: str) -> str | None:
+    """The same, or none where a motor of the line drives it."""
+    driven = not line.scenarios and any(isinstance(one, tn.Motor) for _, one in line.parts)
+    return None if driven and not named else _scenario(line, named)
+
+
 @Command("passing", within=True)
 def passing(
     line: Line,
@@ -58,6 +65,7 @@ def passing(
     scenario: str = "",
     phase: float = 0.0,
     unit: SpeedUnit,
+    progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion passing mill.toml --scenario start --from 0rpm --to 1400rpm -o passing.png
 
@@ -66,9 +74,9 @@ def passing(
     --scenario  Whose torques and friction act; default: the only one of the file.
     --phase RADIANS  Angle of the input when it begins.
     """
-    acting = line.scenario(_scenario(line, scenario))
-    found = tn.passing(line, (from_, to), torque=acting.torque, friction=acting.friction, phase=phase)
-    content = {"scenario": acting.name, **found.to_dict()}
+    acting = _acting(line, scenario)
+    found = tn.passing(line, (from_, to), scenario=acting, phase=phase, progress=progress)
+    content = {"scenario": acting or "", **found.to_dict()}
     return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
 
 
@@ -117,9 +125,8 @@ def capture_map(
     --phases  Starting phases of every cell.
     --processes  That compute.
     """
-    acting = line.scenario(_scenario(line, scenario))
     found = tn.capture_map(
-        line, (from_, to), x, y, torque=acting.torque, friction=acting.friction, drive=drive or None,
+        line, (from_, to), x, y, scenario=_acting(line, scenario), drive=drive or None,
         phases=phases, processes=processes, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit), outcome=found.outcome)

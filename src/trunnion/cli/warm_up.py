@@ -127,10 +127,24 @@ def _motions_with_stages() -> None:
     tn.simulate(tn.Driveline(elements), turns=1, speed=1.0)
 
 
+def _transients() -> None:
+    """With what is watched, with formulas, and with clutches that slip; a pendulum that swings."""
+    clutch = tn.SlipClutch(name="clutch", torque=5.0)
+    ends = tn.Disk(name="motor", inertia=1.0), tn.Disk(name="load", inertia=1.0)
+    shaft = tn.Shaft(stiffness=100.0, damping=0.1)
+    push = tn.AppliedTorque(on="motor", formula="2*max(t, 0.01)")
+    level = tn.LevelCrossing(of="motor", speed=1e3)
+    for elements in ([ends[0], shaft, ends[1]], [ends[0], clutch, tn.Disk(inertia=1.0), shaft, ends[1]]):
+        tn.transient(tn.Driveline(elements), 0.02, torque=[push], crossing=[level], speed=1.0)
+    pendulum = tn.CentrifugalPendulum(mass=0.1, radius=0.1, order=2.0)
+    tn.simulate(tn.Driveline([tn.ConstantSpeed(), shaft, ends[0], pendulum]), turns=1, speed=1.0)
+
+
 PARTS: dict[str, Callable[[], None]] = {
     "charts of plain lines": _charts_of_plain_lines,
     "charts of loaded lines": _charts_of_loaded_lines,
     "reports and motions": _reports,
     "motions with stages": _motions_with_stages,
+    "transients": _transients,
 }
 """What is compiled, each in a process of its own."""

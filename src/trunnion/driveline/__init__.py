@@ -3,13 +3,17 @@
 Importing this package loads pydantic and nothing heavier; pint is loaded when the first unit is read.
 """
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.component_files import component, components
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
@@ -27,10 +31,10 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import deg, hz, rpm
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
@@ -45,6 +49,8 @@ __all__ = [
     "STARTERS",
     "CentrifugalPendulum",
     "AppliedTorque",
+    "Disturbance",
+    "TorqueFunction",
     "LevelCrossing",
     "FrictionTorque",
     "Scenario",
@@ -86,6 +92,7 @@ __all__ = [
     "TorquePoint",
     "TransmissionError",
     "Belt",
+    "Brake",
     "Clutch",
     "Slider",
     "SlipClutch",

@@ -461,7 +461,7 @@ def _table(record: Record, *without: str, speed_unit: str | None = None) -> dict
 
 
 def _scenario_blocks(scenario: Scenario, unit: str | None) -> list[str]:
-    nested = ("torque", "friction", "crossing")
+    nested = ("torque", "friction", "disturbance", "crossing")
     blocks = [_block("[[scenario]]", _table(scenario, *nested, speed_unit=unit))]
     for key in nested:
         blocks += [_block(f"[[scenario.{key}]]", _table(one, speed_unit=unit)) for one in getattr(scenario, key)]

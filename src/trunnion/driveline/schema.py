@@ -6,9 +6,11 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.ball_joints import Ripple
 from trunnion.driveline.clutches import Slider
 from trunnion.driveline.curve_points import TorquePoint
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.files import FORMAT, TABLES
@@ -20,7 +22,7 @@ from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
 from trunnion.driveline.rules import SwitchedOff
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.sn_curves import SNCurve
@@ -62,6 +64,7 @@ _RULES: dict[str, dict[str, Any]] = {
             "clamping_shares": ["clamping_times"],
         }
     },
+    "Brake": {"dependentRequired": {"stribeck_speed": ["static_torque"]}},
     "CentrifugalPendulum": {"oneOf": [{"required": ["order"]}, {"required": ["length"]}]},
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],
@@ -200,6 +203,7 @@ def json_schema() -> dict[str, Any]:
             "Scenario": _model(Scenario),
             "AppliedTorque": _applied_torque(),
             "FrictionTorque": _model(FrictionTorque),
+            "Disturbance": _model(Disturbance),
             "LevelCrossing": _model(LevelCrossing),
             "Excitation": _model(Excitation),
             "PressureCurve": _model(PressureCurve),

@@ -7,18 +7,21 @@ that are known beforehand and where a speed or an angle comes to a knot, which i
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import ctypes
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.errors import InputError
+from trunnion.laws.formula import Formula, formula
 from trunnion.laws.torque_curve import KlossCurve
 
 POWERS = 4
@@ -80,8 +83,42 @@ class PlacedTorque:
     sense: float
     axes: tuple[TorqueAxis, ...]
 
+    @cached_property
+    def formula(self) -> Formula | None:
+        """What is stated as a formula."""
+        return None if self.stated.formula is None else formula(self.stated.formula)
+
+    @cached_property
+    def _through(self) -> Array:
+        """Powers (4, piece) of the monotone cubic between its knots."""
+        return np.asarray(PchipInterpolator(self.axes[0].knots, np.array(self.stated.torque)).c[::-1])
+
+    @cached_property
+    def called(self) -> CalledFunction | None:
+        """What is stated as a function in Python."""
+        return CalledFunction(self.stated.function) if isinstance(self.stated, TorqueFunction) else None
+
+    @cached_property
+    def program(self) -> Array:
+        """What the kernel reads of a formula; the side of every kink is as it is."""
+        if self.formula is None:
+            return np.zeros(0)
+        core, said = line_kernel(), self.formula
+        head = [len(said.instructions), said.kinks, *[0.0] * said.kinks]
+        steps = [number for one in said.instructions for number in (getattr(core, one.code), one.number)]
+        return np.array([*head, *steps, *[0.0] * said.depth], dtype=float)
+
+    def acts(self, pieces: Sequence[int]) -> bool:
+        """Whether a formula or a function acts, between since and until."""
+        if not self.axes:
+            return True
+        since, until = self.stated.since, self.stated.until
+        return (since is None or pieces[0] >= 0) and (until is None or pieces[0] < len(self.axes[0].knots) - 1)
+
     def cell(self, pieces: Sequence[int]) -> TorquePiece:
-        """The polynomials of a piece of every axis."""
+        """The polynomials of a piece of every axis; of what is a formula or a function, where it does not act."""
+        if self.stated.by_program:
+            return TorquePiece(0.0, 0.0, np.zeros((POWERS, POWERS)), _one())
         if self.stated.is_motor:
             return self._motor(pieces)
         if self.stated.power is not None:
@@ -101,7 +138,7 @@ class PlacedTorque:
             return TorquePiece(0.0, 0.0, above, below)
         low, high = knots[piece], knots[piece + 1]
         if self.stated.between == "cubic":
-            above[:, 0] = PchipInterpolator(knots, torque).c[::-1, piece]
+            above[:, 0] = self._through[:, piece]
         else:
             above[:2, 0] = torque[piece], (torque[piece + 1] - torque[piece]) / (high - low)
         return TorquePiece(float(low), 0.0, above, below)
@@ -146,6 +183,10 @@ class PlacedTorque:
     def value(self, time: float, speed: float, angle: float) -> float:
         """The torque [N m] at a time, where its disk has this speed and angle, both in its own sense."""
         given = {"time": time, "speed": speed, "angle": angle, "": 0.0}
+        if self.stated.by_program and self.acts([axis.piece(time) for axis in self.axes]):
+            if self.called is not None:
+                return self.called.value(time, speed, angle)
+            return float(line_kernel().formula(self.program, 0, time, speed, angle, -1)[0])
         cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
         u = given[self.first] - cell.first
         v = given[self.second] - cell.second
@@ -155,7 +196,8 @@ class PlacedTorque:
     @property
     def first(self) -> str:
         """Its first variable; "" where there is none."""
-        return self.axes[0].variable if self.axes and self.stated.power is None else ""
+        plain = self.stated.power is None and not self.stated.by_program
+        return self.axes[0].variable if self.axes and plain else ""
 
     @property
     def second(self) -> str:
@@ -165,12 +207,52 @@ class PlacedTorque:
             return "speed"
         return self.axes[1].variable if len(self.axes) > 1 else ""
 
-    def row(self, pieces: Sequence[int]) -> Array:
-        """What the kernel reads of a piece."""
+    def row(self, pieces: Sequence[int], program: int = 0) -> Array:
+        """What the kernel reads of a piece; ``program``: where that of a formula stands among the numbers."""
         core, cell = line_kernel(), self.cell(pieces)
+        if self.stated.by_program and self.acts(pieces):
+            code, place = (core.FORMULA, program) if self.called is None else (core.FUNCTION, self.called.address)
+            head = [self.station, self.sense, self.sense, code, place, core.NONE, 0.0]
+            return np.concatenate([head, cell.above.ravel(), cell.below])
         codes = {"": core.NONE, "time": core.TIME, "speed": core.SPEED, "angle": core.TURNED}
         head = [self.station, self.sense, self.sense, codes[self.first], cell.first, codes[self.second], cell.second]
         return np.concatenate([head, cell.above.ravel(), cell.below])
+
+
+class CalledFunction:
+    """A function in Python that the kernels call back; its error is kept, and a torque of NaN ends the run."""
+
+    def __init__(self, function: Callable[[float, float, float], float]) -> None:
+        self.function, self.error = function, None
+        self._back = ctypes.CFUNCTYPE(ctypes.c_double, *[ctypes.c_double] * 3)(self._caught)
+        self.address = ctypes.cast(self._back, ctypes.c_void_p).value or 0
+
+    error: BaseException | None
+
+    def value(self, time: float, speed: float, angle: float) -> float:
+        """The torque [N m].
+
+        Raises
+        ------
+        InputError : what the function gives is no number. Anything that the function raises.
+        """
+        found = self.function(time, speed, angle)
+        try:
+            return float(found)
+        except (TypeError, ValueError):
+            raise InputError(
+                "gives no number", element="torque", key="function", value=type(found).__name__,
+                remedy="let it return the torque in N m",
+            ) from None  # fmt: skip
+
+    def _caught(self, time: float, speed: float, angle: float) -> float:
+        if self.error is not None:
+            return float("nan")
+        try:
+            return self.value(time, speed, angle)
+        except BaseException as error:
+            self.error = error
+            return float("nan")
 
 
 @dataclass(frozen=True)
@@ -228,6 +310,10 @@ def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tupl
 def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
     station = disk_station(assembly, one.on, "torque")
     hold = one.hold or one.between == "steps"
+    if one.by_program:
+        knots = [point for point in (one.since, one.until) if point is not None]
+        own = (TorqueAxis("time", np.array(knots), hold=True),) if knots else ()
+        return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), own)
     axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold, one.below) for key in one.variables)
     return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
 

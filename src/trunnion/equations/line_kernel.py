@@ -22,7 +22,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from llvmlite import ir
 from numba import carray, cfunc, njit, types
+from numba.extending import intrinsic
 
 _POINTER = types.CPointer(types.float64)
 _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER)
@@ -65,6 +67,16 @@ SLIPS_BACK, STICKS, SLIPS_ON = range(3)
 PLACE, WAY, SENSE, FIRST, FROM_FIRST, SECOND, FROM_SECOND, NUMERATOR = range(8)
 NONE, TIME, SPEED, TURNED = range(4)
 POWERS = 4
+# Instead, with FIRST one of these: a formula, whose program stands at p[FROM_FIRST], or a function of time, speed and
+# angle at the address FROM_FIRST.
+FORMULA, FUNCTION = 4, 5
+# Of a program: how many instructions it has, how many kinks, the side of each kink (±1, or 0: as it is), the
+# instructions, each a code and a number, and room for the values in hand.
+INSTRUCTIONS, KINKS, SIDES = range(3)
+(CONSTANT, TIME_NOW, SPEED_NOW, ANGLE_NOW, PLUS, MINUS, TIMES, OVER_BY, POWER, NEGATIVE) = range(10)
+(SIN, COS, TAN, ARCTAN, EXP, LOG, SQRT, TANH) = range(10, 18)
+# These have a kink or jump, where what they switch by changes its sign: an argument, or the difference of two.
+ABS, MIN, MAX, STEP_AT = range(18, 22)
 DENOMINATOR = NUMERATOR + POWERS * POWERS
 PER_APPLIED = DENOMINATOR + POWERS
 # Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
@@ -181,11 +193,104 @@ def variable(which, t, angle, speed):
     return angle if which == TURNED else 0.0
 
 
+@intrinsic
+def _called(typing, address, t, speed, angle):
+    """The function at an address: double(double, double, double)."""
+
+    def code(context, builder, signature, args):
+        function = ir.FunctionType(ir.DoubleType(), [ir.DoubleType()] * 3)
+        return builder.call(builder.inttoptr(args[0], function.as_pointer()), list(args[1:]))
+
+    return types.float64(types.int64, types.float64, types.float64, types.float64), code
+
+
+@njit(cache=True, nogil=True)
+def formula(p, at, t, speed, angle, kink):
+    """The value of the program at p[at:], and what its ``kink`` switches by (0.0 of none)."""
+    count, kinks = int(p[at + INSTRUCTIONS]), int(p[at + KINKS])
+    begin = at + SIDES + kinks
+    top, met, switch = begin + 2 * count - 1, 0, 0.0
+    for i in range(count):
+        code, number = int(p[begin + 2 * i]), p[begin + 2 * i + 1]
+        if code == CONSTANT:
+            top += 1
+            p[top] = number
+        elif code == TIME_NOW:
+            top += 1
+            p[top] = t
+        elif code == SPEED_NOW:
+            top += 1
+            p[top] = speed
+        elif code == ANGLE_NOW:
+            top += 1
+            p[top] = angle
+        elif code <= POWER:
+            top -= 1
+            a, b = p[top], p[top + 1]
+            if code == PLUS:
+                p[top] = a + b
+            elif code == MINUS:
+                p[top] = a - b
+            elif code == TIMES:
+                p[top] = a * b
+            elif code == OVER_BY:
+                p[top] = a / b if b != 0.0 else math.nan
+            else:
+                p[top] = a**b if a >= 0.0 or b == math.floor(b) else math.nan
+        elif code == NEGATIVE:
+            p[top] = -p[top]
+        elif code == SIN:
+            p[top] = math.sin(p[top])
+        elif code == COS:
+            p[top] = math.cos(p[top])
+        elif code == TAN:
+            p[top] = math.tan(p[top])
+        elif code == ARCTAN:
+            p[top] = math.atan(p[top])
+        elif code == EXP:
+            p[top] = math.exp(p[top]) if p[top] < 700.0 else math.inf
+        elif code == LOG:
+            p[top] = math.log(p[top]) if p[top] > 0.0 else math.nan
+        elif code == SQRT:
+            p[top] = math.sqrt(p[top]) if p[top] >= 0.0 else math.nan
+        elif code == TANH:
+            p[top] = math.tanh(p[top])
+        else:
+            if code == MIN or code == MAX:
+                top -= 1
+                by = p[top] - p[top + 1]
+            else:
+                by = p[top]
+            if met == kink:
+                switch = by
+            side = p[at + SIDES + met]
+            above = side > 0.0 or (side == 0.0 and by >= 0.0)
+            if code == ABS:
+                p[top] = p[top] if above else -p[top]
+            elif code == STEP_AT:
+                p[top] = 1.0 if above else 0.0
+            elif (code == MAX) != above:
+                p[top] = p[top + 1]
+            met += 1
+    return p[top], switch
+
+
+@njit(cache=True, nogil=True)
+def formulas(p, at, t, speed, angle, out):
+    """The values of a program along a motion (m,)."""
+    for i in range(t.size):
+        out[i] = formula(p, at, t[i], speed[i], angle[i], -1)[0]
+
+
 @njit(cache=True, nogil=True)
 def applied(p, q, t, angle, speed):
     """The applied torque at p[q:] without its WAY, and its slopes by angle and speed of its station, both counted in
-    its SENSE."""
+    its SENSE; of a formula or a function no slopes are known."""
     first, second = int(p[q + FIRST]), int(p[q + SECOND])
+    if first == FORMULA:
+        return formula(p, int(p[q + FROM_FIRST]), t, speed, angle, -1)[0], 0.0, 0.0
+    if first == FUNCTION:
+        return _called(int(p[q + FROM_FIRST]), t, speed, angle), 0.0, 0.0
     u = variable(first, t, angle, speed) - p[q + FROM_FIRST]
     v = variable(second, t, angle, speed) - p[q + FROM_SECOND]
     above, by_u, by_v = 0.0, 0.0, 0.0
@@ -285,6 +390,8 @@ def line(t, y_, p_, k, regime, out_):
         sense, reference = p[q + SENSE], int(p[HEAD + s * PER_STATION + REFERENCE])
         angle = sense * (p[HEAD + s * PER_STATION + MEAN] * theta + d[s])
         push, turned_by, sped_by = applied(p, q, t, angle, sense * v[s])
+        if k and int(p[q + FIRST]) >= FORMULA:
+            return 1  # tangents would want slopes
         way = p[q + WAY]
         push, turned_by, sped_by = way * push, way * sense * turned_by, way * sense * sped_by
         torque[i] += r[s] * push

@@ -20,6 +20,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonics
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
@@ -189,12 +190,14 @@ class LineSystem(Portable):
         known: LineCoefficients | None = None,
         case: int = 0,
         applied: Array | None = None,
+        programs: Array | None = None,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
-        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row.
+        number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row;
+        ``programs`` : of their formulas, which stand behind them.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -209,7 +212,9 @@ class LineSystem(Portable):
         if self.leaves and topo.free:
             stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
         if on.acceleration:
-            refuse_curves(topo, "use tn.order_response at several speeds, or tn.simulate at one")
+            elsewhere = "use tn.order_response at several speeds, or tn.simulate at one"
+            refuse_curves(topo, elsewhere)
+            refuse_torque_tables(self.assembly.line, elsewhere)
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
@@ -236,6 +241,8 @@ class LineSystem(Portable):
             begin += behind[-1].size
         if applied is not None:
             behind.append(applied.ravel())
+        if programs is not None:
+            behind.append(programs)
         pendulums = placed_pendulums(self.assembly, row)
         behind.append(released_numbers(clutches, strides[len(friction_sliders) :], pendulums))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]

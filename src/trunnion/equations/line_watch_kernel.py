@@ -16,16 +16,20 @@ from trunnion_kernels.integration_kernel import call_rate
 from trunnion_kernels.line_kernel import (
     COMPLIANCES,
     FAR,
+    FROM_FIRST,
     HEAD,
     LAW,
     MEAN,
     NEAR,
     PER_COMPLIANCE,
     PER_STATION,
+    PLACE,
+    SENSE,
     SLIDERS,
     STATIONS,
     UNKNOWNS,
     course,
+    formula,
     mean_rotation,
     mesh_error,
     places,
@@ -40,8 +44,9 @@ FRONT = 4
 KIND, OF, FACTOR, SINCE, LEVEL = range(5)
 PER_WATCHED = LEVEL + 4
 # Speed and angle of a station; twist, torque and rate of twist of a compliance; the speed of the mean rotation of the
-# whole line; the torque on an unknown rotation.
-STATION_SPEED, STATION_ANGLE, TWIST, TORQUE, TWIST_RATE, MEAN_SPEED, ON_UNKNOWN = range(7)
+# whole line; the torque on an unknown rotation; what a kink of an applied formula switches by, whose number stands in
+# place of SINCE.
+STATION_SPEED, STATION_ANGLE, TWIST, TORQUE, TWIST_RATE, MEAN_SPEED, ON_UNKNOWN, KINK = range(8)
 STEP = 1e-6
 """Of the differences that gradients are taken from; they steer Newton's method and tell a sign, no more."""
 
@@ -81,6 +86,11 @@ def watched_values(t, x, asked, p, regime, out, g):
             value = p[rest + 7 * n + of]
         elif kind == MEAN_SPEED:
             _, value = mean_rotation(theta, omega, p, count, d, v)
+        elif kind == KINK:
+            s, sense = int(p[of + PLACE]), p[of + SENSE]
+            angle = sense * (p[HEAD + s * PER_STATION + MEAN] * theta + d[s])
+            number = int(asked[at + SINCE])
+            _, value = formula(p, int(p[of + FROM_FIRST]), t, sense * v[s], angle, number)
         else:
             value = p[rest + 3 * n + of]
         level = 0.0

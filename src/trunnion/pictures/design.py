@@ -14,7 +14,7 @@ from trunnion.design.optimisation.result import Optimum
 from trunnion.design.sensitivity.result import Sensitivities, SensitivityQuantity, share_of, smaller, too_large
 from trunnion.design.tolerance.tolerance_study import ToleranceStudy
 from trunnion.errors import InputError
-from trunnion.floquet.tolerance.certify import StabilityCertificate
+from trunnion.floquet.certificate.certify import StabilityCertificate
 from trunnion.pictures.picture import (
     EVEN,
     MARGIN,
@@ -291,6 +291,8 @@ def _limit(across: Axis, slowest: float, fastest: float) -> tuple[Axis, list[Ite
 
 def certificate(found: StabilityCertificate) -> Picture:
     """Boxes over the two directions that were split most; the others lie behind one another, open ones in front."""
+    if not found.parameters:
+        return _along_speed(found)
     names, units = ("speed", *found.parameters), ("rad/s", *found.units)
     directions = most_split(found)
     quantities = [Words(found.unit).parameter(names[k], units[k]) for k in directions]
@@ -309,6 +311,30 @@ def certificate(found: StabilityCertificate) -> Picture:
         items.append(points_at(at, "counterexample", "unstable line"))
     across, up = (axis_of(one, *(end[k] for end in found.ends)) for one, k in zip(quantities, directions, strict=True))
     return single(across, up, items, 6.3, 4.9, _certified(found), grid="")
+
+
+def _along_speed(found: StabilityCertificate) -> Picture:
+    """Of the line as it is: ranges of speed side by side."""
+    speed = Words(found.unit).parameter("speed", "rad/s")
+    items: list[Item] = []
+    parts = (
+        ("proved", "proved stable", found.proved_low, found.proved_high),
+        ("open", "left open", found.undecided_low, found.undecided_high),
+    )
+    for role, name, low, high in parts:
+        if len(low):
+            a, b = low[:, 0] * speed.factor, high[:, 0] * speed.factor
+            none, one = np.zeros_like(a), np.ones_like(a)
+            corners = np.stack(
+                [np.stack([a, none], 1), np.stack([b, none], 1), np.stack([b, one], 1), np.stack([a, one], 1)], 1
+            )
+            ranges = f"{len(low)} range{'s' if len(low) > 1 else ''} of speed"
+            items.append(Shapes(list(corners), role if len(low) <= BOXES else f"{role}, many", f"{name} ({ranges})"))
+    if found.counterexample is not None:
+        at = [found.counterexample["speed"] * speed.factor, 0.5]
+        items.append(points_at(at, "counterexample", "unstable line"))
+    across = axis_of(speed, *(end[0] for end in found.ends))
+    return single(across, Axis("the line as it is", "", 0.0, 1.0), items, 6.3, 2.6, _certified(found), grid="")
 
 
 def most_split(found: StabilityCertificate) -> tuple[int, int]:
@@ -332,7 +358,7 @@ def _certified(found: StabilityCertificate) -> str:
     if found.verdict == "undecided":
         head = f"undecided: {100 * found.undecided_share:.3g} % of the volume left open"
     behind = len(found.parameters) - 1
-    if not behind:
+    if behind < 1:
         return head
     others = "1 other direction" if behind == 1 else f"{behind} other directions"
     return f"{head}\nboxes of {others} behind one another"

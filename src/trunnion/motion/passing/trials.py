@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
+from trunnion.driveline.applied_torque import AppliedTorque, TorqueFunction
 from trunnion.driveline.arguments import numbers, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.machines import Motor
 from trunnion.driveline.parameters import pack
-from trunnion.driveline.scenarios import AppliedTorque
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.passing import passing_kind
@@ -86,6 +86,10 @@ def scaled(torque: AppliedTorque, factor: float) -> AppliedTorque:
         return torque.but(breakdown_torque=factor * float(most))
     if torque.power is not None:
         return torque.but(power=factor * torque.power)
+    if isinstance(torque, TorqueFunction):
+        return torque.but(function=lambda *at: factor * torque.function(*at))
+    if torque.formula is not None:
+        return torque.but(formula=f"{factor!r}*({torque.formula})")
     if torque.table:
         return torque.but(table=(factor * np.array(torque.table)).tolist())
     return torque.but(torque=[factor * float(one) for one in torque.torque])

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.equations.stage_laws import has_stages, stage_law
 from trunnion.motion.transients.stepping import Piece
@@ -68,9 +69,14 @@ def applied_torques(piece: Piece, times: Array, angle: Array, speed: Array) -> A
     """Torque of every applied torque and friction (time, torque) [N m], in the rotation of its station."""
     core, numbers = line_kernel(), piece.numbers
     at, found = int(numbers[core.APPLIED_AT]), []
-    for _ in range(int(numbers[core.APPLIED])):
+    for one in piece.acting:
         row = numbers[at : at + core.PER_APPLIED]
         station, sense = int(row[core.PLACE]), row[core.SENSE]
+        if int(row[core.FIRST]) >= core.FORMULA:
+            own_speed, own_angle = sense * speed[:, station], sense * angle[:, station]
+            found.append(row[core.WAY] * _programmed(one, row, numbers, times, own_speed, own_angle))
+            at += core.PER_APPLIED
+            continue
         variables = [np.zeros(len(times)), times, sense * speed[:, station], sense * angle[:, station]]
         u = variables[int(row[core.FIRST])] - row[core.FROM_FIRST]
         v = variables[int(row[core.SECOND])] - row[core.FROM_SECOND]
@@ -79,6 +85,19 @@ def applied_torques(piece: Piece, times: Array, angle: Array, speed: Array) -> A
         found.append(row[core.WAY] * np.polynomial.polynomial.polyval2d(u, v, above) / below)
         at += core.PER_APPLIED
     return np.array(found).reshape(-1, len(times)).T
+
+
+def _programmed(
+    one: PlacedTorque | PlacedFriction, row: Array, numbers: Array, times: Array, speed: Array, angle: Array
+) -> Array:
+    """A formula, or a function in Python, along a motion (time,)."""
+    core, out = line_kernel(), np.empty(len(times))
+    if int(row[core.FIRST]) == core.FORMULA:
+        core.formulas(numbers, int(row[core.FROM_FIRST]), np.ascontiguousarray(times), speed, angle, out)
+        return out
+    assert isinstance(one, PlacedTorque) and one.called is not None
+    places = np.transpose([times, speed, angle]).tolist()
+    return np.array([one.called.value(*place) for place in places])
 
 
 def station_angles(piece: Piece, times: Array, rotation: Array) -> Array:

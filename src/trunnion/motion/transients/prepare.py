@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.machines import Motor
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, wrong_places_of
+from trunnion.driveline.scenarios import LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
@@ -32,15 +34,25 @@ def actions_of(
     return tuple(torque), tuple(friction), tuple(crossing)
 
 
+def refuse_others(several: Sequence[object], kind: type, key: str) -> None:
+    """Refuse what is of another kind.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    for one in several:
+        if not isinstance(one, kind):
+            remedy = f"write [tn.{kind.__name__}(…)]"
+            raise InputError(f"is not a list of {kind.__name__}", key=key, value=one, remedy=remedy)
+
+
 def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Driveline, Actions]:
     """The line as its torques drive it from an input ``speed`` [rad/s] on, and all that acts on it: a disk that is
     given a torque has no share any more, and machines act by their curves."""
     kinds = {"torque": AppliedTorque, "friction": FrictionTorque, "crossing": LevelCrossing}
     for (key, kind), several in zip(kinds.items(), asked, strict=True):
-        for one in several:
-            if not isinstance(one, kind):
-                remedy = f"write [tn.{kind.__name__}(…)]"
-                raise InputError(f"is not a list of {kind.__name__}", key=key, value=one, remedy=remedy)
+        refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
     given = {one.on for one in asked[0]}
@@ -76,6 +88,7 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> tuple[LineSy
         the speed.
     """
     refuse_pendulums(line)
+    refuse_torque_tables(line, "write the stiffness at the torque that matters")
     driven, acting = driven_line(line, asked, speed)
     prepared = line_system(driven, abs(speed), leaves=True, slips=True)
     for one in prepared.torques:
@@ -91,6 +104,7 @@ def follow(
     tolerance: float,
     most_steps: int,
     mean_speed: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Found:
     """The motion from ``place`` on for ``duration`` [s].
 
@@ -114,7 +128,7 @@ def follow(
         prepared, torques, frictions, asked[2], tolerance=tolerance, most_steps=most_steps,
         unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
     )  # fmt: skip
-    return stepper.run(place, duration)
+    return stepper.run(place, duration, progress)
 
 
 def _require_times(torque: PlacedTorque, since: float, until: float) -> None:

@@ -40,6 +40,10 @@ FURTHEST = 0.2
 that comes to ten times as much is made again, shorter."""
 FIRST_PIECE = 0.01
 """Of the run."""
+LEAST = 1e-9
+"""Share of a run that is left to no piece of its own."""
+LOOKED_AT = 0.05
+"""Share of a run with a prescribed speed after which it is looked whether it is to go on."""
 BESIDE = 1e-9
 """Share of a piece of a table by which a speed goes beyond its end before the next one is taken: so that a switch
 begins on its own side."""
@@ -53,6 +57,9 @@ SHORT = 1e-3
 CHECKS, EXCESS = 16, 1e-6
 """Stretches of a piece at whose ends it is checked what sticks, and the share beyond what it bears that is an error."""
 
+
+SIDE = 1e-3
+"""Share of its change in a short time below which what a kink switches by counts as zero."""
 
 LOCATED = -1
 
@@ -145,8 +152,15 @@ class Stepper:
         self.share = line.shares(co.inertia[0]) if self.free else np.zeros(self.topo.size)
         self.turning = rigid_rotation(self.topo)
         count = len(self.torques) + len(self.frictions)
-        self.numbers = line.numbers(row, known=co, applied=np.zeros((count, self.core.PER_APPLIED)))
+        programs = [one.program for one in self.torques]
+        self.numbers = line.numbers(
+            row, known=co, applied=np.zeros((count, self.core.PER_APPLIED)), programs=np.concatenate([[], *programs])
+        )
         self.applied_at = int(self.numbers[self.core.APPLIED_AT])
+        behind = self.applied_at + count * self.core.PER_APPLIED
+        self.programs = [behind + sum(map(len, programs[:k])) for k in range(len(programs))]
+        for one, place in zip(programs, self.programs, strict=True):
+            self.numbers[place : place + len(one)] = one
         felt, twist = self.topo.on_unknowns(co.inertia[0]), self.topo.elongations
         stiff = twist.T @ (co.stiffness[0][:, None] * twist)
         root = np.sqrt(felt)
@@ -161,18 +175,19 @@ class Stepper:
             (name, station) for station, place in self.topo.disks for name, e in (line.assembly.line.parts[place],)
             if isinstance(e, Vehicle) and e.rolling_resistance
         ]  # fmt: skip
+        self.called = [one.called for one in self.torques if one.called is not None]
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
     # What acts.
 
-    def run(self, place: Place, duration: float) -> Found:
-        """From ``place`` on for ``duration`` [s]."""
-        end = place.time + duration
+    def run(self, place: Place, duration: float, progress: Callable[[float], None] | None = None) -> Found:
+        """From ``place`` on for ``duration`` [s]; ``progress`` is told the share of it that is done."""
+        begin, end = place.time, place.time + duration
         clamping = [t for e in self.line.assembly.line.elements if isinstance(e, SlipClutch) for t in e.clamping_times]
         knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
         place = replace(place, regime=self._regime(place))
-        chunk = FIRST_PIECE * duration if self.free else np.inf
+        chunk = FIRST_PIECE * duration if self.free else LOOKED_AT * duration
         pieces: list[Piece] = []
         crossed: list[tuple[float, str]] = []
         steps, guess, carried = 0, 0.0, np.zeros(0)
@@ -183,13 +198,16 @@ class Stepper:
                 return Found(pieces, place, beyond, crossed)
             if place.time >= end:
                 return Found(pieces, place, Outcome(True, "reached", f"reached t = {place.time:.6g} s"), crossed)
+            if progress is not None:
+                progress((place.time - begin) / duration)
             if why := time_is_up():
                 words = f"{why.replace('the search', 'the run')} at t = {place.time:.6g} s; what was computed is kept"
                 return Found(pieces, place, Outcome(False, "out of time", words), crossed)
             ahead = knots[knots > place.time]
-            until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
+            soon = place.time + chunk if place.time + chunk < end - LEAST * duration else end
+            until = min(soon, float(ahead[0]) if len(ahead) else np.inf)
             place = self._following(self._settled(place, SHORT * (until - place.time)))
-            self._write(place)
+            self._take_sides(place, SHORT * (until - place.time))
             passed = [one for one in self.crossings if self._jumped(one, place, carried)]
             crossed += [(place.time, one.label) for one in passed]
             if ending := next((one for one in passed if one.ends), None):
@@ -201,9 +219,12 @@ class Stepper:
                 tolerance=self.tolerance, most_steps=self.most_steps - steps, watch=self._watch(watched),
                 first_step=guess, partly=True,
             )  # fmt: skip
+            for called in self.called:
+                if called.error is not None:
+                    raise called.error
             off = float(self.share @ trajectory.final[0][: self.topo.size])
-            if abs(off) > 10 * FURTHEST and until == place.time + chunk:
-                chunk *= 0.25
+            if abs(off) > 10 * FURTHEST and until == soon:
+                chunk = 0.25 * min(chunk, until - place.time)
                 continue
             steps += trajectory.steps
             guess = min(trajectory.next_step, until - place.time)
@@ -334,8 +355,8 @@ class Stepper:
         """What the right-hand side reads from ``place`` on."""
         core, at, per = self.core, self.applied_at, self.core.PER_APPLIED
         self._write_course(place)
-        for one, cell in zip(self.torques, self.cells, strict=True):
-            self.numbers[at : at + per] = one.row(cell)
+        for one, cell, program in zip(self.torques, self.cells, self.programs, strict=True):
+            self.numbers[at : at + per] = one.row(cell, program)
             at += per
         for friction in self.frictions:
             self.numbers[at : at + per] = friction.row(place.time, place.senses.get(friction.first, 0.0))
@@ -343,6 +364,47 @@ class Stepper:
         for first in self.groups:
             stands = place.senses.get(first, 1.0) == 0.0
             self.numbers[core.HEAD + first * core.PER_STATION + core.STANDS] = float(stands)
+
+    # On which side of their kinks formulas are.
+
+    def _take_sides(self, place: Place, soon: float) -> None:
+        """Write what is read from ``place`` on, with the side of every kink that lasts until it is switched.
+
+        Where what a kink switches by is zero, its side is that of a short time later, ``soon`` [s] at most.
+        """
+        for program, one in zip(self.programs, self.torques, strict=True):
+            if one.formula is not None:
+                first = program + self.core.SIDES
+                self.numbers[first : first + one.formula.kinks] = 0.0
+        self._write(place)
+        if not any(one.formula is not None and one.formula.kinks for one in self.torques):
+            return
+        here = self._switches(place)
+        if self.fastest:
+            soon = min(soon, SHORT / self.fastest)
+        state = place.state + soon * self._rates(place)
+        angle = place.angle + soon * (place.speed + place.acceleration * soon / 2)
+        later = self._switches(replace(place, time=place.time + soon, angle=angle, state=state))
+        for program, now, then in zip(self.programs, here, later, strict=True):
+            plain = np.abs(now) > SIDE * np.abs(then - now)
+            sides = np.where(np.where(plain, now, then) < 0, -1.0, 1.0)
+            first = program + self.core.SIDES
+            self.numbers[first : first + len(sides)] = sides
+
+    def _switches(self, place: Place) -> list[Array]:
+        """What every kink of every torque switches by (kink,), none where it does not act."""
+        found = []
+        for one, cell, program in zip(self.torques, self.cells, self.programs, strict=True):
+            if one.formula is None or not one.acts(cell):
+                found.append(np.zeros(0))
+                continue
+            angle, speed = (one.sense * value for value in self._of_station(place, one.station))
+            values = [
+                self.core.formula(self.numbers, program, place.time, speed, angle, kink)[1]
+                for kink in range(one.formula.kinks)
+            ]
+            found.append(np.array(values))
+        return found
 
     # What stands or sticks.
 
@@ -484,6 +546,7 @@ class Stepper:
                         found.append(
                             _Watched(kind, one.station, one.sense, level, step, True, self._stepped(k, i, step))
                         )
+        found += self._kinks()
         for first, sense in place.senses.items():
             if sense:
                 stopped = self._stopped(first)
@@ -502,6 +565,18 @@ class Stepper:
             level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
             found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
         return found + [self._asked(one) for one in self.crossings]
+
+    def _kinks(self) -> list[_Watched]:
+        """Where formulas bend or jump: a new piece begins there, on the other side."""
+        core, found, at = watch_kernel(), list[_Watched](), self.applied_at
+        for one, cell, program in zip(self.torques, self.cells, self.programs, strict=True):
+            if one.formula is not None and one.acts(cell):
+                for kink in range(one.formula.kinks):
+                    side = self.numbers[program + self.core.SIDES + kink]
+                    level = (float(kink), 0.0, 0.0, 0.0, 0.0)
+                    found.append(_Watched(core.KINK, at, 1.0, level, -1 if side > 0 else 1, True, lambda place: place))
+            at += self.core.PER_APPLIED
+        return found
 
     def _stepped(self, torque: int, axis: int, step: int) -> Callable[[Place], Place]:
         """A torque comes to the next piece of its table."""

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
-from trunnion.driveline.scenarios import AppliedTorque, FrictionTorque, LevelCrossing, Scenario
+from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -32,6 +34,7 @@ def transient(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    disturbance: Sequence[Disturbance] = (),
     crossing: Sequence[LevelCrossing] = (),
     speed: float | str | None = None,
     phase: float = 0.0,
@@ -39,6 +42,7 @@ def transient(
     tolerance: float = TOLERANCE,
     most_steps: int = MOST_STEPS,
     within: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Transient:
     """Follow a line while torques act on its disks: starts, blows, faults, brakes.
 
@@ -49,6 +53,7 @@ def transient(
     torque : what acts over time, speed or angle; several on one disk add up, and come to what the description puts
         there. A disk with a drive_share that is given a torque is driven by that instead.
     friction : dry friction that resists disks and keeps them at rest.
+    disturbance : short circuits, bites, impacts, tip-ins and brakes by name, which add to both.
     crossing : levels that are watched; the run ends at the first that ``ends``.
     speed : of the input when it begins [rad/s], by default the file's operating speed; 0 is standstill and negative
         turns backwards. Drives with a share go on giving what balances the loads at that speed, which must not be
@@ -59,6 +64,7 @@ def transient(
     tolerance : error allowed per step.
     most_steps : steps after which the run ends.
     within : seconds of computing after which it ends with what it has.
+    progress : called as progress(share done); ``stop`` of a ``time_limit`` around it ends the run with what it has.
 
     Returns
     -------
@@ -85,12 +91,16 @@ def transient(
         duration = description.scenario(duration)
     if isinstance(duration, Scenario):
         scenario = duration
-        if torque or friction or crossing:
+        if torque or friction or crossing or disturbance:
             raise InputError("says what acts by itself", key="scenario", value=scenario.name, remedy="give a duration")
         duration, name = scenario.duration, scenario.name
         torque, friction, crossing = scenario.torque, scenario.friction, scenario.crossing
+        disturbance = scenario.disturbance
         speed = scenario.speed if speed is None else speed
     length = positive_time(duration, "give seconds, or the name of a scenario")
+    refuse_others(disturbance, Disturbance, "disturbance")
+    torque = [*torque, *(made for one in disturbance for made in one.torques)]
+    friction = [*friction, *(made for one in disturbance for made in one.frictions)]
     asked = actions_of(torque, friction, crossing)
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
@@ -110,7 +120,7 @@ def transient(
     angle = one_number(phase, "phase", "np.pi / 2, say")
     state = _start(prepared, _balanced(description, prepared, asked, begin), start, begin, angle)
     place = Place(0.0, state, angle=angle, speed=begin)
-    found = follow(prepared, place, length, acting, tolerance, most_steps)
+    found = follow(prepared, place, length, acting, tolerance, most_steps, progress=progress)
     return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
 
 

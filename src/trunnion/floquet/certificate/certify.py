@@ -1,0 +1,357 @@
+"""A proof that every line within its tolerances is stable over a range of speeds, or a line that is not.
+
+The whole box of speeds and tolerances is tried at once, by the energy of the mean line and by a periodic Lyapunov
+function; where neither proves it, it is halved across the side that brings most of what stands against it, and so are
+its halves. A box whose middle ``stability`` calls unstable ends the search: that line is the counterexample.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Array
+from trunnion.driveline.arguments import SpeedEnds, rising_range, whole_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import ConstantSpeed
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coupling_tables import refuse_torque_tables
+from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
+from trunnion.equations.topology import LinkKind
+from trunnion.errors import ComputationError, InputError
+from trunnion.features import left_out
+from trunnion.floquet.certificate.box_coefficients import NumberRange, require_linear
+from trunnion.floquet.certificate.judge import JudgedBox, judge
+from trunnion.floquet.stability.stability import stability
+from trunnion.floquet.tolerance.parameter_intervals import table_at
+from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
+from trunnion.results.drawing import Axes, drawing
+from trunnion.results.fields import attribute, internal, labelled, variable
+from trunnion.results.finding import Finding
+from trunnion.results.result import Result
+from trunnion.results.variables import Attribute, Coordinate, Variable
+from trunnion.results.verdict import Verdict
+from trunnion.waiting import keeps_time, time_is_up, to_the_end
+
+WIDER = 1e-14
+"""By what share ends of boxes are moved outward."""
+FINEST = 2.0**-40
+"""Share of a side below which a box is not halved further: it stays open."""
+
+
+@labelled
+class StabilityCertificate(Result):
+    """What was proved of all lines within tolerances at all speeds from one to another.
+
+    Boxes have the speed first. ``unstable_line`` is the counterexample as a ``Driveline``.
+    """
+
+    parameters: tuple[str, ...] = internal("that scatter")
+    speeds: tuple[float, float] = attribute("from one to another", "rad/s")
+    verdict: str = attribute('"proved stable", "counterexample" or "undecided"')
+    undecided_share: float = attribute("of the volume in ln(speed) and shares of tolerances")
+    counterexample: dict[str, float] | None = internal("values by name of a line that ``stability`` calls unstable")
+    boxes: int = attribute("how many were judged")
+    undecided_low: Array = variable("open_box variable", words="what stays open, SI units", name="low")
+    undecided_high: Array = variable("open_box variable", words="what stays open, SI units", name="high")
+    proved_low: Array = variable("proved_box variable", words="what was proved, SI units")
+    proved_high: Array = variable("proved_box variable", words="what was proved, SI units")
+    decay: float = variable("", "1/s", "rate at which every disturbance in what was proved dies out at least")
+    units: tuple[str, ...] = internal("of the parameters")
+    unit: str = internal("of speeds in print")
+    findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
+    ended: str = attribute("what ended the search before its last box, as a clause", default="")
+    unstable_line: Driveline | None = internal("the counterexample", default=None)
+
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """The verdict, the counterexample, and the boxes that stay open."""
+        names, known = ["speed", *self.parameters], self.counterexample or {}
+        yield Coordinate("variable", names, "variable")
+        yield Coordinate("open_box", np.arange(len(self.undecided_low)), "open_box")
+        yield Coordinate("proved_box", np.arange(len(self.proved_low)), "proved_box")
+        yield Variable("counterexample", np.array([known.get(name, np.nan) for name in names]), "variable")
+        yield from super().declared()
+
+    @property
+    def ends(self) -> tuple[Array, Array]:
+        """Lowest and highest speed [rad/s] and parameters (1 + parameters,), SI units."""
+        low, high = np.vstack([self.proved_low, self.undecided_low]), np.vstack([self.proved_high, self.undecided_high])
+        return low.min(axis=0), high.max(axis=0)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """What is proved and what is left open; see ``pictures.design.certificate``."""
+        return drawing(self, "plot")(self, axes)
+
+    def _lines(self) -> Iterator[str]:
+        count = len(self.parameters)
+        many = f"{count} tolerance{'s' if count > 1 else ''}"
+        what = f"{many}, from {self.words.ends(*self.speeds)}" if count else f"from {self.words.ends(*self.speeds)}"
+        if self.verdict == "proved stable":
+            yield (
+                f"proved stable: every line within {what}"
+                if count
+                else f"proved stable: the line at every speed {what}"
+            )
+        elif self.counterexample is not None:
+            values = ", ".join(f"{n} = {v:.9g}" for n, v in self.counterexample.items() if n != "speed")
+            at = self.words.speed(self.counterexample["speed"])
+            which = f"the line with {values}" if values else "the line"
+            yield f"not stable {'within ' if count else ''}{what}: at {at} {which} is unstable"
+        else:
+            rest = "the rest is proved stable" if self.undecided_share < 1 else "no part of it is proved stable"
+            ended = f"; {self.ended}" if self.ended else ""
+            inside = "within " if count else ""
+            yield f"undecided {inside}{what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
+        boxes = f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
+        where = "" if self.verdict == "proved stable" else " where proved"
+        known = np.isfinite(self.decay)
+        yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
+
+
+@keeps_time
+def certify_stability(
+    line: Driveline | Assembly,
+    tolerances: Tolerances | None = None,
+    speeds: SpeedEnds | None = None,
+    *,
+    most_boxes: int = 20_000,
+    within: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> StabilityCertificate:
+    """Prove that no line within ``tolerances`` is unstable at any speed between ``speeds`` [rad/s], or find one that
+    is.
+
+    Parameters
+    ----------
+    line : behind a ConstantSpeed, whose shafts branch and close no loop; about its motion without vibration, as
+        ``stability`` judges it.
+    tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
+        line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
+        Normal distributions count as three standard deviations either way.
+    speeds : lowest and highest [rad/s]; None for the range of the description.
+    most_boxes : boxes judged before the rest is left undecided.
+    within : seconds after which the rest is left undecided, and ``ended`` says so.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : the line, or what scatters, is none of these.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> shaft = tn.Shaft(stiffness=1e4, damping=40.0)
+    >>> line = tn.Driveline([tn.ConstantSpeed(), tn.HookeJoint(angle=0.1), shaft, tn.Disk(inertia=0.8)])
+    >>> tn.certify_stability(line, {"Shaft 1.stiffness": 0.05}, (20.0, 160.0))
+    <StabilityCertificate: proved stable: every line within 1 tolerance, from 20 rad/s to 160 rad/s>
+    """
+    description = line.line if isinstance(line, Assembly) else line
+    if speeds is None and description.operation is not None:
+        speeds = description.operation.speed_range
+    span = rising_range(speeds)
+    most_boxes = whole_number(most_boxes, "most_boxes", 1)
+    assembly = assemble(line)
+    require_provable(assembly)
+    require_steady_base(assembly, assembly.table(1, span[0]))
+    given = assembly.line.tolerances_by_path if tolerances is None else tolerances
+    spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
+    space = _Space(assembly, spreads, span)
+    require_linear(assembly, span, space.ranges(np.array([np.zeros(space.size), np.ones(space.size)])))
+    found = _BoxSearch(space, most_boxes, progress or (lambda share: None))
+    found.run()
+    left, proved = found.open_boxes, np.array(found.proved).reshape(-1, 2, space.size)
+    verdict = "counterexample" if found.counterexample else "undecided" if len(left) else "proved stable"
+    return StabilityCertificate(
+        parameters=tuple(s.label for s in spreads),
+        speeds=space.speeds,
+        verdict=verdict,
+        undecided_share=_volume(left),
+        counterexample=found.counterexample,
+        boxes=found.judged,
+        undecided_low=space.values(left[:, 0]),
+        undecided_high=space.values(left[:, 1]),
+        proved_low=space.values(proved[:, 0]),
+        proved_high=space.values(proved[:, 1]),
+        decay=min(found.decays, default=np.nan),
+        units=tuple(s.unit for s in spreads),
+        unit=speed_unit(assembly.line),
+        findings=left_out("certify_stability", assembly.line),
+        ended=found.ended,
+        unstable_line=found.unstable,
+    )
+
+
+def _volume(boxes: Array) -> float:
+    return float(np.prod(boxes[:, 1] - boxes[:, 0], axis=1).sum()) if len(boxes) else 0.0
+
+
+@dataclass(frozen=True)
+class _Space:
+    """Boxes (2, 1 + parameters) of shares from 0 to 1: the first of ln(speed), the others of tolerances."""
+
+    assembly: Assembly
+    spreads: tuple[Spread, ...]
+    speeds: tuple[float, float]
+
+    @property
+    def size(self) -> int:
+        """Variables."""
+        return 1 + len(self.spreads)
+
+    def values(self, shares: Array) -> Array:
+        """Speed and parameters (boxes, 1 + parameters) at shares."""
+        low, high = np.log(self.speeds)
+        columns = [np.exp(low + shares[:, 0] * (high - low))]
+        columns += [s.low + shares[:, k] * (s.high - s.low) for k, s in enumerate(self.spreads, start=1)]
+        found = np.stack(columns, axis=1)
+        # The ends themselves, to the last figure.
+        found[:, 0] = np.where(
+            shares[:, 0] <= 0, self.speeds[0], np.where(shares[:, 0] >= 1, self.speeds[1], found[:, 0])
+        )
+        return found
+
+    def span(self, box: Array) -> tuple[float, float]:
+        """Lowest and highest speed of a box, moved outward."""
+        low, high = self.values(box)[:, 0].tolist()
+        return low * (1 - WIDER), high * (1 + WIDER)
+
+    def ranges(self, box: Array) -> list[NumberRange]:
+        """Its tolerances, moved outward."""
+        low, high = self.values(box)
+        wider = WIDER * np.maximum(np.abs(low), np.abs(high))
+        ends = zip(self.spreads, (low - wider)[1:].tolist(), (high + wider)[1:].tolist(), strict=True)
+        return [NumberRange(one.label, one.columns, least, most) for one, least, most in ends]
+
+    def judged(self, box: Array, *, by_energy: bool = False) -> JudgedBox:
+        """The verdict on one box."""
+        return judge(self.assembly, self.span(box), self.ranges(box), by_energy=by_energy)
+
+    def unstable_at(self, shares: Array) -> tuple[Driveline, dict[str, float]] | None:
+        """The line at ``shares`` (variables,) and its numbers, if ``stability`` finds it unstable."""
+        values = self.values(shares[None])[0]
+        line = self.assembly.line
+        if self.spreads:
+            table = table_at(self.assembly, self.spreads, values[None, 1:])
+            line = self.assembly.packed.line_at(table[0])
+        try:
+            verdict = stability(line, float(values[0])).verdict
+        except ComputationError:  # too stiff to be followed: no counterexample
+            return None
+        if verdict is not Verdict.UNSTABLE:
+            return None
+        names = ("speed", *(s.label for s in self.spreads))
+        return line, dict(zip(names, values.tolist(), strict=True))
+
+
+@dataclass
+class _BoxSearch:
+    """The largest open box next: what is left when the budget ends is then as small as can be."""
+
+    space: _Space
+    most: int
+    report_progress: Callable[[float], None]
+    proved: list[Array] = field(default_factory=list)
+    decays: list[float] = field(default_factory=list)
+    counterexample: dict[str, float] | None = None
+    unstable: Driveline | None = None
+    judged: int = 0
+    ended: str = ""
+    _todo: list[tuple[float, int, Array]] = field(default_factory=list)
+    _kept: list[Array] = field(default_factory=list)
+    _count: int = 0
+
+    @property
+    def open_boxes(self) -> Array:
+        """Boxes (boxes, 2, variables) that are not proved."""
+        return np.array([*(box for _, _, box in self._todo), *self._kept]).reshape(-1, 2, self.space.size)
+
+    def run(self) -> None:
+        """Until everything is proved, a line is unstable, or boxes or time are used up."""
+        whole = np.array([np.zeros(self.space.size), np.ones(self.space.size)])
+        self._put(whole)
+        self.ended = time_is_up()
+        if self.ended:
+            return
+        with to_the_end():  # a box takes tenths of a second at most
+            self.judged += 1
+            found = self.space.judged(whole, by_energy=True)
+            if found.proved:
+                self._todo.clear()
+                self._keep(whole, found)
+                return
+        open_share = 1.0
+        while self._todo and self.judged < self.most:
+            if ended := time_is_up():
+                self.ended = ended
+                return
+            _, _, box = heapq.heappop(self._todo)
+            with to_the_end():
+                found = self.space.judged(box)
+                self.judged += 1
+                if found.proved:
+                    self._keep(box, found)
+                    open_share -= float(np.prod(box[1] - box[0]))
+                elif found.doubtful and self._refuted(box):
+                    self._put(box)
+                    return
+                else:
+                    self._halve(box, found.blame)
+            self.report_progress(min(max(1 - open_share, 0.0), 0.999))
+
+    def _keep(self, box: Array, found: JudgedBox) -> None:
+        self.proved.append(box)
+        self.decays.append(found.decay)
+
+    def _put(self, box: Array) -> None:
+        self._count += 1
+        heapq.heappush(self._todo, (-float(np.prod(box[1] - box[0])), self._count, box))
+
+    def _refuted(self, box: Array) -> bool:
+        found = self.space.unstable_at(box.mean(axis=0))
+        if found is None:
+            return False
+        self.unstable, self.counterexample = found
+        return True
+
+    def _halve(self, box: Array, blame: Array) -> None:
+        """Across the side that brings most; a side that brings nothing is left, one that is very short too."""
+        sides = box[1] - box[0]
+        worth = np.where(sides > FINEST, blame, -1.0)
+        if not worth.max() > 0:
+            worth = np.where(sides > FINEST, sides, -1.0)
+        if not worth.max() > 0:
+            self._kept.append(box)
+            return
+        along = int(worth.argmax()) if np.ptp(worth[worth > 0]) > 0 else int(np.where(worth > 0, sides, -1.0).argmax())
+        middle = (box[0, along] + box[1, along]) / 2
+        lower, upper = box.copy(), box.copy()
+        lower[1, along] = upper[0, along] = middle
+        self._put(lower)
+        self._put(upper)
+
+
+def require_provable(assembly: Assembly) -> None:
+    """Refuse lines whose equations the enclosure does not cover.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    line, topo = assembly.line, assembly.topology
+    remedy = "tolerance_study() says how probable stability is"
+    if not isinstance(line.elements[0], ConstantSpeed) or topo.free:
+        raise InputError(
+            "is free–free, and only lines behind a ConstantSpeed can be certified", element=line.names[0], remedy=remedy
+        )
+    require_tree(assembly, "a certificate does")
+    refuse_dragged(assembly)
+    refuse_torque_tables(line, remedy, "tables are not enclosed")
+    for station in topo.stations:
+        if station.link is LinkKind.LOOSE:
+            raise InputError(
+                "turns by itself, and no certificate covers that", element=line.names[station.element], remedy=remedy
+            )
