@@ -414,6 +414,7 @@ ANALYSES = (
 PICTURES: Mapping[str, str] = {key: address for one in ANALYSES for key, address in one.pictures.items()}
 """What describes the picture of a result: ``Class.method`` → address."""
 VIEWS: Mapping[str, str] = {
+    "dashboard": "trunnion.app.views.dashboard:DashboardView",
     "driveline": "trunnion.app.views.driveline:DrivelineView",
     "live": "trunnion.app.views.live:LiveView",
     "verdict": "trunnion.app.views.verdict:VerdictView",

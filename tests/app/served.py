@@ -74,7 +74,7 @@ class Look:
     outside: list[str] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
 
-    def at(self, query: str = "") -> Look:
+    def at(self, query: str = "?view=driveline") -> Look:
         """Open the page and wait until it has computed.
 
         Two of some hundred fresh pages of *Joints* said "computing …" for good, behind a large picture. The session now

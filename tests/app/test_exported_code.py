@@ -28,7 +28,13 @@ TIMED = ("followed",)
 """What says how long it took."""
 
 SETTINGS = [
+    ("dashboard", {}),
     ("driveline", {}),
+    ("live", {"speed": "900"}),
+    ("live", {"what": "mode", "mode": "2"}),
+    ("live", {"what": "response"}),
+    ("live", {"what": "disturbance"}),
+    pytest.param("live", {"what": "run-up", "rate": "400"}, marks=pytest.mark.slow),
     ("verdict", {}),
     ("orders", {"speed": "1234.5", "spring": "Shaft 2"}),
     ("stability", {"across": "8", "up": "6", "at_x": "707", "at_y": "19.5", "look": "True"}),

@@ -33,6 +33,8 @@ TAGS = {"p", "div", "span", "table", "tr", "th", "td", "ul", "li", "pre", "b", "
 """All that a page of the application is made of."""
 SMALL = {"across": "4", "up": "3"}
 QUESTIONS = [
+    ("dashboard", {}),
+    ("live", {"what": "mode"}),
     ("driveline", {}),
     ("verdict", {}),
     ("joints", {}),
@@ -202,6 +204,8 @@ RAN = """() => {
 }"""
 VIEWS = (
     ("Driveline", "img[alt^='sketch']"),
+    ("Dashboard", "[data-value=growth]"),
+    ("Live", "canvas.view"),
     ("Verdict", "[data-verdict]"),
     ("Orders", ".bk-Canvas"),
     ("Joints", "img[alt^='joints and forks']"),

@@ -13,7 +13,13 @@ from trunnion.pictures import looks
 LEAST_CONTRAST = 4.5
 """Of text, by WCAG 2.2, 1.4.3."""
 LABORIOUS = ("joints", "orders", "stability", "limits", "motion")
-VIEWS = ["driveline", "verdict", *(pytest.param(view, marks=pytest.mark.slow) for view in LABORIOUS)]
+VIEWS = [
+    "dashboard",
+    "driveline",
+    "live",
+    "verdict",
+    *(pytest.param(view, marks=pytest.mark.slow) for view in LABORIOUS),
+]
 QUERY = "?view={}&stability.across=20&stability.up=16"
 
 WALK = """

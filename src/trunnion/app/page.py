@@ -66,6 +66,8 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 @keyframes late { from { visibility: hidden; } }
 .refusal, .refusal * { color: #8d0016; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
+.verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
+.sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
 a { color: #00558a; }
 :focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
@@ -125,8 +127,8 @@ class Page:
             above = [side.stamp] if one else [heading(titles[variant]), side.stamp]
             pictures.append(column(*above, side.panel, min_width=300 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
-        about = pane(markup("<p style='margin:0'>{}</p>", view.about))
-        self.main.objects = [about, view.controls, whole, view.downloads]
+        about = [pane(markup("<p style='margin:0'>{}</p>", view.about))] if view.about else []
+        self.main.objects = [*about, view.controls, whole, view.downloads]
 
     def message(self, text: str) -> None:
         """Say what went wrong, or nothing more."""

@@ -40,6 +40,8 @@ UNSAID = 0.25
 REST = 0.5
 """Seconds after a change of the page when what may have stayed behind is sent."""
 KEPT, NOW = "kept", "now"
+EDITOR = "driveline"
+"""The view of an address that names none but says something else; a fresh page begins with the first."""
 KINDS: dict[str, type[View]] = {kind.name: kind for kind in VIEWS}
 
 
@@ -71,7 +73,7 @@ class Session:
         self.keep_buttons = buttons(lambda: self._keep(self.document.toml), lambda: self._keep(None), self._swap)
         self.views: dict[str, View] = {}
         name = self.query.get("view", "")
-        self.view = self.view_of(name if name in KINDS else VIEWS[0].name)
+        self.view = self.view_of(name if name in KINDS else EDITOR if self.query else VIEWS[0].name)
         self.difference = pane()
         self.page.fill(self.sliders.panel, self.keep_buttons, self.difference)
         self.template = self.page.template

@@ -21,6 +21,7 @@ from trunnion.pictures.stability_chart import stability_chart
 from trunnion.pictures.tongues import edges_of
 from trunnion.results.drawing import described
 from trunnion.results.speeds import speed_factor
+from trunnion.results.words import Words
 from trunnion.results.written import write_numbers
 
 Plain = dict[str, Any]
@@ -171,6 +172,43 @@ def point(result: Any) -> Plain:
         "per_turn": math.expm1(math.log(result.spectral_radius) / turns) if result.spectral_radius > 0 else -1.0,
         "resonance": str(result.resonance or ""),
     }
+
+
+def growth(result: Any, unit: str) -> Plain:
+    """Verdict and growth at one speed."""
+    said = Words(unit).speed(result.speed)
+    return {"verdict": str(result.verdict), "growth": float(result.growth_rate), "speed": said}
+
+
+def worst(result: Any, unit: str) -> Plain:
+    """Torque by order of the spring that is loaded most, by its limit where it has one, at the speeds looked at."""
+    peak = np.nan_to_num(result.peak_torque)
+    most, limits = peak.max(axis=0), [result.limits[name].get("max torque", np.nan) for name in result.springs]
+    share = most / np.array(limits)
+    k = int(np.nanargmax(share)) if np.isfinite(share).any() else int(most.argmax())
+    name, at = result.springs[k], Words(unit).speed(float(result.speed[int(peak[:, k].argmax())]))
+    of = f" of {limits[k]:.5g} N·m allowed ({share[k]:.0%})" if np.isfinite(share[k]) else ""
+    said = f"{name}: {most[k]:.5g} N·m{of} at {at}, of {len(result.speed)} speeds looked at, the line as stated"
+    return {"picture": orders.torque_by_order(result, spring=name, unit=unit), "said": said}
+
+
+def crossings(result: Any, unit: str) -> Plain:
+    """The Campbell diagram, and where what excites the line meets a mode, the sharpest first."""
+    words = Words(unit)
+    sharp = sorted(result.crossings, key=lambda one: -one.amplification)
+    rows = [(f"{one.speed * words.factor:.4g}", one.mode, one.line.name) for one in sharp]
+    return {"picture": described(result, "plot")(result, unit=unit), "rows": rows, "unit": unit}
+
+
+def near(result: Any, unit: str, speed: float) -> list[str]:
+    """The speeds on either side at which a region of instability can begin, and how far they are."""
+    able = [one for one in result if one.opens and np.isfinite(one.speed)]
+    below, above = ([one for one in able if (one.speed - speed) * way > 0] for way in (-1, 1))
+    nearest = [max(below, key=lambda one: one.speed)] if below else []
+    nearest += [min(above, key=lambda one: one.speed)] if above else []
+    words = Words(unit)
+    said = [f"{abs(one.speed / speed - 1):.1%} to {one.speed * words.factor:.4g} {unit}, {one.name}" for one in nearest]
+    return said or ["No region of instability can begin: the line has no angled joint or varying mesh."]
 
 
 def motion(result: Any, speed: float) -> Plain:

@@ -103,6 +103,19 @@ export function render({ model }) {
     }
     const kind = element("select", { "aria-label": "kind of the new element", id: "new-kind" })
     for (const k of model.kinds) kind.append(element("option", { value: k }, k))
+    if (model.alone) {
+      const [group] = model.groups
+      if (!group) return
+      const act = (text, data) => element("button", { type: "button",
+        onclick: () => say({ ...data, path: group.path, key: group.key }) }, text)
+      const insert = (text, by) => element("button", { type: "button",
+        onclick: () => say({ do: "insert", by, kind: kind.value, path: group.path, key: group.key }) }, text)
+      table.className = "groups alone"
+      table.append(element("div", { class: "group new" }, element("label", { for: "new-kind" }, "insert"), kind,
+        insert("In front", 0), insert("Behind", 1)),
+        element("div", { class: "group new" }, act("Undo", { do: "undo" }), act("Redo", { do: "redo" })))
+      return
+    }
     const place = element("input", { type: "number", min: 1, id: "new-place", "aria-label": "place of the new element",
       value: model.groups.filter(g => g.path[0] === "element").length + 1 })
     table.append(element("div", { class: "group new" }, element("label", { for: "new-kind" }, "add"), kind,
@@ -163,6 +176,7 @@ input[type="number"] { width: 5em; }
 button { cursor: pointer; background: #f2f4f6; }
 .tools { white-space: nowrap; }
 .note { color: #8d0016; font-size: 13px; max-width: 34em; white-space: pre-line; }
+.alone .group { flex-direction: column; } .alone .new { flex-direction: row; } .alone .head { flex-basis: auto; }
 .add { font-size: 12px; margin-top: 3px; color: #444; }
 .new { align-items: center; flex-wrap: wrap; }
 @media (max-width: 700px) { .group { flex-direction: column; } .head { flex-basis: auto; }
@@ -175,6 +189,7 @@ class Editor(JSComponent):
 
     groups = param.List(default=[])
     kinds = param.List(default=[])
+    alone = param.Boolean(default=False, doc="one part by itself, with what may be inserted beside it")
 
     _esm = _SCRIPT
     _stylesheets = [_STYLE]

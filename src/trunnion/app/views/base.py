@@ -94,6 +94,9 @@ class Host(Protocol):
     def edit(self, change: Callable[[Document], Any]) -> None:
         """Change the line, and everything that follows from it."""
 
+    def show_view(self, name: str) -> None:
+        """Look at another view."""
+
     def state_limits(self) -> None:
         """Give every spring without a limit one to fill in, and go there."""
 

@@ -8,6 +8,7 @@ import panel as pn
 
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.document import LARGEST_FILE, Document
+from trunnion.app.parts.editing import change_of
 from trunnion.app.parts.editor import Editor
 from trunnion.app.parts.upload import Upload
 from trunnion.app.parts.widgets import column, pane, picture, pre, wrapped
@@ -76,29 +77,7 @@ class DrivelineView(View):
             document.replace_text(dumps(catalogue(name)))
 
     def _edited(self, data: dict[str, Any]) -> None:
-        def change(document: Document) -> None:
-            found = document.place(tuple(data.get("path", ())), data.get("key", 0))
-            if found is None:
-                return  # taken away since: by the click before, say
-            match data:
-                case {"do": "set", "text": str(text)} if found:
-                    document.set_text(found, text)
-                case {"do": "add", "kind": str(kind), "place": int(place)}:
-                    document.add_element(place, kind)
-                case {"do": "remove"} if found:
-                    document.remove(found)
-                case {"do": "move", "by": int(by)} if found:
-                    document.move(int(found[1]), by)
-                case {"do": "limit"}:
-                    document.add_limit("Shaft *")
-                case {"do": "load_case"}:
-                    document.add_load_case()
-                case {"do": "schedule"}:
-                    document.add_schedule()
-                case {"do": "switch_off"}:
-                    document.switch_off()
-
-        self.session.edit(change)
+        self.session.edit(change_of(data))
         self.adapt(self.session.document.line)
 
     def adapt(self, line: Driveline) -> None:

@@ -6,8 +6,12 @@ from typing import Any
 
 from trunnion.animation.player.component import Player
 from trunnion.app.parts.calls import LINE, Call
-from trunnion.app.parts.widgets import column, pane, small
+from trunnion.app.parts.editing import change_of
+from trunnion.app.parts.editor import Editor
+from trunnion.app.parts.form import FieldGroup
+from trunnion.app.parts.widgets import column, pane, small, wrapped
 from trunnion.app.views.base import (
+    Setting,
     VariantPane,
     View,
     ViewStep,
@@ -51,10 +55,25 @@ class _LivePane(VariantPane["LiveView"]):
     def make(self) -> None:
         """Both, made once."""
         # One WebGL context a page: the kept variant is drawn without.
-        self.player = Player(sizing_mode="stretch_width", flat=self.variant != "now")
+        now = self.variant == "now"
+        self.player = Player(sizing_mode="stretch_width", flat=not now)
         self.text = pane()
-        self.panel = column(self.player, self.text)
+        self.player.param.watch(lambda event: self.view.pick(event.new), "picked")
+        self.player.styles = {"flex": "3 1 320px", "min-width": "0"}
+        self.editor = Editor(
+            self.view.edited, alone=True, visible=False, styles={"flex": "1 1 250px", "min-width": "0"}
+        )
+        beside = wrapped(self.player, *([self.editor] if now else []), styles={"gap": "12px"})
+        self.panel = column(beside, self.text)
         self.parts = {("scene",): [self.player, self.text]}
+
+    def edit(self, name: str) -> None:
+        """The fields of an element beside the picture; none where there is none of that name."""
+        groups = self.view.group_of(name)
+        self.editor.show(groups)
+        self.editor.visible = bool(groups)
+        if self.player.picked != name:
+            self.player.picked = name
 
     def clear(self) -> None:
         """Nothing to play."""
@@ -75,11 +94,11 @@ class LiveView(View):
     name = "live"
     about = (
         "The line in space, as it turns, swings and twists: drag to turn it, the wheel and + − to come closer, the "
-        "space bar to hold it. Twist is exaggerated as it says; bends and planes are true."
+        "space bar to hold it; click a part to change it. Twist is exaggerated as it says; bends and planes are true."
     )
     side = _LivePane
     asks, asked_by = ASKS, ("what",)
-    defaults = {"what": "turning", "speed": None, "mode": 1, "rate": None, "scenario": ""}
+    defaults = {"what": "turning", "speed": None, "mode": 1, "rate": None, "scenario": "", "part": ""}
 
     fields = {
         "what": lambda: select("Motion", options=MOTIONS, width=260),
@@ -87,6 +106,7 @@ class LiveView(View):
         "mode": lambda: count("Mode", 1, 1, 500),
         "rate": lambda: number("Acceleration [rad/s²]", None, start=0.01, width=170),
         "scenario": lambda: select("Scenario of the file", options=[]),
+        "part": lambda: select("Part to change", options=[]),
     }
 
     def adapt(self, line: Driveline) -> None:
@@ -94,7 +114,43 @@ class LiveView(View):
         label_speed(self.widgets["speed"], line)
         self.widgets["rate"].placeholder = "ten seconds for the range"
         self.choose("scenario", [one.name for one in line.scenarios])
+        self.choose("part", ["", *line.as_stated.names])
         self.show_question()
+        self.widgets["part"].visible = True
+        self.of("now").edit(str(self.settings["part"]))
+
+    def show_question(self) -> None:
+        """And always which part is changed."""
+        super().show_question()
+        self.widgets["part"].visible = True
+
+    def chosen(self, key: str, value: Setting) -> None:
+        """A part is changed beside the picture."""
+        super().chosen(key, value)
+        if key == "part":
+            self.of("now").edit(str(value))
+
+    def pick(self, name: str) -> None:
+        """A body was clicked: what it belongs to in the file is the part to change."""
+        line = self.session.document.line.as_stated
+        known = name in line.names or any(name.startswith(f"{one}.") for one in line.names)
+        part = line.names[line.index(name)] if known else ""
+        if part != self.settings["part"]:
+            self.put("part", part)
+            self.of("now").edit(part)
+
+    def group_of(self, name: str) -> tuple[FieldGroup, ...]:
+        """The fields of an element of the file."""
+        document = self.session.document
+        if name not in document.line.as_stated.names:
+            return ()
+        place = document.line.as_stated.index(name)
+        return tuple(one for one in document.groups() if one.path == ("element", place))
+
+    def edited(self, data: dict[str, Any]) -> None:
+        """What is done in the fields beside the picture."""
+        self.session.edit(change_of(data))
+        self.of("now").edit(str(self.settings["part"]))
 
     def steps(self, line: Driveline) -> list[ViewStep]:
         """The motion that is asked for."""
@@ -114,4 +170,15 @@ class LiveView(View):
             case _:
                 more = {"speed": at_speed(line, self.typed("speed"))}
         call = Call("tn.animate", (LINE, what), more)
-        return [ViewStep("animation", call, "scene", picture="", files=("html", "gif", "json"), title=what, soft=True)]
+        return [
+            ViewStep(
+                "animation",
+                call,
+                "scene",
+                picture="",
+                files=("html", "gif", "json"),
+                title=what,
+                soft=True,
+                lasting=True,
+            )
+        ]

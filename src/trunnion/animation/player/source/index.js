@@ -250,6 +250,13 @@ class Player {
     this.draw()
   }
 
+  // The body of that name, or the first of what it is made of, is named whether names are shown or not.
+  mark(name) {
+    this.picked = this.named.find(part => part.name === name) ?? this.named.find(part => part.name.startsWith(`${name}.`)) ?? null
+    if (!name) this.picked = null
+    this.draw()
+  }
+
   pixel(part, tall) {
     const middle = (part.size.length ?? 0) / 2, at = part.at.map((x, k) => x + middle * part.axes.e[k])
     const [x, y] = this.camera.seen(at, this.wide / tall)
@@ -415,13 +422,15 @@ export function render({ model, el }) {
     const text = get("scene")
     if (!text) { player?.dispose(); player = null; root.replaceChildren(); root.style.display = "none"; return }
     root.style.display = ""
-    if (player) { player.options.theme = get("theme") || undefined; player.load(JSON.parse(text)); return }
+    if (player) { player.options.theme = get("theme") || undefined; player.load(JSON.parse(text)); player.mark(get("picked") ?? ""); return }
     player = mount(root, JSON.parse(text), { theme: get("theme") || undefined, flat: get("flat") || false, choice: get("choice") ?? 0,
       onpick: name => { if (own) { model.set("picked", name); model.save_changes() } else model.picked = name } })
+    player.mark(get("picked") ?? "")
   }
   show()
   model.on(own ? "change:scene" : "scene", show)
   model.on(own ? "change:theme" : "theme", show)
+  model.on(own ? "change:picked" : "picked", () => player?.mark(get("picked")))
   if (!own) model.on("remove", () => player?.dispose())
   return own ? () => player?.dispose() : root
 }

@@ -1,0 +1,71 @@
+"""The picture is an editor: a part is clicked, or chosen by keyboard, and changed, moved, taken away or given a
+neighbour beside it; undo takes back."""
+
+from __future__ import annotations
+
+import pytest
+from served import Look
+from test_live_view import FOUND, plays
+
+pytest.importorskip("panel")
+
+from trunnion.app.parts.document import Document
+from trunnion.app.parts.editing import change_of
+from trunnion.driveline.starter import starter
+
+
+def test_what_is_inserted_goes_by_the_part_it_stands_beside() -> None:
+    document = Document(starter("two-shaft"))
+    group = next(one for one in document.groups() if one.path == ("element", 2))
+    document.add_element(0, "Disk")  # the part has moved since its fields were read
+    change_of({"do": "insert", "by": 1, "kind": "Disk", "path": list(group.path), "key": group.key})(document)
+    kinds = [element["type"] for element in document.data["element"]]
+    assert kinds[0] == kinds[4] == "Disk"
+    assert kinds[1:4] + kinds[5:] == [element["type"] for element in Document(starter("two-shaft")).data["element"]]
+    change_of({"do": "remove", "path": list(group.path), "key": group.key})(document)
+    change_of({"do": "remove", "path": list(group.path), "key": group.key})(document)  # a second click meets nothing
+    assert len(document.data["element"]) == len(kinds) - 1
+    for _ in range(3):
+        change_of({"do": "undo"})(document)
+    assert document.data == Document(starter("two-shaft")).data
+
+
+def test_a_click_on_a_part_brings_its_fields(look: Look) -> None:
+    look.page.set_default_timeout(60_000)
+    look.at("?view=live")
+    plays(look, "turning")
+    page = look.page
+    page.evaluate(f"{FOUND}.pause()")
+    place = page.evaluate(
+        f"""(() => {{ const p = {FOUND}, part = p.named.find(one => one.name === 'Disk 1')
+        const [x, y] = p.pixel(part, p.high), box = p.canvas.getBoundingClientRect()
+        return [box.left + x, box.top + y] }})()"""
+    )
+    page.mouse.click(*place)
+    field = page.get_by_label("inertia of Disk 1", exact=True)
+    field.wait_for()
+    assert page.get_by_label("Part to change", exact=True).input_value() == "Disk 1"
+    before = field.input_value()
+    radius = f"{FOUND}.parts.find(one => one.name === 'Disk 1').size.radius"
+    drawn = page.evaluate(radius)
+    field.fill("40 kg*m^2")
+    field.press("Enter")
+    page.wait_for_function(f"() => {radius} > 1.3 * {drawn}")
+    page.get_by_role("button", name="Undo", exact=True).click()
+    page.wait_for_function(f"() => Math.abs({radius} - {drawn}) < 1e-6")
+    assert field.input_value() == before
+
+
+def test_by_keyboard_a_part_is_chosen_given_a_neighbour_and_taken_away(look: Look) -> None:
+    look.page.set_default_timeout(60_000)
+    look.at("?view=live&live.part=Disk+1")
+    plays(look, "turning")
+    page = look.page
+    page.get_by_label("inertia of Disk 1", exact=True).wait_for()
+    count = page.evaluate(f"{FOUND}.named.length")
+    page.get_by_label("kind of the new element", exact=True).select_option("Disk")
+    page.get_by_role("button", name="Behind", exact=True).press("Enter")
+    page.wait_for_function(f"() => {FOUND}.named.length === {count} + 1")
+    page.get_by_label("Part to change", exact=True).select_option("Disk 2")
+    page.get_by_role("button", name="remove Disk 2", exact=True).press("Enter")
+    page.wait_for_function(f"() => {FOUND}.named.length === {count}")
