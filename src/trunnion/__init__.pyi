@@ -100,6 +100,9 @@ from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
 from trunnion.measured.bench import measure as measure
+from trunnion.measured.identification.identify import identify as identify
+from trunnion.measured.identification.knowable import identifiability as identifiability
+from trunnion.measured.overlay import compare_measured as compare_measured
 from trunnion.measured.signals.measurement import Measurement as Measurement
 from trunnion.measured.signals.measurement import PulseTrain as PulseTrain
 from trunnion.measured.signals.measurement import SampledSignal as SampledSignal

@@ -390,6 +390,18 @@ ANALYSES = (
         command="trunnion.cli.measured:track_orders",
     ),
     Analysis(
+        "compare_measured",
+        "Measured orders over what the line predicts, with a sentence on what differs.",
+        pictures={"MeasuredComparison.plot": "trunnion.pictures.measured:comparison"},
+        command="trunnion.cli.measured:compare_measured",
+    ),
+    Analysis(
+        "identify",
+        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
+        pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
+        command="trunnion.cli.measured:identify",
+    ),
+    Analysis(
         "certify_chaos",
         "Regular, chaotic, unbounded or undecided, with reasons and one figure.",
         features="long motion",
