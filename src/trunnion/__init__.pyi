@@ -145,6 +145,8 @@ from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
 from trunnion.motion.transients.transient import transient as transient
+from trunnion.papers.entries import catalogue as catalogue
+from trunnion.papers.reproduce import reproduce as reproduce
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
@@ -158,8 +160,8 @@ from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
-from trunnion.studies.entries import catalogue as catalogue
-from trunnion.studies.reproduce import reproduce as reproduce
+from trunnion.studies.study import study as study
+from trunnion.studies.study import study_cost as study_cost
 from trunnion.systems.events import Event as Event
 from trunnion.systems.family import PeriodicLinearFamily as PeriodicLinearFamily
 from trunnion.systems.gear_pair import base_radius as base_radius

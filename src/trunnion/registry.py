@@ -60,7 +60,7 @@ ANALYSES = (
         "stability",
         "Floquet stability at one speed, with the linear forced response.",
         features="linear motion",
-        command="trunnion.cli.study:stability",
+        command="trunnion.cli.stability:stability",
         view="stability",
     ),
     Analysis(
@@ -68,7 +68,7 @@ ANALYSES = (
         "Stability over any two parameters, as picture and data.",
         features="multipliers",
         pictures={"StabilityChart.plot": "trunnion.pictures.stability_chart:stability_chart"},
-        command="trunnion.cli.study:stability_chart",
+        command="trunnion.cli.stability:stability_chart",
         view="stability",
     ),
     Analysis(
@@ -76,7 +76,7 @@ ANALYSES = (
         "Natural frequencies and damping ratios with all joints straight.",
         features="modes",
         pictures={"NaturalFrequencies.plot": "trunnion.pictures.modes:mode_shapes"},
-        command="trunnion.cli.study:natural_frequencies",
+        command="trunnion.cli.stability:natural_frequencies",
         view="driveline",
     ),
     Analysis(
@@ -89,7 +89,7 @@ ANALYSES = (
         "resonance_speeds",
         "Named parametric resonance speeds in the operating range, and which of them can open.",
         features="resonances",
-        command="trunnion.cli.study:resonance_speeds",
+        command="trunnion.cli.stability:resonance_speeds",
         view="stability",
     ),
     Analysis(

@@ -137,6 +137,12 @@ def belt(**changes):
     return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
 
 
+def long_line(inertias: int) -> Driveline:
+    """A chain with a joint at its front."""
+    chain = [e for _ in range(inertias) for e in (Shaft(stiffness=1e5, damping=1.0), Disk(inertia=0.1))]
+    return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
+
+
 def planetary(**changes: object) -> Planetary:
     return Planetary(**{"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"} | changes)
 
@@ -190,6 +196,17 @@ def lasting(*curves, **operation):
     """A line with S–N curves, one that does by default."""
     curves = [tn.SNCurve(of="Shaft 1", **BEARS)] if not curves else [tn.SNCurve(**one) for one in curves]
     return line(sn_curves=curves, operation=Operation(**operation))
+
+
+ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
+
+
+def studied(**changes):
+    """What a study of a small line would cost."""
+    stated = {"line": "", "analysis": "stability", "quantities": ["growth_rate"], "store": "a.zarr"}
+    parts = ConstantSpeed(), HookeJoint(angle=0.1), Shaft(stiffness=1e4, damping=2.0), Disk(inertia=0.8)
+    asked = {**stated, "parameter": [ANGLES], "arguments": {"speed": 50.0}, **changes}
+    return tn.study_cost(asked, line=line(*parts))
 
 
 def history(values, **rest):
@@ -930,6 +947,93 @@ PYTHON = [
         "drive: is missing, for torques act on several disks",
         "name pump, engine",
     ),
+    (lambda: studied(analysis="stabilty"), "analysis = 'stabilty': is no analysis", 'did you mean "stability"?'),
+    (lambda: studied(analysis="basins"), "analysis = 'basins': takes no driveline alone", "take assess"),
+    (
+        lambda: studied(arguments={"tolerence": 1e-6}),
+        "arguments.tolerence = 1e-06: is no argument of stability",
+        'did you mean "tolerance"?',
+    ),
+    (
+        lambda: studied(quantities=["growth_rat"]),
+        "quantities = 'growth_rat': is no quantity of Stability",
+        'did you mean "growth_rate"?',
+    ),
+    (
+        lambda: studied(quantities=["multipliers"]),
+        "multipliers: is no number, word or verdict but an array of shape (2,)",
+        'write "multipliers.max", or "multipliers[0]"',
+    ),
+    (lambda: studied(quantities=[]), "study.quantities: are missing", 'write quantities = ["verdict"]'),
+    (
+        lambda: studied(parameter=[{**ANGLES, "path": "HookeJoint 1.angel"}]),
+        "HookeJoint 1.angel: is not a parameter of this driveline",
+        'did you mean "HookeJoint 1.angle"?',
+    ),
+    (lambda: studied(parameter=[]), "study.parameter: is empty", "write [[parameter]]"),
+    (
+        lambda: studied(parameter=[{"path": "HookeJoint 1.angle", "values": []}]),
+        "parameter HookeJoint 1.angle.values: is empty",
+        "give one value or more",
+    ),
+    (
+        lambda: studied(parameter=[{**ANGLES, "points": 0}]),
+        "parameter HookeJoint 1.angle.points = 0: must be a whole number from 1",
+        "write points = 50",
+    ),
+    (
+        lambda: studied(parameter=[{**ANGLES, "high": "1 deg"}]),
+        "parameter HookeJoint 1.angle.high = '1 deg': must be above low",
+        "exchange the two",
+    ),
+    (
+        lambda: studied(parameter=[{**ANGLES, "high": "2 kN"}]),
+        "parameter HookeJoint 1.angle.high = '2 kN'",
+        "angle",
+    ),
+    (
+        lambda: studied(parameter=[{**ANGLES, "high": "95 deg"}]),
+        "parameter.HookeJoint 1.angle: would reach 1.65806, which no line can have",
+        "narrow its range",
+    ),
+    (
+        lambda: studied(parameter=[{"path": "HookeJoint 1.angle"}]),
+        "parameter 1 HookeJoint 1.angle: needs low and high, or values, or a tolerance",
+        "write path",
+    ),
+    (
+        lambda: studied(parameter=[ANGLES, ANGLES]),
+        "parameter.path = 'HookeJoint 1.angle': varies HookeJoint 1.angle, as",
+        "once",
+    ),
+    (
+        lambda: studied(parameter=[{"path": "Disk 1.inertia", "tolerance": "5 %"}]),
+        "study.sampling: is missing",
+        "write [sampling]",
+    ),
+    (lambda: studied(sampling={"points": 8}), "study.sampling: has no parameter to sample", "leave it out"),
+    (
+        lambda: studied(sampling={"method": "sobl", "points": 8}),
+        "sampling.method = 'sobl': is no sampling",
+        'did you mean "sobol"?',
+    ),
+    (
+        lambda: studied(sampling={"method": "saltelli", "points": 100}),
+        "sampling.points = 100: must be a power of two",
+        "write 128",
+    ),
+    (
+        lambda: studied(tolerances=True),
+        "study.tolerances = True: asks for tolerances, and the line states none",
+        "[[tol",
+    ),
+    (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
+    (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
+    (
+        lambda: tn.study({}, workers=1, scheduler="tcp://far:1"),
+        "workers and scheduler: are two ways to compute",
+        "give one",
+    ),
     (
         lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], factors=(2.0, 1.0)),
         "factors = [2.0, 1.0]: must be two rising positive numbers",
@@ -1667,6 +1771,11 @@ PYTHON = [
         lambda: Driveline([Shaft(stiffness=1.0)] * 100_000),
         "driveline: has 100000 elements, at most 5000 are taken; stability would need 1.6e+03 GB and 7.5e+02 h",
         "join neighbouring parts",
+    ),
+    (
+        lambda: tn.stability_chart(long_line(300), ("speed", 60, 300, 200), ("HookeJoint 1.angle", 0.0, 0.4, 150)),
+        "driveline: has 300 unknowns: a chart of 30000 points would take about",
+        "stability() at single speeds",
     ),
     (lambda: Driveline(3), "elements: must be a list, not a int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not a Disk", "tn.Driveline(["),
