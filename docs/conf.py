@@ -53,6 +53,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "min_reported_time": 5,
     "show_memory": False,
+    "write_computation_times": False,
     "show_signature": False,
     "remove_config_comments": True,
     "within_subsection_order": "FileNameSortKey",
@@ -73,7 +74,9 @@ def _with_mathjax(app, failure):  # type: ignore[no-untyped-def]
 def _links_out_of_docs(app, name, source):  # type: ignore[no-untyped-def]
     """Files at the top of the project are pages of the site too; a page that the home page does not list is a guide."""
     if not name.startswith("generated/"):
-        source[0] = changelog.turned(source[0], HERE)
+        folder = (HERE / name).parent
+        up = "../" * len(folder.relative_to(HERE).parts)
+        source[0] = changelog.leaving(source[0], folder, up)
     if name == "index":
         listed = source[0].split()
         new = [page.stem for page in sorted(HERE.glob("*.md")) if page.stem not in (*listed, "index")]

@@ -41,6 +41,22 @@ def turned(text: str, home: Path, up: str = "") -> str:
     return LINK.sub(one, text)
 
 
+def leaving(text: str, home: Path, up: str = "") -> str:
+    """Of a page below ``docs``, only the links to files that are pages of the site though they stand elsewhere."""
+
+    def one(found: re.Match[str]) -> str:
+        path, _, anchor = found[1].partition("#")
+        wanted = (home / path).resolve()
+        name = wanted.relative_to(TOP).as_posix() if wanted.is_relative_to(TOP) else ""
+        if name not in PAGES:
+            if wanted.is_relative_to(TOP / "docs") or not path:
+                return found[0]
+            return f"] (`{found[1]}`)"
+        return f"]({up}generated/{PAGES[name]}" + (f"#{anchor}" if anchor else "") + ")"
+
+    return LINK.sub(one, text)
+
+
 def write_pages(folder: Path) -> None:
     """Copy them with their links turned round."""
     for name, page in PAGES.items():
