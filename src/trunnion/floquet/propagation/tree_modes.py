@@ -49,7 +49,7 @@ LEAST = 1e-12
 LONGEST = 400
 """Unknowns up to which the propagator of all states is taken where modes are not told apart."""
 STEEP = 340.0
-"""Cubed harmonics over squared unknowns from which on that propagator costs a third of the modes: joints of 60°, say."""
+"""Cubed harmonics over squared unknowns from which on that propagator costs a third of the modes: joints of 60°."""
 WORST_CONDITION = 1e7
 """Of the modes' states, above which they do not count as independent."""
 
