@@ -2,9 +2,10 @@
 
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
-Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at
-one speed; ``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where
-that takes no more than a minute. Medians on one thread.
+Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds
+and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed;
+``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where that takes
+no more than a minute. Medians on one thread.
 """
 
 from __future__ import annotations
