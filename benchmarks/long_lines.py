@@ -2,9 +2,10 @@
 
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
-``order_response`` at 50 speeds and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at
-one speed; ``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where
-that takes no more than a minute. Medians on one thread.
+Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds
+and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed;
+``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where that takes
+no more than a minute. Medians on one thread.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
+from orders import open_torsion
 
 import trunnion as tn
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
@@ -51,6 +53,30 @@ def median(work: Callable[[], object], repeats: int) -> float:
     return statistics.median(times)
 
 
+def straight_free(inertias: int) -> tn.Driveline:
+    """A chain that nothing holds, shaken at its middle."""
+    elements = list(chain(inertias, 0).elements[2:])
+    return tn.Driveline(elements)
+
+
+def beside_open_torsion(most: int, repeats: int) -> None:
+    """Seconds of both, in turn."""
+    print("\n| straight and free, inertias | order_response [s] | openTorsion [s] | times as long |\n|---|---|---|---|")
+    for n in (21, 100, 300):
+        line = straight_free(n)
+        other = open_torsion(line, SPEEDS)
+        if n > most or other is None:
+            continue
+        works, seconds = (lambda line=line: tn.order_response(line, SPEEDS), other), ([], [])
+        for _ in range(repeats):
+            for work, taken in zip(works, seconds, strict=True):
+                begin = time.process_time()
+                work()
+                taken.append(time.process_time() - begin)
+        ours, theirs = (statistics.median(taken) for taken in seconds)
+        print(f"| {n} | {ours:.4f} | {theirs:.3f} | {theirs / ours:.1f} |", flush=True)
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -65,6 +91,7 @@ def main() -> None:
                 for line in (chain(n, 0), chain(n))
             )
             print(f"| {n} | {straight:.4f} | {bent:.3f} | {TARGETS.get(n, '')} |", flush=True)
+    beside_open_torsion(asked.most, asked.repeats)
     print("\n| inertias, speeds | as chosen [s] | along the tree | whole matrices |\n|---|---|---|---|")
     for n, speeds in ((3, 1), (3, 400), (4, 1), (4, 400), (6, 1), (6, 400), (20, 1), (20, 50)):
         line, at = chain(n), tn.rpm(np.linspace(600.0, 3000.0, speeds))

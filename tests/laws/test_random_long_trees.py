@@ -12,6 +12,7 @@ from oracles.long_trees import random_tree
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
+from trunnion.floquet.propagation import tree_modes
 from trunnion.steady.orders.spectrum import order_spectrum
 
 SPEED = 150.0
@@ -48,6 +49,20 @@ def test_multipliers_and_responses(seed: int) -> None:
     near = np.abs(1 - true).min()
     off = (1e-10 + 10 * motion.error / near) * np.abs(motion.deviation).max()
     assert np.abs(ours - motion.deviation).max() < off
+
+
+@pytest.mark.parametrize("degrees", [60.0, pytest.param(80.0, marks=pytest.mark.slow)])
+def test_a_steep_joint_takes_the_matrices_of_the_period(degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where blocks of the harmonics that it makes would cost more."""
+    elements: list[Any] = [tn.ConstantSpeed()]
+    for i in range(18):
+        elements += [tn.Shaft(stiffness=1e5 * (2 + np.sin(1.3 * i * i)), damping=4.0), tn.Disk(inertia=0.1)]
+        if i == 9:
+            elements.append(tn.HookeJoint(angle=np.deg2rad(degrees)))
+    line = tn.Driveline(elements)
+    monkeypatch.setattr(tree_modes.HillLine, "followed", None)
+    found, (true, error) = tn.stability(line, SPEED), multipliers(LongTree(line).motion(SPEED))
+    assert abs(np.abs(true).max() - found.spectral_radius) <= found.error_estimate + error[np.abs(true).argmax()]
 
 
 def multipliers(motion: Motion) -> tuple[Any, Any]:

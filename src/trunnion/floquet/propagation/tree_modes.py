@@ -46,6 +46,10 @@ REAL = 1e-9
 """Share of a multiplier below which its imaginary part is rounding."""
 LEAST = 1e-12
 """Share of the largest squared frequency that stands for the least in units of energy."""
+LONGEST = 400
+"""Unknowns up to which the propagator of all states is taken where modes are not told apart."""
+STEEP = 340.0
+"""Cubed harmonics over squared unknowns from which on that propagator costs a third of the modes: joints of 60°."""
 WORST_CONDITION = 1e7
 """Of the modes' states, above which they do not count as independent."""
 
@@ -68,7 +72,7 @@ class FloquetModes:
 def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> FloquetModes | None:
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where some mode is not
     found."""
-    if topo.still:  # the turn of what no spring holds is no mode by itself
+    if topo.still or not _pays(topo, co, turns):  # the turn of what no spring holds is no mode by itself
         return None
     line = HillLine(topo, co, turns)
     start, shape = line.starts()
@@ -76,6 +80,12 @@ def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> Floq
     if (lost := line.lost(found.value)).any():
         found = line.parted(start, shape, found, lost)
     return line.judged(found) if np.isfinite(found.value).all() else None
+
+
+def _pays(topo: Topology, co: LineCoefficients, turns: Fraction) -> bool:
+    """Whether blocks of so many harmonics as a steep joint makes cost less than the matrices of the period."""
+    count = len(_harmonics(spreads(topo, co, turns), DECADES + WIDER))
+    return topo.size > LONGEST or count**3 < STEEP * topo.size**2
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
-from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
+from trunnion.floquet.propagation.tree_modes import LONGEST, FloquetModes, floquet_modes
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -49,8 +49,6 @@ if TYPE_CHECKING:
 
 LONG = 16
 """Unknowns from which on modes by Hill's blocks cost less than the propagator of all states."""
-LONGEST = 400
-"""Unknowns up to which the propagator of all states is taken."""
 ROUNDING = 1e-11
 """Error of a propagator, for each unknown, that is rounding whatever tolerance is asked."""
 NEAR = 0.1
