@@ -248,11 +248,15 @@ class _Space:
 
 @dataclass
 class _BoxSearch:
-    """The largest open box next: what is left when the budget ends is then as small as can be."""
+    """The largest open box next: what is left when the budget ends is then as small as can be.
+
+    refutes : whether an unstable line is looked for.
+    """
 
     space: _Space
     most: int
     report_progress: Callable[[float], None]
+    refutes: bool = True
     proved: list[Array] = field(default_factory=list)
     decays: list[float] = field(default_factory=list)
     counterexample: dict[str, float] | None = None
@@ -294,7 +298,7 @@ class _BoxSearch:
                 if found.proved:
                     self._keep(box, found)
                     open_share -= float(np.prod(box[1] - box[0]))
-                elif found.doubtful and self._refuted(box):
+                elif found.doubtful and self.refutes and self._refuted(box):
                     self._put(box)
                     return
                 else:
@@ -331,6 +335,18 @@ class _BoxSearch:
         lower[1, along] = upper[0, along] = middle
         self._put(lower)
         self._put(upper)
+
+
+def proved_over(assembly: Assembly, speeds: tuple[float, float], most_boxes: int) -> bool:
+    """Whether a line as it is is proved stable at all ``speeds`` [rad/s] by as many boxes at most."""
+    try:
+        require_provable(assembly)
+        require_linear(assembly, speeds, ())
+    except InputError:
+        return False
+    found = _BoxSearch(_Space(assembly, (), speeds), most_boxes, lambda share: None, refutes=False)
+    found.run()
+    return not len(found.open_boxes)
 
 
 def require_provable(assembly: Assembly) -> None:
