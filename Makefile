@@ -13,7 +13,7 @@ PYTEST := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(
 # Sources are read anew by every process of the tests where no machine-independent code is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test walks slow studies check format clean
+.PHONY: demo test walks slow studies check docs format clean
 
 demo: $(VENV)/.installed
 	$(BIN)/trunnion analyze examples/pto-shaft.toml
@@ -34,11 +34,15 @@ check: $(VENV)/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 
+# The site, in docs/_build/html; nothing is fetched, and a warning is an error.
+docs: $(VENV)/.installed-docs
+	OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m sphinx -q -W --keep-going -b html docs docs/_build/html
+
 format: $(VENV)/.installed-dev
 	$(BIN)/ruff format .
 
 clean:
-	rm -rf $(VENV) build dist trunnion-out .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist trunnion-out docs/_build docs/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find src tests -name __pycache__ -prune -exec rm -rf {} +
 
 # The stamps make a second call quick; a change of the dependencies installs again.
@@ -50,4 +54,8 @@ $(VENV)/.installed: pyproject.toml constraints.txt
 
 $(VENV)/.installed-dev: $(VENV)/.installed
 	$(PIP) -e ".[dev]"
+	@touch $@
+
+$(VENV)/.installed-docs: $(VENV)/.installed-dev
+	$(PIP) -e ".[dev,docs]"
 	@touch $@

@@ -861,6 +861,14 @@ PYTHON = [
     ),
     (
         lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("factor", 1.0, 2.0, 9_000), ("pump.inertia", 1.0, 2.0, 9_000), torque=[torque(**KLOSS)]
+        ),
+        "y = 9000: would need 302 GB of memory",
+        "ask for fewer values of x or y",
+    ),
+    (lambda: tn.Scenario(name="a", duration=1, per_hour=0), "scenario a.per_hour = 0: must be positive", "write 0.5"),
+    (
+        lambda: tn.capture_map(
             free(), (5.0, 9.0), ("speed", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)]
         ),
         "x = 'speed': is what the line runs through",

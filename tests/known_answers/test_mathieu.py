@@ -1,57 +1,16 @@
-"""The Mathieu oscillator y″ + 2ζy′ + (a − 2q cos 2x) y = 0, period π."""
+"""The Mathieu oscillator y″ + 2ζy′ + (a − 2q cos 2x) y = 0, period π.
+
+Its printed characteristic values stand in ``tests/published``.
+"""
 
 from __future__ import annotations
 
 import mpmath
 import numpy as np
 import pytest
-from scipy.optimize import bisect
 
 import trunnion as tn
 from trunnion.systems.reference import mathieu
-
-
-@pytest.mark.parametrize(
-    ("q", "a", "trace"),
-    [
-        (1.0, -0.455139, 2.0),
-        (1.0, -0.110249, -2.0),
-        (1.0, 1.859108, -2.0),
-        (1.0, 3.917025, 2.0),
-        (5.0, -5.800046, 2.0),
-        (5.0, -5.790081, -2.0),
-        (5.0, 1.858188, -2.0),
-        (5.0, 2.099460, 2.0),
-    ],
-)
-def test_characteristic_values(q: float, a: float, trace: float) -> None:
-    """a₀, b₁, a₁, b₂ of the tables (NIST Digital Library of Mathematical Functions, 28.1): trace Z = ±2."""
-
-    def beyond(value: float) -> float:
-        return float(tn.stability(mathieu(value, q)).multipliers.sum().real - trace)
-
-    assert bisect(beyond, a - 1e-3, a + 1e-3, xtol=1e-9) == pytest.approx(a, abs=5.1e-7)
-
-
-@pytest.mark.parametrize(
-    ("a", "trace"),
-    [
-        (12.964079444, -2.0), (12.986489953, 2.0), (27.805240581, 2.0), (28.062765899, -2.0),
-        (40.050190986, -2.0), (57.534689001, -2.0), (55.002957151, -2.0), (69.057988351, 2.0), (123.643012376, -2.0),
-    ],
-)  # fmt: skip
-def test_characteristic_values_of_strong_modulation(a: float, trace: float) -> None:
-    """q = 25: a₃, b₄, a₄, b₅, a₅, a₇, b₇, b₈, a₁₁ of Zhang and Jin, Computation of Special Functions (1996).
-
-    Read: the table of its program MCVA2; nine decimals. Lower values are left out: there motions grow too far over a
-    period for so many digits, which ``stability`` says.
-    """
-
-    def beyond(value: float) -> float:
-        return float(tn.stability(mathieu(value, 25.0), tolerance=1e-12).multipliers.sum().real - trace)
-
-    width = 1e-4  # a₁₁ and b₁₁ are 3e-4 apart
-    assert bisect(beyond, a - width, a + width, xtol=1e-11) == pytest.approx(a, abs=2e-9)
 
 
 @pytest.mark.parametrize(("a", "verdict"), [(1.2, "MARGINAL"), (1.0, "UNSTABLE")])

@@ -8,7 +8,7 @@ from typing import Annotated
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, OptionReader
-from trunnion.cli.options import LineOfFile, SpeedUnit
+from trunnion.cli.options import LineOfFile, Progress, SpeedUnit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import read_quantity
 from trunnion.cli.typed import Command
@@ -31,13 +31,14 @@ def fatigue(
     life: Annotated[float | None, OptionReader(_life)],
     element: str = "",
     unit: SpeedUnit,
+    progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion fatigue truck.toml --life "20000 h" -o cycles.png
 
     --life  Operating time that it is to last: "20000 h"; default: of the file.
     --element  Whose cycles are drawn; default: the one that lasts shortest.
     """
-    found = tn.fatigue(line, life=life)
+    found = tn.fatigue(line, life=life, progress=progress)
     found.spectrum(element)
 
     def more() -> None:

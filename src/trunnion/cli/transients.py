@@ -29,13 +29,14 @@ def transient(
     speed: Annotated[float | None, OptionReader(read_start)],
     tolerance: Tolerance = 1e-10,
     unit: SpeedUnit,
+    progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion transient mill.toml --scenario start -o start.png -o start.nc
 
     --scenario  Name of a [[scenario]] of the file; default: its only one.
     --speed  Of the input when it begins, instead of the scenario's.
     """
-    found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance)
+    found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance, progress=progress)
     return CommandOutput(found, content=lambda: _content(found, unit), outcome=found.outcome)
 
 
@@ -58,6 +59,7 @@ def passing(
     scenario: str = "",
     phase: float = 0.0,
     unit: SpeedUnit,
+    progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion passing mill.toml --scenario start --from 0rpm --to 1400rpm -o passing.png
 
@@ -67,7 +69,9 @@ def passing(
     --phase RADIANS  Angle of the input when it begins.
     """
     acting = line.scenario(_scenario(line, scenario))
-    found = tn.passing(line, (from_, to), torque=acting.torques, friction=acting.frictions, phase=phase)
+    found = tn.passing(
+        line, (from_, to), torque=acting.torques, friction=acting.frictions, phase=phase, progress=progress
+    )
     content = {"scenario": acting.name, **found.to_dict()}
     return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
 

@@ -43,7 +43,7 @@ from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.parts import Dragged, Sprung
-from trunnion.driveline.quantities import Angle, Maybe, Speed, TableList, Time, Torque, optional
+from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Speed, TableList, Time, Torque, optional
 from trunnion.driveline.record import Name, Named, Record, listed, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -138,11 +138,12 @@ class Scenario(Named):
     duration : [s].
     speed : of the input when it begins [rad/s]; 0 is standstill, negative turns backwards. By default that of the
         line's operation.
+    per_hour : how many of them an operating hour has, for ``fatigue``; by default none counts.
     torque, friction, disturbance, crossing : what acts on the line, and what is watched.
 
     Raises
     ------
-    InputError : no positive duration.
+    InputError : no positive duration or number per hour.
 
     Examples
     --------
@@ -158,6 +159,7 @@ class Scenario(Named):
     name: Name = Field(description="what the scenario is called")
     duration: Time = Field(description="how long it is followed")
     speed: Maybe[Speed] = optional(default=None, description="of the input when it begins; 0 is standstill")
+    per_hour: Maybe[Dimensionless] = optional(default=None, description="how many of them an operating hour has")
     torque: Annotated[TableList[AppliedTorque], BeforeValidator(_READ["torque"])] = optional(
         default=(), description="torques on disks"
     )
@@ -183,6 +185,8 @@ class Scenario(Named):
 
     @model_validator(mode="after")
     def _sensible(self) -> Scenario:
+        if self.per_hour is not None and not self.per_hour > 0:
+            raise InputError("must be positive", key="per_hour", value=self.per_hour, remedy="write 0.5, say")
         if not self.duration > 0:
             raise InputError("must be positive", key="duration", value=self.duration, remedy='write "4 s", say')
         return self

@@ -1,6 +1,9 @@
-"""What a description says that a line does: its duty at steady speeds, and its passages."""
+"""What a description says that a line does: its duty at steady speeds, its passages, and scenarios that come again."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -10,25 +13,58 @@ from trunnion.driveline.duty import Duty, SpeedPassage
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.refusals import about
+from trunnion.driveline.scenarios import Scenario
 from trunnion.errors import ComputationError, InputError
 from trunnion.motion.passing.run_up import run_up
+from trunnion.motion.transients.transient import transient
 from trunnion.response.orders.response import order_response
 from trunnion.results.words import Words
 
 
-def duty_histories(line: Driveline, operation: Operation) -> list[TorqueHistory]:
-    """Every duty at the steady motion of its speed, then every passage as a run.
+def report(progress: Callable[[float], None] | None, share: float) -> None:
+    """Say that a share of the histories is done."""
+    if progress is not None:
+        progress(share)
+
+
+def duty_histories(
+    line: Driveline, operation: Operation, progress: Callable[[float], None] | None = None
+) -> list[TorqueHistory]:
+    """Every duty at the steady motion of its speed, then every passage as a run and every scenario so many an hour.
 
     Raises
     ------
-    InputError : neither is stated; a line without a steady motion to ask for, a passage that is refused.
+    InputError : none is stated; a line without a steady motion to ask for, a passage that is refused.
     """
-    if not operation.duty and not operation.passages:
+    scenarios = recurring(line)
+    if not operation.duty and not operation.passages and not scenarios:
         raise InputError(
             "is missing", element="operation", key="duty",
-            remedy=f"write [[operation.duty]] with {Duty.example}, or [[operation.passage]]",
+            remedy=f"write [[operation.duty]] with {Duty.example}, [[operation.passage]] or per_hour of a scenario",
         )  # fmt: skip
-    return [*_of_duty(line, operation), *(_of_passage(line, one) for one in operation.passages)]
+    count = len(operation.duty) + len(operation.passages) + len(scenarios)
+    found = _of_duty(line, operation)
+    report(progress, len(found) / count)
+    runs = [partial(_of_passage, line, one) for one in operation.passages]
+    for run in [*runs, *(partial(_of_scenario, line, one) for one in scenarios)]:
+        found.append(run())
+        report(progress, len(found) / count)
+    return found
+
+
+def recurring(line: Driveline) -> list[Scenario]:
+    """The scenarios that come again."""
+    return [one for one in line.scenarios if one.per_hour is not None]
+
+
+def _of_scenario(line: Driveline, scenario: Scenario) -> TorqueHistory:
+    try:
+        run = transient(line, scenario)
+    except InputError as error:
+        raise about(error, f"scenario {scenario.name}") from None
+    if not run.outcome.ok:
+        return TorqueHistory(scenario.name, without=str(run.outcome))
+    return of_run(run, scenario.name, per_hour=scenario.per_hour)
 
 
 def _of_duty(line: Driveline, operation: Operation) -> list[TorqueHistory]:

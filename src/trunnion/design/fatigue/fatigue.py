@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.fatigue.counted import counted, spectrum
 from trunnion.design.fatigue.damage import cycles_to_failure
-from trunnion.design.fatigue.duty_histories import duty_histories
+from trunnion.design.fatigue.duty_histories import duty_histories, recurring, report
 from trunnion.design.fatigue.load_history import LoadHistory, TorqueHistory, torque_history
 from trunnion.design.fatigue.result import CycleSpectrum, FatigueLife
 from trunnion.driveline.driveline import Driveline
@@ -19,6 +19,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TIME, parse
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
@@ -38,6 +39,7 @@ def fatigue(
     *,
     life: float | str | None = None,
     within: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> FatigueLife:
     """Damage and life of every element with an S–N curve.
 
@@ -48,10 +50,11 @@ def fatigue(
     Parameters
     ----------
     line : the driveline, with its ``sn_curves``.
-    histories : what it does; by default the duty of the description, each at the steady motion of its speed, and its
-        passages, each a ``run_up``.
+    histories : what it does; by default the duty of the description, each at the steady motion of its speed, its
+        passages, each a ``run_up``, and those of its scenarios that say how many an hour has.
     life : operating time that it is to last [s], or as "20000 h"; by default the description's.
     within : seconds that it may take; what is not reached by then is not counted, and says so.
+    progress : called as progress(share of the histories done).
 
     Returns
     -------
@@ -81,10 +84,13 @@ def fatigue(
             remedy=f"write [[sn_curve]] with {SNCurve.example}",
         )  # fmt: skip
     if histories is None:
-        found = duty_histories(line, operation)
+        found = duty_histories(line, operation, progress)
     else:
         _check_shares(histories)
-        found = [torque_history(one, place) for place, one in enumerate(histories, start=1)]
+        found = []
+        for place, one in enumerate(histories, start=1):
+            found.append(torque_history(one, place))
+            report(progress, place / len(histories))
     wanted = operation.life if life is None else parse(life, TIME)
     if wanted is not None and not wanted > 0:
         raise InputError("must be positive", key="life", value=life, remedy='"20000 h", say')
@@ -121,7 +127,7 @@ def _life(
     said = dict.fromkeys(finding for one in histories for finding in one.findings)
     findings = [*said, *_findings(assembly, tuple(curves), spectra, peak, uncounted)]
     if of_duty:
-        findings += _of_duty(assembly.line.operation or Operation())
+        findings += _of_duty(assembly.line.operation or Operation(), bool(recurring(assembly.line)))
     return FatigueLife(
         elements=tuple(curves), histories=names, damage_rate=rate, error_rate=error,
         allowed=np.array([curve.damage_sum for curve in curves.values()]), peak=peak, operating_life=wanted,
@@ -169,15 +175,16 @@ def _findings(
         which = "ultimate_stress or ultimate_torque (Goodman) or mean_sensitivity (FKM)"
         yield Finding(Gravity.CAUTION, f"Means do not count in {', '.join(silent)}: its curve states no {which}.")
     members = [assembly.line.names[i] for c in assembly.topology.compliances for i in c.shafts]
+    members += [name for name, one in assembly.line.parts if isinstance(one, SlipClutch)]
     without = [name for name in members if name not in elements]
     if without:
         yield Finding(Gravity.NOTE, f"Without an S–N curve, and not judged: {', '.join(without)}.")
     yield from left_out("fatigue", assembly.line)
 
 
-def _of_duty(operation: Operation) -> Iterator[Finding]:
+def _of_duty(operation: Operation, scenarios: bool) -> Iterator[Finding]:
     """What a description of a life leaves out."""
-    if not operation.passages:
+    if not operation.passages and not scenarios:
         said = "No passages are stated: starts, stops and changes from one speed or load to the other count no cycle."
         yield Finding(Gravity.CAUTION, said)
     elif not operation.duty:

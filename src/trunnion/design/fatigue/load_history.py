@@ -12,14 +12,16 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
+from trunnion.motion.passing.passing_result import Passing
 from trunnion.motion.passing.run_up import RunUp
 from trunnion.motion.simulation.simulation import LineSimulation
+from trunnion.motion.transients.result import Transient
 from trunnion.numerics.turning_points import TurningPoints, reversals, turning_points
 from trunnion.response.orders.result import OrderResponse
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.verdict import Verdict
 
-Source = LineSimulation | RunUp | OrderResponse | Mapping[str, ArrayLike]
+Source = LineSimulation | RunUp | Transient | Passing | OrderResponse | Mapping[str, ArrayLike]
 HOUR = 3600.0
 FEWEST = 3
 """Values of a history: it goes and comes back."""
@@ -38,8 +40,8 @@ class LoadHistory:
 
     Parameters
     ----------
-    source : a result of ``simulate`` or ``run_up``; of ``order_response``, at its first ``speed`` or the one asked for;
-        or torques [N m] by the name of their element, each (points,).
+    source : a result of ``simulate``, ``run_up``, ``transient`` or ``passing``; of ``order_response``, at its first
+        ``speed`` or the one asked for; or torques [N m] by the name of their element, each (points,).
     share : of the operating time that is spent so, over and over; the shares of all histories add up to 1.
     per_hour : how often it comes in an operating hour, instead.
     duration : of one pass of the torques [s]; measured torques with a ``share`` need it.
@@ -83,8 +85,8 @@ class LoadHistory:
                 raise InputError("is missing beside share", element=self._label, key="duration", remedy=remedy)
             for name, values in self.source.items():
                 self._check(name, values)
-        elif not isinstance(self.source, LineSimulation | RunUp | OrderResponse):
-            remedy = "give what simulate, run_up or order_response returns, or torques by element"
+        elif not isinstance(self.source, LineSimulation | RunUp | Transient | Passing | OrderResponse):
+            remedy = "give what simulate, run_up, transient, passing or order_response returns, or torques by element"
             kind = type(self.source).__name__
             raise InputError(f"is a {kind}, and no history", element=self._label, key="source", remedy=remedy)
 
@@ -146,19 +148,18 @@ def torque_history(history: LoadHistory, place: int) -> TorqueHistory:
                 "is no speed of the response", key="speed", value=history.speed, remedy=f"there are {known}"
             )
         return of_response(source, at, name, share=history.share, per_hour=history.per_hour)
-    if isinstance(source, LineSimulation | RunUp):
-        run = source.simulation if isinstance(source, RunUp) else source
-        if not run.outcome.ok:
-            raise InputError(
-                f"did not come to its end: {run.outcome}", element=f"history {name}", remedy="mend the run"
-            )
+    if isinstance(source, LineSimulation | RunUp | Transient | Passing):
+        run = source.simulation if isinstance(source, RunUp) else source.run if isinstance(source, Passing) else source
+        if not run.outcome.ok or (isinstance(source, Passing) and not source.passes):
+            ended = source.outcome if isinstance(source, Passing) else run.outcome
+            raise InputError(f"did not come to its end: {ended}", element=f"history {name}", remedy="mend the run")
         return of_run(run, name, share=history.share, per_hour=history.per_hour)
     points = {key: _of_values(np.asarray(values, dtype=float)) for key, values in source.items()}
     return TorqueHistory(name, points, _rate(history.share, history.per_hour, history.duration))
 
 
 def of_run(
-    run: LineSimulation, name: str, *, share: float | None = None, per_hour: float | None = None
+    run: LineSimulation | Transient, name: str, *, share: float | None = None, per_hour: float | None = None
 ) -> TorqueHistory:
     """A motion in time, from its beginning to its end."""
     points = dict(zip(run.shafts, turning_points(run.torque_at, run.cuts), strict=True))

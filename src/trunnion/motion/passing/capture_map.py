@@ -187,6 +187,7 @@ def capture_map(
         raise InputError("is varied twice", key="y", value=y[0], remedy="give another parameter")
     for key, request in (("x", x), ("y", y)):  # what the line refuses, before anything is computed
         _refused(trials, key, request)
+    require_memory(float(BYTES_A_CELL) * x[3] * y[3], key="y", value=y[3], remedy="ask for fewer values of x or y")
     whole_number(processes, "processes", 1)
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     found: list[list[str] | None] = [None] * len(points)

@@ -14,7 +14,7 @@ A. Sommerfeld, Z. VDI 46 (1902) 391; V. O. Kononenko, *Vibrating Systems with a 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -65,6 +65,7 @@ def passing(
     phase: float = 0.0,
     tolerance: float = 1e-9,
     within: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Passing:
     """Whether a free–free line comes from one speed to another under its torques.
 
@@ -78,6 +79,7 @@ def passing(
     phase : angle [rad] of the input when it begins; whether a line passes may depend on it.
     tolerance : error allowed per step. A second run at thirty times as much must end alike, or nothing is decided.
     within : seconds of computing after which it ends undecided.
+    progress : called as progress(share of the way made that lies between the speeds, over both runs).
 
     Returns
     -------
@@ -103,8 +105,12 @@ def passing(
     prepared, acting = begun_line(description, asked, first)
     angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, acting, first, last)
     made = _Follower(prepared, acting, first, last, angle, rigid)
+    report_progress = progress or (lambda share: None)
+    made.progress = lambda way: report_progress(way / 2)
     run, kind = made.ending(tolerance)
+    made.progress = lambda way: report_progress((1 + way) / 2)
     other = made.other_kind(kind, tolerance)
+    report_progress(1.0)
     return _result(description, made, run, kind, other, tolerance)
 
 
@@ -127,6 +133,7 @@ class _Follower:
     def __init__(self, line: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float) -> None:
         self.line, self.asked, self.first, self.last, self.phase, self.rigid = line, asked, first, last, phase, rigid
         knots = time_knots(placed_torques(line.assembly, asked[0]), placed_frictions(line.assembly, asked[1]))
+        self.progress: Callable[[float], None] = lambda way: None
         self.steady = float(max(knots, default=0.0)) if np.isfinite(rigid) else 0.0
         modes = natural_frequencies(line.assembly)
         self.decay = float(max((1 / (z * w) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if
@@ -154,6 +161,7 @@ class _Follower:
             if time_is_up():
                 return run, "undecided"
             stretches.append(self._means(run, since))
+            self.progress(float(np.clip((stretches[-1][2] - self.first) / (self.last - self.first), 0.0, 1.0)))
             if since < self.steady:
                 unsteady = len(stretches)
             if self._settled(stretches[unsteady:]):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -102,6 +102,7 @@ def follow(
     tolerance: float,
     most_steps: int,
     mean_speed: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Found:
     """The motion from ``place`` on for ``duration`` [s].
 
@@ -125,7 +126,7 @@ def follow(
         prepared, torques, frictions, asked[2], tolerance=tolerance, most_steps=most_steps,
         unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
     )  # fmt: skip
-    return stepper.run(place, duration)
+    return stepper.run(place, duration, progress)
 
 
 def _require_times(torque: PlacedTorque, since: float, until: float) -> None:

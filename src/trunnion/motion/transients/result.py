@@ -34,7 +34,7 @@ from trunnion.results.speeds import rounded_speed
 from trunnion.results.variables import Attribute, Coordinate, Variable
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
     from trunnion.driveline.driveline import Driveline
@@ -329,6 +329,7 @@ class Transient(Result):
         crossing: Sequence[LevelCrossing] | None = None,
         line: Driveline | None = None,
         tolerance: float | None = None,
+        progress: Callable[[float], None] | None = None,
     ) -> Transient:
         """The run, gone on with for another ``duration`` [s]: angles, twists and the clock go on.
 
@@ -336,6 +337,7 @@ class Transient(Result):
         ----------
         torque, friction, crossing : instead of those before; times are those of the whole run.
         line : another line from here on, of the same disks and springs.
+        progress : called as progress(share of the further run done).
 
         Raises
         ------
@@ -354,7 +356,7 @@ class Transient(Result):
             place = replace(place, state=prepared.system.within_limits(place.state), regime=LOCATED)
         tolerance = self.tolerance if tolerance is None else tolerance
         length = positive_time(duration, "give seconds")
-        found = follow(prepared, place, length, acting, tolerance, MOST_STEPS)
+        found = follow(prepared, place, length, acting, tolerance, MOST_STEPS, progress=progress)
         return self.joined(Transient.of(prepared, found, asked, tolerance, place.time, self.name, description))
 
     @classmethod

@@ -40,6 +40,10 @@ FURTHEST = 0.2
 that comes to ten times as much is made again, shorter."""
 FIRST_PIECE = 0.01
 """Of the run."""
+LEAST = 1e-9
+"""Share of a run that is left to no piece of its own."""
+LOOKED_AT = 0.05
+"""Share of a run with a prescribed speed after which it is looked whether it is to go on."""
 BESIDE = 1e-9
 """Share of a piece of a table by which a speed goes beyond its end before the next one is taken: so that a switch
 begins on its own side."""
@@ -176,14 +180,14 @@ class Stepper:
 
     # What acts.
 
-    def run(self, place: Place, duration: float) -> Found:
-        """From ``place`` on for ``duration`` [s]."""
-        end = place.time + duration
+    def run(self, place: Place, duration: float, progress: Callable[[float], None] | None = None) -> Found:
+        """From ``place`` on for ``duration`` [s]; ``progress`` is told the share of it that is done."""
+        begin, end = place.time, place.time + duration
         clamping = [t for e in self.line.assembly.line.elements if isinstance(e, SlipClutch) for t in e.clamping_times]
         knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
         place = replace(place, regime=self._regime(place))
-        chunk = FIRST_PIECE * duration if self.free else np.inf
+        chunk = FIRST_PIECE * duration if self.free else LOOKED_AT * duration
         pieces: list[Piece] = []
         crossed: list[tuple[float, str]] = []
         steps, guess, carried = 0, 0.0, np.zeros(0)
@@ -194,11 +198,14 @@ class Stepper:
                 return Found(pieces, place, beyond, crossed)
             if place.time >= end:
                 return Found(pieces, place, Outcome(True, "reached", f"reached t = {place.time:.6g} s"), crossed)
+            if progress is not None:
+                progress((place.time - begin) / duration)
             if why := time_is_up():
                 words = f"{why.replace('the search', 'the run')} at t = {place.time:.6g} s; what was computed is kept"
                 return Found(pieces, place, Outcome(False, "out of time", words), crossed)
             ahead = knots[knots > place.time]
-            until = min(end, place.time + chunk, float(ahead[0]) if len(ahead) else np.inf)
+            soon = place.time + chunk if place.time + chunk < end - LEAST * duration else end
+            until = min(soon, float(ahead[0]) if len(ahead) else np.inf)
             place = self._following(self._settled(place, SHORT * (until - place.time)))
             self._take_sides(place, SHORT * (until - place.time))
             passed = [one for one in self.crossings if self._jumped(one, place, carried)]
@@ -216,8 +223,8 @@ class Stepper:
                 if called.error is not None:
                     raise called.error
             off = float(self.share @ trajectory.final[0][: self.topo.size])
-            if abs(off) > 10 * FURTHEST and until == place.time + chunk:
-                chunk *= 0.25
+            if abs(off) > 10 * FURTHEST and until == soon:
+                chunk = 0.25 * min(chunk, until - place.time)
                 continue
             steps += trajectory.steps
             guess = min(trajectory.next_step, until - place.time)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -42,6 +42,7 @@ def transient(
     tolerance: float = TOLERANCE,
     most_steps: int = MOST_STEPS,
     within: float | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Transient:
     """Follow a line while torques act on its disks: starts, blows, faults, brakes.
 
@@ -63,6 +64,7 @@ def transient(
     tolerance : error allowed per step.
     most_steps : steps after which the run ends.
     within : seconds of computing after which it ends with what it has.
+    progress : called as progress(share done); ``stop`` of a ``time_limit`` around it ends the run with what it has.
 
     Returns
     -------
@@ -118,7 +120,7 @@ def transient(
     angle = one_number(phase, "phase", "np.pi / 2, say")
     state = _start(prepared, _balanced(description, prepared, asked, begin), start, begin, angle)
     place = Place(0.0, state, angle=angle, speed=begin)
-    found = follow(prepared, place, length, acting, tolerance, most_steps)
+    found = follow(prepared, place, length, acting, tolerance, most_steps, progress=progress)
     return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
 
 

@@ -1,0 +1,1 @@
+"""Pages of the site that the package itself writes: elements, functions, commands, messages, validation."""

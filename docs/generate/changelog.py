@@ -1,0 +1,42 @@
+"""Files at the top of the project as pages: their links lead to pages of the site."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from generate.markdown import write
+
+TOP = Path(__file__).parents[2]
+PAGES = {"CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md", "benchmarks/README.md": "benchmarks.md"}
+LINK = re.compile(r"\]\((?!https?:|#)([^)]*)\)")
+
+
+def link(target: str, home: Path) -> str:
+    """Where a link of a file in folder ``home`` leads from ``docs``; empty where that is no page of the site."""
+    path, _, anchor = target.partition("#")
+    wanted = (home / path).resolve()
+    if not wanted.is_relative_to(TOP):
+        return ""
+    name = wanted.relative_to(TOP).as_posix()
+    page = (
+        f"generated/{PAGES[name]}" if name in PAGES else name.removeprefix("docs/") if name.startswith("docs/") else ""
+    )
+    return page + (f"#{anchor}" if page and anchor else "")
+
+
+def turned(text: str, home: Path, up: str = "") -> str:
+    """Links of a text written in folder ``home``, for a page ``up`` from ``docs``; what is no page is named by its path."""
+
+    def one(found: re.Match[str]) -> str:
+        page = link(found[1], home)
+        return f"]({up}{page})" if page else f"] (`{found[1]}`)"
+
+    return LINK.sub(one, text)
+
+
+def write_pages(folder: Path) -> None:
+    """Copy them with their links turned round."""
+    for name, page in PAGES.items():
+        source = TOP / name
+        write(folder / page, turned(source.read_text(encoding="utf-8"), source.parent, "../"))

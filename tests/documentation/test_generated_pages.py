@@ -1,0 +1,48 @@
+"""Pages that the package writes about itself: every element, key and name is there, and their files are read."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+from generate import api, elements, examples
+
+import trunnion as tn
+from trunnion.driveline.kinds import KINDS
+
+
+@pytest.mark.filterwarnings("ignore::trunnion.InputRemark")
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_element_has_a_file_that_is_read(kind: str) -> None:
+    text = examples.example(kind)
+    assert kind in [one["type"] for one in tomllib.loads(text)["element"]]
+    assert any(type(one).__name__ == kind for one in tn.loads(text).as_stated.elements)
+
+
+@pytest.mark.parametrize("kind", sorted(elements.schema()["$defs"]))
+def test_every_key_has_a_meaning(kind: str) -> None:
+    model = elements.schema()["$defs"][kind]
+    for name, key in model["properties"].items():
+        assert name == "type" or key.get("description"), f"{kind}.{name}"
+    page = elements.keys(model)
+    assert all(f"`{name}`" in page for name in model["properties"])
+
+
+def test_units_are_si_and_defaults_are_told() -> None:
+    shaft = elements.keys(elements.schema()["$defs"]["Shaft"])
+    assert re.search(r"`stiffness` \| torsional stiffness \| N·m/rad \|", shaft)
+    assert re.search(r"`damping` \| viscous damping \| N·m·s/rad \| `0.0`", shaft)
+    joint = elements.keys(elements.schema()["$defs"]["HookeJoint"])
+    assert re.search(r"`angle` \|[^|]*\| rad \| \*\*needed\*\*", joint)
+
+
+@pytest.mark.slow
+def test_every_public_name_has_an_entry(tmp_path: Path) -> None:
+    api.write_pages(tmp_path)
+    pages = "\n".join(path.read_text(encoding="utf-8") for path in tmp_path.glob("*.md"))
+    for name in tn.__all__:
+        assert name == "__version__" or f"(tn-{name.lower()})=" in pages, name
+    for name in re.findall(r"\(#result-(\w+)\)", pages):
+        assert f"(result-{name})=" in pages
