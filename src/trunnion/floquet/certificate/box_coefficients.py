@@ -91,7 +91,8 @@ def box_coefficients(
         return found
 
     half = (speeds[1] - speeds[0]) / 2
-    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last, 4e-16 * speeds[1])
+    # Exactly what it says: the ends are moved outward by more than rounding makes of the middle.
+    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last)
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
     torque = _torques(assembly, speed, constant, viscous, quadratic)
@@ -237,6 +238,11 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             if hooke and max(abs(end) for end in ends) >= STEEPEST:
                 worst = max(ends, key=abs)
                 raise InputError("may reach 60° at most in a certificate", key=one.label, value=worst)
+            if hooke and topo.free:
+                raise InputError(
+                    "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
+                    remedy="put a ConstantSpeed in front",
+                )  # fmt: skip
             _require_single(assembly, one, element, key)
             if key in ("damping", "mesh_damping") and ends[0] * ends[1] <= 0:
                 raise InputError(
@@ -289,8 +295,10 @@ def _require_even(assembly: Assembly, speeds: tuple[float, float]) -> None:
     checks: list[tuple[Array, Callable[[int], int]]] = [
         (co.stiffness, lambda e: assembly.topology.compliances[e].shafts[0]),
         (co.damping, lambda e: assembly.topology.compliances[e].shafts[0]),
-        *((part, _rotor_at(assembly)) for part in (co.load, co.viscous, co.quadratic)),
+        *((part, _rotor_at(assembly)) for part in (co.viscous, co.quadratic)),
     ]
+    if any(law.nonuniform for law in co.joints):  # elsewhere a constant load moves nothing
+        checks.append((co.load, _rotor_at(assembly)))
     for part, element in checks:
         spread = np.ptp(part, axis=0)
         worst = int(spread.argmax()) if spread.size else 0

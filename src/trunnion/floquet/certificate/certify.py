@@ -16,10 +16,9 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import SpeedEnds, rising_range, whole_number
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
+from trunnion.equations.steady_base import has_joint_angles, refuse_dragged, require_steady_base, require_tree
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
@@ -126,8 +125,8 @@ def certify_stability(
 
     Parameters
     ----------
-    line : behind a ConstantSpeed, whose shafts branch and close no loop; about its motion without vibration, as
-        ``stability`` judges it.
+    line : whose shafts may branch and close no loop; behind a ConstantSpeed, or with straight joints; about its motion
+        without vibration, as ``stability`` judges it, with the same multipliers set aside.
     tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
         line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
         Normal distributions count as three standard deviations either way.
@@ -358,10 +357,11 @@ def require_provable(assembly: Assembly) -> None:
     """
     line, topo = assembly.line, assembly.topology
     remedy = "tolerance_study() says how probable stability is"
-    if not isinstance(line.elements[0], ConstantSpeed) or topo.free:
+    if topo.free and has_joint_angles(assembly):
         raise InputError(
-            "is free–free, and only lines behind a ConstantSpeed can be certified", element=line.names[0], remedy=remedy
-        )
+            "is free–free and has joint angles: it moves in its own periodic motion, which no certificate encloses",
+            element=line.names[0], remedy="put a ConstantSpeed in front, or " + remedy,
+        )  # fmt: skip
     require_tree(assembly, "a certificate does")
     refuse_dragged(assembly)
     for station in topo.stations:

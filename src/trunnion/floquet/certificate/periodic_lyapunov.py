@@ -60,10 +60,7 @@ class LyapunovSeries:
 def modal_box(box: BoxMatrix) -> ModalBox | None:
     """Of a box, about the mean of its middle; None where that has no modes that decay."""
     mean = box.parts[0, box.last].real
-    n = len(mean) // 2
-    energy = np.zeros_like(mean)
-    energy[:n, :n] = (box.stiffness + box.stiffness.T) / 2
-    energy[n:, n:] = np.diag(1 / box.mass)
+    energy = box.energy
     root = np.sqrt(np.abs(np.diagonal(energy)))
     if not (np.isfinite(mean).all() and root.min() > 0):
         return None
@@ -90,6 +87,8 @@ def modal_box(box: BoxMatrix) -> ModalBox | None:
 def _energy_modes(scaled: Array, energy: Array) -> tuple[Complex, Array] | None:
     """Modes of the undamped line, which are orthogonal, with decay rates that their own damping gives them."""
     n = len(scaled) // 2
+    if len(scaled) != 2 * n:
+        return None
     try:
         square, shapes = scipy.linalg.eigh(energy[:n, :n], np.linalg.inv(energy[n:, n:]))
     except np.linalg.LinAlgError:
