@@ -381,7 +381,7 @@ def test_free_lines_decay_but_for_what_is_set_aside(slope: float, varies: float)
     rates = np.sort(-np.log(np.abs(own.multipliers)) * 40.2 / own.period)
     aside = 1 if slope else 2
     assert found.verdict == "proved stable" and np.abs(rates[:aside]).max() < 1e-6
-    assert 0.9 * rates[aside] < found.decay <= rates[aside] * (1 + 1e-6)
+    assert 0.7 * rates[aside] < found.decay <= rates[aside] * (1 + 1e-6)
     wide = tn.certify_stability(line, {"Shaft 1.stiffness": 0.05, "engine.inertia": 0.05}, (40.0, 40.4))
     assert wide.verdict == "proved stable" and wide.decay < found.decay
 

@@ -15,6 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.elements import Element
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.parameters import Columns
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -160,7 +161,7 @@ def _put_twists(
     from trunnion.equations.coefficients import shaft_stiffness
 
     topo = assembly.topology
-    staged = has_stages(assembly.line.elements[shafts[0]])
+    staged = _staged(assembly.line.elements[shafts[0]])
     for i in shafts:
         if (i, number) not in topo.behind or not (torque.size or staged):
             continue
@@ -255,7 +256,7 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
     by_speed = bool(co.viscous.any() or co.quadratic.any())
     for compliance, torque in zip(topo.compliances, co.torque[0], strict=True):
         element = line.elements[compliance.shafts[0]]
-        if has_stages(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
+        if _staged(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
             raise InputError(
                 "has stages, and its load varies within the box: whether it stays in one stage is not followed",
                 element=line.names[compliance.shafts[0]], value=float(torque),
@@ -269,6 +270,12 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             )  # fmt: skip
 
 
+def _staged(element: Element) -> bool:
+    """Whether stiffness or damping of a spring depend on what it carries: not of a mesh without play."""
+    alike = len(getattr(element, "stiffnesses", ())) <= 1 and not getattr(element, "total_backlash", 0.0)
+    return has_stages(element) and not (alike and not getattr(element, "impact_damping", 0.0))
+
+
 def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str) -> None:
     """Refuse what scatters in springs in series or with stages, of which only the whole enters the equations."""
     for compliance in assembly.topology.compliances:
@@ -279,7 +286,7 @@ def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str
                 "belongs to one of several springs in series, and what scatters in a certificate must be a spring of "
                 "its own", key=one.label, remedy="write them as one Shaft, or put a Disk between",
             )  # fmt: skip
-        staged = has_stages(assembly.line.elements[element]) and key != "mesh_damping"
+        staged = _staged(assembly.line.elements[element]) and key != "mesh_damping"
         if staged and (key != "mesh_stiffness" or assembly.coefficients(assembly.table(1, 1.0)).torque.any()):
             raise InputError(
                 "belongs to a spring with stages, and cannot scatter in a certificate under load", key=one.label,

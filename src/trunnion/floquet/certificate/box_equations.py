@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import gcd
 
 import numpy as np
 
@@ -248,7 +249,10 @@ class _BoxLine:
         for (i, j), wave in entries.items():
             parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
         half = float(speed.parts[1, speed.last].real)
-        return BoxMatrix(parts, rest * OUTWARD, period_rate(self.assembly), (speed.mean.real, half), energy)
+        # Straight joints count in the period and move nothing: every how many harmonics there is one.
+        stride = gcd(*np.abs(np.flatnonzero(parts.any(axis=(0, 2, 3))) - self.last).tolist()) or self.last + 1
+        parts = parts[:, self.last % stride :: stride]
+        return BoxMatrix(parts, rest * OUTWARD, stride * period_rate(self.assembly), (speed.mean.real, half), energy)
 
     def _put_stations(
         self, motion: _Walk, mass: list[Wave], damping: list[list[Wave]], stiffness: list[list[Wave]]
