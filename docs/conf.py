@@ -24,7 +24,7 @@ author = "The Trunnion developers"
 copyright = author
 version = release = tn.__version__
 
-extensions = ["myst_parser", "sphinx.ext.mathjax"]
+extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
 myst_enable_extensions = ["attrs_block", "colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build", "gallery", "generated/gallery/*.ipynb"]
@@ -56,7 +56,9 @@ sphinx_gallery_conf = {
     "show_signature": False,
     "remove_config_comments": True,
     "within_subsection_order": "FileNameSortKey",
-    "image_scrapers": ("matplotlib",),
+    "image_scrapers": ("generate.gallery_pictures.pictures",),
+    "capture_repr": (),
+    "reset_modules": (),
     "plot_gallery": "True",
     "copyfile_regex": r".*\.toml",
 }

@@ -18,7 +18,7 @@ from typer.testing import CliRunner, Result
 import trunnion as tn
 from trunnion.cli import app
 from trunnion.floquet.charts import cost_model
-from trunnion.studies.shared.result import Reproduction
+from trunnion.papers.shared.result import Reproduction
 
 pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
 
@@ -27,6 +27,7 @@ STUDIES = {
     "test_command_lines.py": "500 random command lines",
     "test_extremes_and_spectra.py": "50 gear lines against their exact motion",
     "test_features.py": "every feature crossed with every analysis, the costly ones too",
+    "test_killed.py": "100 kills of workers, scheduler and client over one study",
     "test_killed_and_full.py": "14 commands killed at 30 moments and on disks of 10 sizes",
     "test_long_lines.py": "250 disks",
     "test_responses_of_long_lines.py": "200 long trees",

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import trunnion as tn
-from trunnion.studies.reproduce import PAPERS
+from trunnion.papers.reproduce import PAPERS
 
 DATA = Path(__file__).with_suffix(".json")
 

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import trunnion as tn
-from trunnion.studies.reproduce import PAPERS
+from trunnion.papers.reproduce import PAPERS
 
 PAGE = Path(__file__).parents[1] / "reproduced.md"
 

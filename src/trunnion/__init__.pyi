@@ -13,6 +13,7 @@ from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
 from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
+from trunnion.driveline import Brake as Brake
 from trunnion.driveline import CentrifugalPendulum as CentrifugalPendulum
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
@@ -99,6 +100,9 @@ from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
 from trunnion.measured.bench import measure as measure
+from trunnion.measured.identification.identify import identify as identify
+from trunnion.measured.identification.knowable import identifiability as identifiability
+from trunnion.measured.overlay import compare_measured as compare_measured
 from trunnion.measured.signals.measurement import Measurement as Measurement
 from trunnion.measured.signals.measurement import PulseTrain as PulseTrain
 from trunnion.measured.signals.measurement import SampledSignal as SampledSignal
@@ -145,10 +149,13 @@ from trunnion.motion.simulation.exact_motion import exact_motion as exact_motion
 from trunnion.motion.simulation.order_map import order_map as order_map
 from trunnion.motion.simulation.simulate import simulate as simulate
 from trunnion.motion.transients.transient import transient as transient
+from trunnion.papers.entries import catalogue as catalogue
+from trunnion.papers.reproduce import reproduce as reproduce
 from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
+from trunnion.response.coupling_temperatures import coupling_temperatures as coupling_temperatures
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity
 from trunnion.response.kinetostatics import check_limits as check_limits
@@ -158,8 +165,8 @@ from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
-from trunnion.studies.entries import catalogue as catalogue
-from trunnion.studies.reproduce import reproduce as reproduce
+from trunnion.studies.study import study as study
+from trunnion.studies.study import study_cost as study_cost
 from trunnion.systems.events import Event as Event
 from trunnion.systems.family import PeriodicLinearFamily as PeriodicLinearFamily
 from trunnion.systems.gear_pair import base_radius as base_radius

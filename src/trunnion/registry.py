@@ -60,7 +60,7 @@ ANALYSES = (
         "stability",
         "Floquet stability at one speed, with the linear forced response.",
         features="linear motion",
-        command="trunnion.cli.study:stability",
+        command="trunnion.cli.stability:stability",
         view="stability",
     ),
     Analysis(
@@ -68,7 +68,7 @@ ANALYSES = (
         "Stability over any two parameters, as picture and data.",
         features="multipliers",
         pictures={"StabilityChart.plot": "trunnion.pictures.stability_chart:stability_chart"},
-        command="trunnion.cli.study:stability_chart",
+        command="trunnion.cli.stability:stability_chart",
         view="stability",
     ),
     Analysis(
@@ -76,7 +76,7 @@ ANALYSES = (
         "Natural frequencies and damping ratios with all joints straight.",
         features="modes",
         pictures={"NaturalFrequencies.plot": "trunnion.pictures.modes:mode_shapes"},
-        command="trunnion.cli.study:natural_frequencies",
+        command="trunnion.cli.stability:natural_frequencies",
         view="driveline",
     ),
     Analysis(
@@ -89,7 +89,7 @@ ANALYSES = (
         "resonance_speeds",
         "Named parametric resonance speeds in the operating range, and which of them can open.",
         features="resonances",
-        command="trunnion.cli.study:resonance_speeds",
+        command="trunnion.cli.stability:resonance_speeds",
         view="stability",
     ),
     Analysis(
@@ -124,6 +124,13 @@ ANALYSES = (
         pictures={"OrderResponse.plot": "trunnion.pictures.orders:order_response"},
         command="trunnion.cli.orders:order_response",
         view="orders",
+    ),
+    Analysis(
+        "coupling_temperatures",
+        "Where the temperature of elastic couplings settles by the heat of their damping, if anywhere.",
+        features="linear motion",
+        pictures={"CouplingTemperatures.plot": "trunnion.pictures.coupling_temperatures:coupling_temperatures"},
+        command="trunnion.cli.orders:coupling_temperatures",
     ),
     Analysis(
         "speed_sweep",
@@ -260,12 +267,14 @@ ANALYSES = (
             "FatigueLife.plot_damage": "trunnion.pictures.fatigue:damage",
         },
         command="trunnion.cli.fatigue:fatigue",
+        view="motion",
     ),
     Analysis(
         "passing",
         "Whether the line comes from one speed to another under its motor's torque, or is captured by a resonance.",
         pictures={"Passing.plot": "trunnion.pictures.transients:passing"},
         command="trunnion.cli.transients:passing",
+        view="motion",
     ),
     Analysis(
         "least_drive",
@@ -379,6 +388,18 @@ ANALYSES = (
             "MeasuredOrderMap.plot": "trunnion.pictures.measured:order_map",
         },
         command="trunnion.cli.measured:track_orders",
+    ),
+    Analysis(
+        "compare_measured",
+        "Measured orders over what the line predicts, with a sentence on what differs.",
+        pictures={"MeasuredComparison.plot": "trunnion.pictures.measured:comparison"},
+        command="trunnion.cli.measured:compare_measured",
+    ),
+    Analysis(
+        "identify",
+        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
+        pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
+        command="trunnion.cli.measured:identify",
     ),
     Analysis(
         "certify_chaos",

@@ -59,6 +59,95 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
+def write_durably(path: Path, content: bytes) -> None:
+    """Write a file that is on the disk, its name too, once this returns: no loss of power takes it back.
+
+    Raises
+    ------
+    InputError, ComputationError : as of ``written_whole``; nothing is left behind.
+    """
+    temporary = path.parent / f"{_own_prefix()}{path.suffix}"
+    try:
+        with _disk_errors_about(path, temporary), _named(temporary):
+            temporary.write_bytes(content)
+            _to_disk(temporary)
+            os.replace(temporary, path)
+            folder_to_disk(path.parent)
+    finally:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+@contextmanager
+def folder_made_durably(path: Path) -> Iterator[Path]:
+    """A temporary folder to fill; renamed to ``path`` once all in it is on the disk, unless one is there by then.
+
+    Raises
+    ------
+    InputError, ComputationError : as of ``written_whole``.
+    """
+    sweep(path.parent)
+    temporary = path.parent / _own_prefix()
+    try:
+        with _disk_errors_about(path, temporary), _named(temporary):
+            temporary.mkdir()
+            yield temporary
+            for one in temporary.rglob("*"):
+                folder_to_disk(one) if one.is_dir() else _to_disk(one)
+            folder_to_disk(temporary)
+            try:
+                os.rename(temporary, path)
+            except OSError:
+                if not path.is_dir():  # else somebody else made it meanwhile
+                    raise
+            folder_to_disk(path.parent)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+@contextmanager
+def _named(temporary: Path) -> Iterator[None]:
+    """A disk's failure without a name, as of a write that finds no room, gets that of the file."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is None and error.errno is not None:
+            raise OSError(error.errno, error.strerror, str(temporary)) from None
+        raise
+
+
+def folder_to_disk(folder: Path) -> None:
+    """Wait until the names in a folder are on the disk."""
+    if os.name != "posix":  # elsewhere folders cannot be waited for
+        return
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(opened)
+    except OSError as error:
+        if error.errno not in (errno.EINVAL, errno.ENOTSUP):
+            raise
+    finally:
+        os.close(opened)
+
+
+@contextmanager
+def scratch_folder(within: Path) -> Iterator[Path]:
+    """A temporary folder below ``within``, removed afterwards."""
+    temporary = within / _own_prefix()
+    temporary.mkdir()
+    try:
+        yield temporary
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def move_durably(made: Path, path: Path) -> None:
+    """Move a file to its place, in the same file system, once it is on the disk, and wait for its name there."""
+    _to_disk(made)
+    os.replace(made, path)
+    folder_to_disk(path.parent)
+
+
 @contextmanager
 def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     """A temporary folder to write several files to; they move into ``folder`` together on success.

@@ -12,7 +12,7 @@ from oracles.sampling import quick_only
 import trunnion as tn
 from trunnion.motion.chaos.certify_chaos import ChaosCertificate
 from trunnion.motion.chaos.chaos_subject import clocks
-from trunnion.studies.double_tripod.published import DoubleTripod
+from trunnion.papers.double_tripod.published import DoubleTripod
 from trunnion.systems.reference import (
     dead_zone_oscillator,
     driven_pendulum,

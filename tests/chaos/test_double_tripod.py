@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.studies.double_tripod.computed import exponent_from, floquet_exponents, opening_depth, sweep_of
-from trunnion.studies.double_tripod.contraction import contraction, smallest_damping
-from trunnion.studies.double_tripod.estimator import printed_estimator
-from trunnion.studies.double_tripod.figures import beats, motion_of
-from trunnion.studies.double_tripod.published import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, OuterElement
+from trunnion.papers.double_tripod.computed import exponent_from, floquet_exponents, opening_depth, sweep_of
+from trunnion.papers.double_tripod.contraction import contraction, smallest_damping
+from trunnion.papers.double_tripod.estimator import printed_estimator
+from trunnion.papers.double_tripod.figures import beats, motion_of
+from trunnion.papers.double_tripod.published import INPUT, OUTPUT, WORST_ANGLE, DoubleTripod, OuterElement
 from trunnion.systems.reference import linear_oscillator
 
 NINE = WORST_ANGLE

@@ -23,8 +23,8 @@ from trunnion.floquet.charts.numpy_chart import build_with_numpy
 from trunnion.floquet.charts.numpy_pixels import numpy_radii
 from trunnion.floquet.charts.stability_chart import chart_task, stability_chart
 from trunnion.numerics.chain.characteristic import radii
+from trunnion.papers.entries import catalogue
 from trunnion.results.verdict import Verdict
-from trunnion.studies.entries import catalogue
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ANGLES = "HookeJoint *.angle"

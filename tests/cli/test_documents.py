@@ -73,9 +73,3 @@ def test_the_findings_shown_are_those_of_the_starter(run, monkeypatch):
     assert [line.rstrip() for line in shown.splitlines()] == [
         line.rstrip() for line in printed.partition("Findings\n")[2].partition("\ntrunnion assess")[0].splitlines()
     ]
-
-
-def test_links_lead_somewhere():
-    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
-        for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text(encoding="utf-8")):
-            assert (page.parent / target).exists(), f"{page.name}: {target}"

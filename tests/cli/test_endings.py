@@ -14,7 +14,7 @@ import pytest
 from typer.core import TyperGroup
 
 import trunnion
-import trunnion.studies.entries as catalogue
+import trunnion.papers.entries as catalogue
 from trunnion._version import __version__
 
 posix = pytest.mark.skipif(os.name != "posix", reason="pipes and devices")

@@ -57,7 +57,7 @@ def test_speeds_of_every_result_are_in_that_unit(question):
 BARE = {"show_speed", "rounded_speed", "about_speed", "about_span", "show_acceleration", "acceleration_span"}
 BARE |= {"rounded_span", "ranges_in_words", "quantity_axis", "parameter_axis"}
 """What ``Words`` stands on: to be called with a unit, so that every caller would have to know it."""
-LATER = ("results/", "motion/", "steady/", "studies/")
+LATER = ("results/", "motion/", "steady/", "papers/")
 """Their home, and rooms some of whose functions take a unit yet."""
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from as_printed import ROOT
 
-TOP = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "benchmarks/README.md"]
+TOP = ["README.md", "CONTRIBUTING.md", "CODE_OF_CONDUCT.md", "SECURITY.md", "CHANGELOG.md", "benchmarks/README.md"]
 PAGES = [*TOP, *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md"))]
 PAGES += sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs/theory").glob("*.md"))
 LINK = re.compile(r"\]\(([^)\s]+)\)")

@@ -46,7 +46,7 @@ def test_every_study_is_as_stored(name: str) -> None:
 
 
 def test_studies_of_all_papers_are_stored() -> None:
-    from trunnion.studies.reproduce import PAPERS
+    from trunnion.papers.reproduce import PAPERS
 
     assert set(stored("reproduced")) == set(PAPERS)
     assert all(one["tables"] and one["conclusions"] for one in stored("reproduced").values())

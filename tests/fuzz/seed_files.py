@@ -11,7 +11,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.errors import InputError
-from trunnion.studies.entries import catalogue, entries
+from trunnion.papers.entries import catalogue, entries
 
 TESTS = Path(__file__).parents[1]
 

@@ -13,15 +13,15 @@ from oracles.chains import random_chain
 from oracles.package_kernels import chain_radius
 
 import trunnion as tn
-from trunnion.results.chart import StabilityChart
-from trunnion.results.verdict import Verdict
-from trunnion.studies.two_shaft_cardan.published import (
+from trunnion.papers.two_shaft_cardan.published import (
     DAMPING_OF_SHAFT_2,
     DAMPING_RATIO,
     INERTIA_OF_DISK_2,
     STIFFNESS_OF_SHAFT_2,
     group_parameters,
 )
+from trunnion.results.chart import StabilityChart
+from trunnion.results.verdict import Verdict
 
 
 def loaded_line() -> tn.Driveline:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.studies.double_tripod.errata import errata
-from trunnion.studies.double_tripod.midshaft import midshaft_frequencies, ratio_that_meets
+from trunnion.papers.double_tripod.errata import errata
+from trunnion.papers.double_tripod.midshaft import midshaft_frequencies, ratio_that_meets
 
 LENGTH, MODULUS, DENSITY = 0.940, 77.3e9, 7850.0
 """L_DM2 [m], G [Pa], ρ [kg/m³] as the paper prints them."""

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from trunnion.studies.reproduce import PAPERS
-from trunnion.studies.shared.result import LABELS, Conclusion, Reading
+from trunnion.papers.reproduce import PAPERS
+from trunnion.papers.shared.result import LABELS, Conclusion, Reading
 
 LEFT_OPEN = {
     "two-shaft-cardan": {

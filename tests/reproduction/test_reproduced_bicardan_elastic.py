@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.studies.bicardan_elastic.conclusions import GUIDELINE
+from trunnion.papers.bicardan_elastic.conclusions import GUIDELINE
 
 
 def test_conclusions(study) -> None:  # type: ignore[no-untyped-def]

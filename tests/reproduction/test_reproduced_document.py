@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.studies.reproduce import PAPERS
-from trunnion.studies.shared.result import Reproductions
+from trunnion.papers.reproduce import PAPERS
+from trunnion.papers.shared.result import Reproductions
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reproduced.md").read_text(encoding="utf-8")
 

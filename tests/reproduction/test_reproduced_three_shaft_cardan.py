@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
-from trunnion.studies.shared.result import Reproduction
-from trunnion.studies.three_shaft_cardan.printed_matrices import printed_three_shaft_system
+from trunnion.papers.shared.result import Reproduction
+from trunnion.papers.three_shaft_cardan.printed_matrices import printed_three_shaft_system
 
 SLOW = pytest.mark.slow
 HIGH_UP = ("subharmonic ω₂/3", "harmonic ω₂/4")

@@ -11,11 +11,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import trunnion as tn
-from trunnion.studies.shared.result import Reproduction
-from trunnion.studies.two_shaft_cardan.errata import difference_tongue, errata
-from trunnion.studies.two_shaft_cardan.printed_matrices import matrices
-from trunnion.studies.two_shaft_cardan.study import TABLE_1, TABLE_2
-from trunnion.studies.two_shaft_cardan.twists import spectral_radii
+from trunnion.papers.shared.result import Reproduction
+from trunnion.papers.two_shaft_cardan.errata import difference_tongue, errata
+from trunnion.papers.two_shaft_cardan.printed_matrices import matrices
+from trunnion.papers.two_shaft_cardan.study import TABLE_1, TABLE_2
+from trunnion.papers.two_shaft_cardan.twists import spectral_radii
 
 SLOW = pytest.mark.slow
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import trunnion as tn
+from trunnion.papers.shared.shares import Share, bands, change, in_bands, share, steps
 from trunnion.results.chart import StabilityChart
-from trunnion.studies.shared.shares import Share, bands, change, in_bands, share, steps
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ def catalogue(
     as_json: Json = False,
 ) -> None:
     """List the published drivelines, or print one as a file to start from."""
-    from trunnion.studies.entries import entries
+    from trunnion.papers.entries import entries
 
     if name is None:
         rows = [{"name": e.name, "title": e.title, "source": e.source} for e in entries()]

@@ -20,7 +20,8 @@ from trunnion.cli.ending import EndedBy
 from trunnion.cli.failures import Interrupted, answer
 from trunnion.cli.readers import TABLES_ANYWHERE
 from trunnion.cli.reproduce import reproduce
-from trunnion.cli.study import analyze
+from trunnion.cli.stability import analyze
+from trunnion.cli.study import study
 from trunnion.cli.typed import callback
 from trunnion.cli.warm_up import warm_up
 from trunnion.errors import InputRemark
@@ -128,6 +129,7 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     analyze,
     *(callback(one.name.replace("_", "-"), one.sentence, found_at(one.command)) for one in ANALYSES if one.command),
     callback("misfire", "Every cylinder out of work in turn: the worst, and the torques with it.", orders.misfire),
+    study,
     callback(
         "animate", "The line in motion, in space: a page that plays it without a network, a GIF, or JSON.", animate
     ),

@@ -50,7 +50,7 @@ def _swinging(name: str, texts: Texts) -> AskedSwing:
 def _meant(name: str, values: dict[str, float], texts: list[str] | None) -> tuple[Oscillating, str]:
     """What is meant, and the unit of its x if it has one."""
     from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import entries
+    from trunnion.papers.entries import entries
     from trunnion.systems.reference import SYSTEMS
 
     if name == GEARS:

@@ -48,7 +48,7 @@ def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
         return tn.load(path, tables_anywhere=TABLES_ANYWHERE.get())
     # The studies load much that a file does not need.
     from trunnion.driveline.refusals import nearest
-    from trunnion.studies.entries import entries
+    from trunnion.papers.entries import entries
 
     names = [e.name for e in entries()]
     if file in names:

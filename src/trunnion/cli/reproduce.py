@@ -32,7 +32,7 @@ def reproduce(
     With "all" every study goes into one page with an index.
     """
     from trunnion.cli.files import check_folder
-    from trunnion.studies.shared.result import Reproductions
+    from trunnion.papers.shared.result import Reproductions
 
     target = folder or DEFAULT_FOLDER / name
     check_folder(target)

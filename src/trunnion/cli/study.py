@@ -1,295 +1,196 @@
-"""Commands that compute: read the options, call one analysis, print or write what came out."""
+"""``trunnion study``: one analysis at very many points, and what is done of it."""
 
 from __future__ import annotations
 
+import sys
 import time
-from dataclasses import replace
-from functools import partial
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
-from trunnion.cli.options import FILE, SPEED, Line, LineOfFile, LoadCase, Progress, Speed, SpeedUnit, Unit
-from trunnion.cli.places import DEFAULT_FOLDER, NOTHING, CommandOutput, write_result
-from trunnion.cli.readers import line_of_file, loaded_line, read_axis, read_points, read_speed, read_time
-from trunnion.cli.typed import Command, Json
-from trunnion.waiting import TimeLimit, to_the_end
+from trunnion.cli.readers import TABLES_ANYWHERE, read_time
+from trunnion.cli.typed import Json, Within
+from trunnion.driveline.refusals import nearest
+from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.reporting.overview import Overview
-    from trunnion.reporting.overview_assessment import OverviewAssessment
-    from trunnion.reporting.report import Report
-    from trunnion.reporting.submission import Submission
+    from trunnion.studies.result import Study
+    from trunnion.studies.runner import StudyProgress
+
+OF_STORES = ("status", "resume", "show", "export")
+"""What can be asked of a store that is there."""
+EVERY = 0.2
+"""Seconds between two states of the line of progress on a terminal."""
 
 
-DRAWN = 3.0
-"""Seconds that the pictures of a report take: with less left than that none is made."""
-REST, LEAST = 10.0, 0.05
-"""Seconds of processor time that report and chart may take where no time is given; seconds at least where it is."""
-
-
-def analyze(
-    file: Annotated[str, FILE],
-    to: Annotated[
-        Path,
+def study(
+    what: Annotated[
+        str, typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what of a STORE.")
+    ],
+    store: Annotated[
+        str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say.")
+    ] = None,
+    outputs: Annotated[
+        list[Path] | None,
         typer.Option(
             "--output",
             "-o",
             metavar="PATH",
-            help="Folder for report, chart and data; or the report alone as NAME.html.",
+            help="Of export: file ending in .nc, .csv or .parquet; of show: .png, .pdf or .svg; repeat it for more.",
         ),
-    ] = DEFAULT_FOLDER,
-    speed: Annotated[str | None, SPEED] = None,
-    unit: Unit = None,
-    load_case: LoadCase = None,
-    points: Annotated[
-        str | None, typer.Option("--points", metavar="NXxNY", help="Of the chart; default as its picture needs.")
     ] = None,
-    within: Annotated[
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=0, help="Processes of this machine; default: one per core; 0 computes here."),
+    ] = None,
+    scheduler: Annotated[
         str | None,
-        typer.Option(
-            "--within",
-            metavar="TIME",
-            help='End within this time, "30 s" say, with what is known by then; default: as long as the verdict '
-            "takes, then 10 s of processor time.",
-        ),
+        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler instead: tcp://host:8786."),
     ] = None,
-    handed_in: Annotated[
-        bool,
-        typer.Option(
-            "--submission",
-            help="Instead of the report with charts: the report that is handed in and signed, NAME-submission.html.",
-        ),
+    memory: Annotated[
+        str | None,
+        typer.Option("--memory", metavar="SIZE", help='Of a process of this machine at most: "2 GiB".'),
+    ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Compute a few points alone, and say what all would cost.")
     ] = False,
-    moving: Annotated[
-        bool, typer.Option("--live", help="Also a page on which the line moves, NAME-live.html beside the report.")
+    verify: Annotated[
+        bool, typer.Option("--verify", help="First read back all that is there; compute anew what is damaged.")
     ] = False,
+    within: Within = None,
     as_json: Json = False,
 ) -> None:
-    """Is the line fit for its speeds? Verdict, checks and findings at once; then a report as one HTML file."""
-    begun = time.monotonic()
-    about = loaded_line(file, {"unit": unit, "load_case": load_case})
-    size = read_points(points) if points else None
-    at = None if speed is None else read_speed(about, speed, "--speed")
+    """Ask an analysis at very many points, on all cores or a cluster; resume, show and export what is kept.
+
+    Example: trunnion study truck-study.toml, then trunnion study show truck.zarr
+    """
+    from trunnion.studies.extra import require_all
+
+    if not dry_run:
+        require_all()
+    if what in OF_STORES:
+        if store is None:
+            raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
+        given = {"workers": workers, "scheduler": scheduler, "memory": memory, "verify": verify}
+        _of_store(what, store, outputs or [], given, within, as_json)
+        return
+    if store is not None:
+        raise InputError("is nothing that is asked of a store", key="study", value=what,
+                         remedy=nearest(what, OF_STORES))  # fmt: skip
+    if dry_run:
+        from trunnion.studies.study import study_cost
+
+        cost = study_cost(what, tables_anywhere=TABLES_ANYWHERE.get(), workers=workers)
+        output.write_json("study", cost.to_dict()) if as_json else output.say(str(cost))
+        return
+    from trunnion.studies.study import study as run_study
+
     seconds = None if within is None else read_time(within, "--within")
-    from trunnion.cli.files import check_report
-    from trunnion.cli.report import overview_json, print_begin, print_findings, print_judged, print_overview
-    from trunnion.reporting.overview import at_speed
-    from trunnion.reporting.overview_assessment import answer as answer_of
-    from trunnion.reporting.overview_assessment import asked, judged
+    with _reported(seconds) as report:
+        found = run_study(what, workers=workers, scheduler=scheduler, memory=memory, verify=verify, progress=report,
+                      tables_anywhere=TABLES_ANYWHERE.get())  # fmt: skip
+    _say(found, as_json)
 
-    check_report(to)
-    question = asked(about.line, speed=at, unit=about.unit)
-    if not as_json:
-        print_begin(question)
-    with output.progress("verdict", seconds):
-        verdict = judged(question)
-    if not as_json:
-        print_judged(verdict)
-    left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-    with output.stoppable(left), output.progress("findings"):
-        given = answer_of(verdict)
-    if not as_json:
-        print_findings(given)
-    if handed_in:
-        left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-        handed, written = _submitted(given, file, to, left)
-        if as_json:
-            output.write_json("analyze", overview_json(at_speed(given), written))
-            return
-        _print_left_out(handed.contents.left_out)
-        output.written(written)
-        return
-    left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-    with output.stoppable(left, of_processor=seconds is None) as limit:
-        if left < DRAWN:
-            seen, written = at_speed(given), list[Path]()
-            left_out: tuple[str, ...] = (f"The report itself: the time limit of {within} left no time to draw it",)
-        else:
-            seen, left_out, written = _reported(given, file, to, size, limit)
-            if moving:
-                page, cannot = _live(seen, written[0])
-                left_out, written = (*left_out, *cannot), [*written, page]
+
+def _of_store(
+    what: str, store: str, outputs: list[Path], given: dict[str, Any], within: str | None, as_json: bool
+) -> None:
+    if what == "status":
+        _status(store, as_json)
+    elif what == "resume":
+        from trunnion.studies.study import resumed
+
+        seconds = None if within is None else read_time(within, "--within")
+        with _reported(seconds) as report:
+            found = resumed(store, progress=report, **given)
+        _say(found, as_json)
+    elif what == "export":
+        from trunnion.studies.exports import ENDINGS, export
+
+        if not outputs:
+            raise InputError("is missing", key="--output", remedy=f"give a file ending in one of {', '.join(ENDINGS)}")
+        paths = [export(store, path) for path in outputs]
+        output.write_json("study", {"written": [str(path) for path in paths]}) if as_json else output.written(paths)
+    else:
+        from trunnion.studies.result import read
+
+        found = read(store)
+        _say(found, as_json, whole=False)
+
+
+def _status(store: str, as_json: bool) -> None:
+    from trunnion.studies.cost import in_time
+    from trunnion.studies.store import Store
+
+    opened = Store.open(Path(store))
+    counts = opened.counts()
     if as_json:
-        output.write_json("analyze", overview_json(seen, written))
+        about = {"points": counts.points, "done": counts.done, "failed": counts.failed, "missing": counts.missing,
+                 "seconds": counts.seconds, "reasons": dict(counts.reasons), **opened.about["computed_by"]}  # fmt: skip
+        output.write_json("study", {"store": store, "analysis": opened.question.analysis, **about})
         return
-    print_overview(seen, given)
-    _print_left_out(left_out)
-    output.written(written)
+    output.say(f"{opened.question.analysis} in {store}: {counts.points} points, {counts.done} done, {counts.failed} "
+               f"failed, {counts.missing} missing")  # fmt: skip
+    if counts.seconds:
+        output.say(f"  {in_time(counts.seconds)} of computing so far")
+    for sentence, count in counts.reasons:
+        output.say(f"  failed at {count}: {sentence}")
 
 
-def _print_left_out(sentences: tuple[str, ...]) -> None:
-    if sentences:
-        output.heading("Left out of the report")
-    for sentence in sentences:
-        output.say(f"  {sentence}")
+def _say(found: Study, as_json: bool, *, whole: bool = True) -> None:
+    """The study in words, or what it says as JSON; exit code 1 where points are missing that were asked for."""
+    if as_json:
+        content = {key: value for key, value in vars(found).items() if isinstance(value, str | int)}
+        output.write_json("study", {**content, "missing": found.missing, "reasons": dict(found.reasons)})
+    else:
+        output.say(str(found))
+    if whole:
+        output.finish(found.outcome, [Path(found.store)])
 
 
-def _reported(
-    given: OverviewAssessment, file: str, to: Path, size: tuple[int, int] | None, limit: TimeLimit
-) -> tuple[Overview, tuple[str, ...], list[Path]]:
-    """Write the report, then once more with the chart: what is interrupted leaves the first. Also what it left out."""
-    from trunnion.reporting.overview import at_speed, charted
-    from trunnion.reporting.report import report
+@contextmanager
+def _reported(within: float | None) -> Iterator[Callable[[StudyProgress], None]]:
+    """StudyProgress on stderr; Ctrl-C and a time limit end the run with what it has."""
+    terminal = sys.stderr.isatty()
+    last = 0.0 if terminal else time.monotonic()
+    named = False
 
-    with output.progress("report") as advance:
-        seen = at_speed(given)
-        page = report(seen, source=file, progress=advance)
-    written = _written(page, to, file)
-    if not seen.chartable:
-        return seen, page.contents.left_out, written
-    try:
-        with output.progress("stability chart") as advance:
-            seen = charted(seen, size, advance)
-        if limit.stopped:
-            raise KeyboardInterrupt
-        page = page.charted(seen)
-        with to_the_end():
-            return seen, page.contents.left_out, _written(page, to, file)
-    except KeyboardInterrupt:
-        kept = f"the report without its chart is in {', '.join(map(str, written))}"
-        raise KeyboardInterrupt(kept) from None
+    def report(state: StudyProgress) -> None:
+        nonlocal last, named
+        if state.dashboard and not named:
+            named = True
+            output.note(f"{state.workers} workers; watch them at {state.dashboard}")
+        now = time.monotonic()
+        if now - last < (EVERY if terminal else output.LONG):
+            return
+        last = now
+        line = progress_line(state)
+        if terminal:
+            print(f"\r{line:<100}", end="", file=sys.stderr, flush=True)
+        else:
+            output.note(line)
 
-
-def _live(seen: Overview, report: Path) -> tuple[Path, tuple[str, ...]]:
-    """The page on which the line moves, beside the report, and what it leaves out."""
-    from trunnion.reporting.live import beside, live
-
-    with output.progress("the line in motion"):
-        found, left_out = live(seen.line, seen.stability.speed if seen.stability else None)
-    return found.save(beside(report)), left_out
+    with output.stoppable(within), output.compile_notice():
+        try:
+            yield report
+        finally:
+            if terminal:
+                print("\r" + " " * 100 + "\r", end="", file=sys.stderr, flush=True)
 
 
-def _submitted(given: OverviewAssessment, file: str, to: Path, left: float | None) -> tuple[Submission, list[Path]]:
-    """The report that is handed in, and where it is written."""
-    from trunnion.cli.files import REPORTS
-    from trunnion.reporting.submission import submission
-    from trunnion.writing import folder_written_whole
+def progress_line(state: Any) -> str:
+    """One line about how far a study is."""
+    from trunnion.studies.cost import in_bytes, in_time
 
-    with output.stoppable(left), output.progress("report to hand in") as advance:
-        page = submission(given, source=file, progress=advance)
-    with to_the_end():
-        if to.suffix.lower() in REPORTS:
-            return page, [page.save(to)]
-        with folder_written_whole(to) as temporary:
-            name = page.save(temporary / f"{Path(file).stem}-submission.html").name
-        return page, [to / name]
-
-
-def _written(page: Report, to: Path, file: str) -> list[Path]:
-    from trunnion.cli.files import REPORTS
-    from trunnion.writing import folder_written_whole
-
-    if to.suffix.lower() in REPORTS:
-        return [page.save(to)]
-    chart, stem = page.contents.overview.chart, Path(file).stem
-    with folder_written_whole(to) as temporary:
-        written = [page.save(temporary / f"{stem}-report.html")]
-        if chart is not None:
-            names = [temporary / f"{stem}-stability-chart.{ending}" for ending in ("png", "nc")]
-            written += [write_result(name, chart, lambda: page.pictures["chart"]) for name in names]
-    return [to / path.name for path in written]
-
-
-def _size(asked: CommandInput, text: str, key: str) -> tuple[int, int]:
-    return read_points(text)
-
-
-Axis = tuple[str, float, float, int, str]
-AXIS = partial(read_axis, points=0)
-"""With as many points as ``--points`` says where none are stated."""
-
-
-def _frequencies(file: str, texts: Texts) -> CommandInput:
-    """The line, and the unit of frequencies that goes with that of its speeds."""
-    from trunnion.results.words import Words
-
-    asked = line_of_file(file, texts)
-    return asked if texts["unit"] else replace(asked, unit=Words(asked.unit).of_frequencies.of_speeds)
-
-
-@Command("stability", writes=NOTHING)
-def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> CommandOutput:
-    """Example: trunnion stability truck.toml --speed "1500 rpm" """
-    from trunnion.cli.report import stability_json
-
-    found = tn.stability(line, speed).in_unit(unit)
-    return CommandOutput(
-        found,
-        content=lambda: stability_json(found),
-        more=lambda: output.findings(found.findings),
-        wrap=True,
-    )
-
-
-@Command("stability chart")
-def stability_chart(
-    line: Line,
-    *,
-    x: Annotated[Axis, OptionReader(AXIS, "speed")],
-    y: Annotated[Axis, OptionReader(AXIS, "HookeJoint *.angle")],
-    speed: Speed,
-    points: Annotated[tuple[int, int], OptionReader(_size, "200x150")],
-    unit: SpeedUnit,
-    progress: Progress,
-) -> CommandOutput:
-    """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
-
-    --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
-    --y PARAMETER:LOW:HIGH[:POINTS][:log]  The same.
-    --points NXxNY  Points along x and y where not said there.
-    """
-    from trunnion.cli.report import chart_json, chart_text
-
-    across, up = ((*axis[:3], axis[3] or n, axis[4]) for axis, n in zip((x, y), points, strict=True))
-    chart = tn.stability_chart(line, across, up, speed=speed, progress=progress)
-    return CommandOutput(
-        chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True
-    )
-
-
-LineInFrequencies = Annotated["tn.Driveline", FILE, CommandSubject(_frequencies, {"unit": Unit})]
-
-
-@Command(writes=NOTHING)
-def natural_frequencies(line: LineInFrequencies, *, unit: SpeedUnit) -> CommandOutput:
-    """Example: trunnion natural-frequencies truck.toml --unit Hz"""
-    from trunnion.cli.report import modes_json
-
-    modes = tn.natural_frequencies(line)
-    return CommandOutput(
-        modes,
-        content=lambda: modes_json(modes, unit),
-        text=lambda: f"{len(modes.names)} natural frequencies, all joints straight",
-        more=lambda: output.table(modes.table(unit)),
-        wrap=True,
-    )
-
-
-@Command(writes=NOTHING)
-def resonance_speeds(
-    line: LineOfFile, *, orders: Annotated[int, NumberBounds(1, 20)] = 2, all_: bool = False, unit: SpeedUnit
-) -> CommandOutput:
-    """Example: trunnion resonance-speeds truck.toml --orders 3 --all
-
-    --orders  Highest order k.
-    --all  Also those outside the file's speed_range.
-    """
-    from trunnion.cli.report import resonances_json
-
-    found = tn.resonance_speeds(line, orders)
-    limits = line.operation.speed_range if line.operation else None
-    shown = found if all_ or limits is None else found.within(*limits)
-    rows = shown.table(unit)
-    where = "" if shown is found else f" in the operating range, of {len(found)} in all (--all shows them)"
-    return CommandOutput(
-        shown,
-        content=lambda: resonances_json(shown, unit),
-        text=lambda: f"{len(rows)} resonance speeds up to order {orders}{where}",
-        more=lambda: output.table(rows),
-        wrap=True,
-    )
+    parts = [f"study: {100 * state.share:.1f} %", f"{state.rate:.3g} points/s"]
+    if state.left < float("inf"):
+        parts.append(f"about {in_time(max(state.left, 1.0))} left")
+    if state.failed:
+        parts.append(f"{state.failed} failed")
+    if held := state.bytes:
+        parts.append(f"workers hold {in_bytes(held)}")
+    return ", ".join(parts)

@@ -1,1 +1,1 @@
-"""Published studies, a folder a paper: numbers as printed, what is computed anew, errata; and the catalogue."""
+"""Studies of very many lines: what a point, a block and a task are, and a store in which nothing is lost."""

@@ -9,9 +9,9 @@ from published.numbers import Batch, Source, Verdict
 
 import trunnion as tn
 from trunnion.driveline.quantities import DEGREE
-from trunnion.studies.double_tripod.published import DoubleTripod
-from trunnion.studies.three_shaft_cardan import study as three_shafts
-from trunnion.studies.two_shaft_cardan import study as two_shafts
+from trunnion.papers.double_tripod.published import DoubleTripod
+from trunnion.papers.three_shaft_cardan import study as three_shafts
+from trunnion.papers.two_shaft_cardan import study as two_shafts
 
 SOURCES = {
     "S1": Source(

@@ -71,7 +71,7 @@ class DrivelineView(View):
         elif name.startswith("starter "):
             document.replace_text(starter(name.removeprefix("starter ")))
         else:
-            from trunnion.studies.entries import catalogue
+            from trunnion.papers.entries import catalogue
 
             document.replace_text(dumps(catalogue(name)))
 
@@ -128,7 +128,7 @@ class DrivelineView(View):
 
 
 def _beginnings() -> dict[str, str]:
-    from trunnion.studies.entries import entries
+    from trunnion.papers.entries import entries
 
     names = {f"{name}: {about}": f"starter {name}" for name, about in STARTERS.items()}
     lines = [e for e in entries() if e.describes_line]

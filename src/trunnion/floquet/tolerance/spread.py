@@ -38,9 +38,14 @@ class Spread(ParameterInterval):
 
     def values(self, share: Array) -> Array:
         """Quantiles: shares from 0 to 1 → values. Normal ones are cut at three standard deviations."""
-        if self.deviation is None:
-            return np.asarray(self.low + share * (self.high - self.low))
-        return np.asarray(np.clip(self.nominal + self.deviation * ndtri(share), self.low, self.high))
+        return normal_or_even(share, self.nominal, self.low, self.high, self.deviation)
+
+
+def normal_or_even(share: Array, nominal: float, low: float, high: float, deviation: float | None) -> Array:
+    """Quantiles of a number that scatters evenly between its ends, or normally with ``deviation`` and cut there."""
+    if deviation is None:
+        return np.asarray(low + share * (high - low))
+    return np.asarray(np.clip(nominal + deviation * ndtri(share), low, high))
 
 
 def read_tolerances(assembly: Assembly, tolerances: Tolerances | None) -> tuple[Spread, ...]:

@@ -1,0 +1,106 @@
+"""What a study will cost, from a few points that are timed: processor time, bytes and files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from time import process_time
+
+import numpy as np
+
+from trunnion.results.fields import attribute, internal, labelled
+from trunnion.results.result import Result
+from trunnion.studies.description import StudyPlan
+from trunnion.studies.quantities import LETTERS
+from trunnion.studies.store import part_of
+
+ENOUGH = 0.5
+"""Seconds of timing after which no further point is tried."""
+MOST = 8
+"""Points that are tried one by one."""
+OF_BATCH = 4096
+"""Points of the batch that is timed."""
+OVERHEAD = 0.03
+"""Share of engine and store, measured at tasks of a second."""
+
+
+@labelled
+class StudyCost(Result):
+    """What a study will take: of points that were timed, and the least where they differ much."""
+
+    points: int = attribute("in all")
+    blocks: int = attribute("that is files until shards are made of them")
+    shards: int = attribute("files of every array in the end")
+    seconds_a_point: float = attribute("processor time", "s")
+    least: float = attribute("of a point that was timed", "s")
+    most: float = attribute("of a point that was timed", "s")
+    timed: int = attribute("points that were")
+    batched: bool = attribute("whether the compiled batch answers")
+    bytes: int = attribute("in the store at most, before compression")
+    workers: int = attribute("that share it")
+    shape: tuple[int, ...] = internal("points of the sampling plan and along the axes")
+
+    @property
+    def seconds(self) -> float:
+        """Processor time of all points [s]."""
+        return self.points * self.seconds_a_point
+
+    @property
+    def elapsed(self) -> float:
+        """Time on the workers, each of which has a processor [s]."""
+        return self.seconds * (1 + OVERHEAD) / self.workers
+
+    def _lines(self) -> Iterator[str]:
+        shape = " × ".join(map(str, self.shape))
+        yield f"{self.points} points ({shape}) in {self.blocks} blocks, {self.shards} shards"
+        how = "by the compiled batch" if self.batched else f"{in_time(self.least)} to {in_time(self.most)}, one by one"
+        yield f"  {in_time(self.seconds_a_point)} a point ({how}; {self.timed} timed)"
+        yield f"  {in_time(self.seconds)} of processor time, about {in_time(self.elapsed)} on {self.workers} workers"
+        yield f"  at most {in_bytes(self.bytes)} in the store"
+
+
+def cost_of(plan: StudyPlan, workers: int) -> StudyCost:
+    """Time a few points of a plan, all over it, and multiply."""
+    question, design = plan.question, plan.design
+    part = part_of(0, design, (), plan.block)
+    taken: list[float] = []
+    if question.batched:
+        count = min(OF_BATCH, design.size)
+        values = design.values(np.arange(count))
+        question.evaluated(design.paths, values[:64])  # whatever compiles, compiles
+        begun = process_time()
+        question.evaluated(design.paths, values)
+        taken = [(process_time() - begun) / count]
+        timed = count
+    else:
+        numbers = np.random.default_rng(0).permutation(min(design.size, 1 << 20))[: MOST + 1]
+        numbers = (numbers * (design.size / min(design.size, 1 << 20))).astype(np.intp)
+        question.evaluated(design.paths, design.values(numbers[:1]))
+        for number in numbers[1:] if len(numbers) > 1 else numbers:
+            begun = process_time()
+            question.evaluated(design.paths, design.values(np.array([number])))
+            taken.append(process_time() - begun)
+            if sum(taken) > ENOUGH:
+                break
+        timed = len(taken)
+    each = sum(LETTERS if q.kind == "word" else 8 for q in question.quantities) + 8 * len(design.paths) + 1
+    return StudyCost(
+        points=design.size, blocks=part.blocks, shards=part.shards, seconds_a_point=float(np.mean(taken)),
+        least=min(taken), most=max(taken), timed=timed, batched=question.batched, bytes=design.size * each,
+        workers=workers, shape=design.shape,
+    )  # fmt: skip
+
+
+def in_time(seconds: float) -> str:
+    """A time in a unit that suits it."""
+    for unit, size in (("d", 86400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
+        if seconds >= size:
+            return f"{seconds / size:.3g} {unit}"
+    return f"{seconds * 1e6:.3g} µs"
+
+
+def in_bytes(count: float) -> str:
+    """Bytes in a unit that suits them."""
+    for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
+        if count >= size:
+            return f"{count / size:.3g} {unit}"
+    return f"{count:.0f} bytes"

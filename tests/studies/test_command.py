@@ -1,0 +1,86 @@
+"""``trunnion study``: from a file to a store, and what is asked of it; exports beside the data they were made of."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+import tomli_w
+import xarray as xr
+from studies.asked import line, stated
+
+import trunnion as tn
+from trunnion.studies import extra
+
+
+@pytest.fixture
+def study(run, here: Path):
+    """``trunnion study …`` where study.toml and line.toml lie."""
+    tn.dump(line(), here / "line.toml")
+    (here / "study.toml").write_text(tomli_w.dumps(stated(Path("s.zarr"), line="line.toml", block=8)))
+    return lambda *args: run("study", *args)
+
+
+def test_from_file_to_exports(study, here: Path) -> None:
+    cost = study("study.toml", "--dry-run")
+    assert cost.exit_code == 0 and "40 points (5 × 8) in 5 blocks" in cost.stdout and not (here / "s.zarr").exists()
+    made = study("study.toml", "--workers", "0")
+    assert made.exit_code == 0 and "stability at 40 points (5 × 8): 40 done, 0 failed" in made.stdout
+    assert "40 points, 40 done, 0 failed, 0 missing" in study("status", "s.zarr").stdout
+    assert json.loads(study("show", "s.zarr", "--json").stdout)["done"] == 40
+    assert study("resume", "s.zarr", "--verify").exit_code == 0
+    assert study("export", "s.zarr", "-o", "s.nc", "-o", "s.csv", "-o", "s.parquet").exit_code == 0
+    found = tn.study("study.toml", workers=0)
+    growth, speed = found.quantity("growth_rate"), found.parameter("speed")
+    with xr.open_dataset(here / "s.nc", engine="h5netcdf") as data:
+        assert np.array_equal(data["growth_rate"], growth) and np.array_equal(data["speed"], speed)
+        assert data["speed"].attrs["units"] == "rad/s"
+    with (here / "s.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(row["growth_rate"]) for row in rows] == growth.tolist()
+    assert {row["verdict"] for row in rows} == {"stable", "unstable"} and {row["status"] for row in rows} == {"done"}
+    table = pyarrow.parquet.read_table(here / "s.parquet").to_pydict()
+    assert table["growth_rate"] == growth.tolist() and table["speed"] == speed.tolist()
+    with xr.open_zarr(here / "s.zarr", group="part-0", consolidated=False) as opened:
+        assert np.array_equal(opened["growth_rate"], growth) and opened["growth_rate"].dims == ("point",)
+
+
+def test_what_is_missing_is_said(study, here: Path) -> None:
+    """A time limit ends it with what it has and exit code 1; a store that grows is shown and exported."""
+    ended = study("study.toml", "--workers", "0", "--within", "1 ms")
+    assert ended.exit_code == 1 and "40 of 40 points are missing" in ended.stderr
+    assert "40 missing" in study("status", "s.zarr").stdout
+    empty = study("export", "s.zarr", "-o", "s.parquet")
+    assert empty.exit_code == 2 and "has no point that is done; run the study first" in empty.stderr
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        (("stauts", "s.zarr"), 'is nothing that is asked of a store; did you mean "status"?'),
+        (("status",), "STORE: is missing; write: trunnion study status truck.zarr"),
+        (("show", "nothing.zarr"), "is no store of a study; name the folder that a study wrote"),
+        (("study.tml",), 'study.tml: file not found; did you mean "study.toml"?'),
+        (("export", "s.zarr"), "--output: is missing; give a file ending in one of .nc, .csv, .parquet"),
+    ],
+)
+def test_refusals(asked, message, study) -> None:
+    answer = study(*asked)
+    assert answer.exit_code == 2 and message in answer.stderr and answer.stderr.count("\n") == 1
+
+
+def test_without_the_extra(study, monkeypatch) -> None:
+    """One line says how to install it; what all would cost is known without."""
+
+    def missing(name: str) -> None:
+        raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+    monkeypatch.setattr(extra, "import_module", missing)
+    answer = study("study.toml")
+    said = 'error: scale: studies need dask, which is not installed; install it with: python -m pip install "trunnion['
+    assert answer.exit_code == 2 and answer.stderr.startswith(said) and answer.stderr.count("\n") == 1
+    assert study("study.toml", "--dry-run").exit_code == 0
