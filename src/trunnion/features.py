@@ -191,7 +191,6 @@ _BASE = {
 _EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
 _UNPROVABLE = {
     **_BASE,
-    "free start": "a proof is about motions at a prescribed speed",
     DRAGGED: "what it drags may stand anywhere, so that one disturbance never dies out",
     **dict.fromkeys((CURVE, LAG), "a curve over the speed is not enclosed"),
     PENDULUM: "the square of the speed holds it, and the proof is of springs that do not follow the speed",

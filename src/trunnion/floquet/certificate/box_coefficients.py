@@ -15,6 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.elements import Element
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.parameters import Columns
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -91,7 +92,8 @@ def box_coefficients(
         return found
 
     half = (speeds[1] - speeds[0]) / 2
-    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last, 4e-16 * speeds[1])
+    # Exactly what it says: the ends are moved outward by more than rounding makes of the middle.
+    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last)
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
     torque = _torques(assembly, speed, constant, viscous, quadratic)
@@ -159,7 +161,7 @@ def _put_twists(
     from trunnion.equations.coefficients import shaft_stiffness
 
     topo = assembly.topology
-    staged = has_stages(assembly.line.elements[shafts[0]])
+    staged = _staged(assembly.line.elements[shafts[0]])
     for i in shafts:
         if (i, number) not in topo.behind or not (torque.size or staged):
             continue
@@ -237,6 +239,11 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             if hooke and max(abs(end) for end in ends) >= STEEPEST:
                 worst = max(ends, key=abs)
                 raise InputError("may reach 60° at most in a certificate", key=one.label, value=worst)
+            if hooke and topo.free:
+                raise InputError(
+                    "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
+                    remedy="put a ConstantSpeed in front",
+                )  # fmt: skip
             _require_single(assembly, one, element, key)
             if key in ("damping", "mesh_damping") and ends[0] * ends[1] <= 0:
                 raise InputError(
@@ -249,7 +256,7 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
     by_speed = bool(co.viscous.any() or co.quadratic.any())
     for compliance, torque in zip(topo.compliances, co.torque[0], strict=True):
         element = line.elements[compliance.shafts[0]]
-        if has_stages(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
+        if _staged(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
             raise InputError(
                 "has stages, and its load varies within the box: whether it stays in one stage is not followed",
                 element=line.names[compliance.shafts[0]], value=float(torque),
@@ -263,6 +270,12 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             )  # fmt: skip
 
 
+def _staged(element: Element) -> bool:
+    """Whether stiffness or damping of a spring depend on what it carries: not of a mesh without play."""
+    alike = len(getattr(element, "stiffnesses", ())) <= 1 and not getattr(element, "total_backlash", 0.0)
+    return has_stages(element) and not (alike and not getattr(element, "impact_damping", 0.0))
+
+
 def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str) -> None:
     """Refuse what scatters in springs in series or with stages, of which only the whole enters the equations."""
     for compliance in assembly.topology.compliances:
@@ -273,7 +286,7 @@ def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str
                 "belongs to one of several springs in series, and what scatters in a certificate must be a spring of "
                 "its own", key=one.label, remedy="write them as one Shaft, or put a Disk between",
             )  # fmt: skip
-        staged = has_stages(assembly.line.elements[element]) and key != "mesh_damping"
+        staged = _staged(assembly.line.elements[element]) and key != "mesh_damping"
         if staged and (key != "mesh_stiffness" or assembly.coefficients(assembly.table(1, 1.0)).torque.any()):
             raise InputError(
                 "belongs to a spring with stages, and cannot scatter in a certificate under load", key=one.label,
@@ -289,8 +302,10 @@ def _require_even(assembly: Assembly, speeds: tuple[float, float]) -> None:
     checks: list[tuple[Array, Callable[[int], int]]] = [
         (co.stiffness, lambda e: assembly.topology.compliances[e].shafts[0]),
         (co.damping, lambda e: assembly.topology.compliances[e].shafts[0]),
-        *((part, _rotor_at(assembly)) for part in (co.load, co.viscous, co.quadratic)),
+        *((part, _rotor_at(assembly)) for part in (co.viscous, co.quadratic)),
     ]
+    if any(law.nonuniform for law in co.joints):  # elsewhere a constant load moves nothing
+        checks.append((co.load, _rotor_at(assembly)))
     for part, element in checks:
         spread = np.ptp(part, axis=0)
         worst = int(spread.argmax()) if spread.size else 0

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import gcd
 
 import numpy as np
 
@@ -28,6 +29,8 @@ from trunnion.laws.joint import JointLaw
 
 NEGLIGIBLE = 1e-12
 """Harmonics of a joint below this are left to the rest."""
+ROUNDED = 1e-14
+"""What is added to a free–free line's entries, relative."""
 MOST_HARMONICS = 400
 """Harmonics of the period's rate that are kept at most."""
 
@@ -41,15 +44,14 @@ class BoxMatrix:
     """A(τ, p) (2n, 2n): ``parts`` (1 + parameters, 2K + 1, 2n, 2n), and a bound of what they leave out (2n, 2n).
 
     ``rate`` s: cycles of the first harmonic per turn of the input; ``speed``: middle and half width of Ω [rad/s];
-    ``mass`` and ``stiffness``: the middle's means, floating point.
+    ``energy`` (2n, 2n): of the middle, twice it, floating point. A free–free line has one state less.
     """
 
     parts: Complex
     rest: Array
     rate: float
     speed: tuple[float, float]
-    mass: Array
-    stiffness: Array
+    energy: Array
 
     @property
     def last(self) -> int:
@@ -191,25 +193,66 @@ class _BoxLine:
         damping = [[zero] * n for _ in range(n)]
         stiffness = [[zero] * n for _ in range(n)]
         self._put_stations(motion, mass, damping, stiffness)
-        self._put_compliances(motion, damping, stiffness)
         light = [co.over_mass[i] if i in co.over_mass else mass[i].inverse() for i in range(n)]
-        parts = np.zeros((1 + self.parameters, 2 * self.last + 1, 2 * n, 2 * n), dtype=complex)
-        rest = np.zeros((2 * n, 2 * n))
-
-        def put(i: int, j: int, wave: Wave) -> None:
-            parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
-
+        if self.assembly.topology.free:
+            return self._free(damping, light)
+        self._put_compliances(motion, damping, stiffness)
+        entries = {(i, n + i): light[i] for i in range(n)}
         for i in range(n):
-            put(i, n + i, light[i])
-            for j in range(n):
-                if stiffness[i][j].size:
-                    put(n + i, j, -stiffness[i][j])
-                if damping[i][j].size:
-                    put(n + i, n + j, -(damping[i][j] * light[j]))
-        speed, half = co.speed.mean.real, float(co.speed.sizes[1:].sum())
+            entries |= {(n + i, j): -stiffness[i][j] for j in range(n) if stiffness[i][j].size}
+            entries |= {(n + i, n + j): -(damping[i][j] * light[j]) for j in range(n) if damping[i][j].size}
+        energy = np.zeros((2 * n, 2 * n))
         means = np.array([[one.mean.real for one in row] for row in stiffness])
-        masses = np.array([1 / one.mean.real for one in light])
-        return BoxMatrix(parts, rest * OUTWARD, period_rate(self.assembly), (speed, half), masses, means)
+        energy[:n, :n] = (means + means.T) / 2
+        energy[n:, n:] = np.diag([one.mean.real for one in light])
+        return self._made(entries, energy)
+
+    def _free(self, loads: list[list[Wave]], light: list[Wave]) -> BoxMatrix:
+        """Of a straight line without a prescribed speed: twists q = Eδ of the springs and momenta,
+
+            q̇ = E M⁻¹π,   π̇ = −Eᵀk q − (EᵀcE + loads) M⁻¹π  [− ν M₀ρ (ρᵀπ)/(ρᵀM₀ρ)].
+
+        A turn ρ of the whole twists nothing, Eρ = 0, and is no state. Where no load goes with the speed, neither does
+        its momentum ρᵀπ change: the last term gives it a decay of its own, and leaves every motion without it as it is.
+        """
+        topo, co, n = self.assembly.topology, self.co, self.assembly.topology.size
+        waves, twists = self._mesh_waves(), topo.elongations
+        springs = len(twists)
+        entries: dict[tuple[int, int], Wave] = {}
+        whole = [[loads[i][j] for j in range(n)] for i in range(n)]
+        for e, own in enumerate(twists):
+            k = co.stiffness[e] * waves[e] if e in waves else co.stiffness[e]
+            for i in np.flatnonzero(own).tolist():
+                entries[e, springs + i] = light[i] * float(own[i])
+                entries[springs + i, e] = k * -float(own[i])
+                for j in np.flatnonzero(own).tolist():
+                    whole[i][j] = whole[i][j] + co.damping[e] * float(own[i] * own[j])
+        energy = np.diag([*(k.mean.real for k in co.stiffness), *(one.mean.real for one in light)])
+        by_speed = any(part.size for row in loads for part in row)
+        turn, heavy = topo.rigid[:, 0], np.array([1 / one.mean.real for one in light])
+        fast = float(np.sqrt(max((np.abs(twists) ** 2 * np.diagonal(energy)[:springs, None]).sum(axis=0) / heavy)))
+        for i in range(n):
+            for j in range(n):
+                entry = -(whole[i][j] * light[j])
+                if not by_speed:
+                    entry = entry - fast * float(heavy[i] * turn[i] * turn[j] / (turn @ (heavy * turn)))
+                if entry.size:
+                    entries[springs + i, springs + j] = entry
+        # Ratios are exact fractions, of which E and ρ are the nearest numbers.
+        entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size) for place, one in entries.items()}
+        return self._made(entries, energy)
+
+    def _made(self, entries: dict[tuple[int, int], Wave], energy: Array) -> BoxMatrix:
+        size, speed = len(energy), self.co.speed
+        parts = np.zeros((1 + self.parameters, 2 * self.last + 1, size, size), dtype=complex)
+        rest = np.zeros((size, size))
+        for (i, j), wave in entries.items():
+            parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
+        half = float(speed.parts[1, speed.last].real)
+        # Straight joints count in the period and move nothing: every how many harmonics there is one.
+        stride = gcd(*np.abs(np.flatnonzero(parts.any(axis=(0, 2, 3))) - self.last).tolist()) or self.last + 1
+        parts = parts[:, self.last % stride :: stride]
+        return BoxMatrix(parts, rest * OUTWARD, stride * period_rate(self.assembly), (speed.mean.real, half), energy)
 
     def _put_stations(
         self, motion: _Walk, mass: list[Wave], damping: list[list[Wave]], stiffness: list[list[Wave]]

@@ -16,11 +16,10 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import SpeedEnds, rising_range, whole_number
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.coupling_tables import refuse_torque_tables
-from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
+from trunnion.equations.steady_base import has_joint_angles, refuse_dragged, require_steady_base, require_tree
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
@@ -127,8 +126,8 @@ def certify_stability(
 
     Parameters
     ----------
-    line : behind a ConstantSpeed, whose shafts branch and close no loop; about its motion without vibration, as
-        ``stability`` judges it.
+    line : whose shafts may branch and close no loop; behind a ConstantSpeed, or with straight joints; about its motion
+        without vibration, as ``stability`` judges it, with the same multipliers set aside.
     tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
         line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
         Normal distributions count as three standard deviations either way.
@@ -249,11 +248,15 @@ class _Space:
 
 @dataclass
 class _BoxSearch:
-    """The largest open box next: what is left when the budget ends is then as small as can be."""
+    """The largest open box next: what is left when the budget ends is then as small as can be.
+
+    refutes : whether an unstable line is looked for.
+    """
 
     space: _Space
     most: int
     report_progress: Callable[[float], None]
+    refutes: bool = True
     proved: list[Array] = field(default_factory=list)
     decays: list[float] = field(default_factory=list)
     counterexample: dict[str, float] | None = None
@@ -295,7 +298,7 @@ class _BoxSearch:
                 if found.proved:
                     self._keep(box, found)
                     open_share -= float(np.prod(box[1] - box[0]))
-                elif found.doubtful and self._refuted(box):
+                elif found.doubtful and self.refutes and self._refuted(box):
                     self._put(box)
                     return
                 else:
@@ -334,6 +337,18 @@ class _BoxSearch:
         self._put(upper)
 
 
+def proved_over(assembly: Assembly, speeds: tuple[float, float], most_boxes: int) -> bool:
+    """Whether a line as it is is proved stable at all ``speeds`` [rad/s] by as many boxes at most."""
+    try:
+        require_provable(assembly)
+        require_linear(assembly, speeds, ())
+    except InputError:
+        return False
+    found = _BoxSearch(_Space(assembly, (), speeds), most_boxes, lambda share: None, refutes=False)
+    found.run()
+    return not len(found.open_boxes)
+
+
 def require_provable(assembly: Assembly) -> None:
     """Refuse lines whose equations the enclosure does not cover.
 
@@ -343,10 +358,11 @@ def require_provable(assembly: Assembly) -> None:
     """
     line, topo = assembly.line, assembly.topology
     remedy = "tolerance_study() says how probable stability is"
-    if not isinstance(line.elements[0], ConstantSpeed) or topo.free:
+    if topo.free and has_joint_angles(assembly):
         raise InputError(
-            "is free–free, and only lines behind a ConstantSpeed can be certified", element=line.names[0], remedy=remedy
-        )
+            "is free–free and has joint angles: it moves in its own periodic motion, which no certificate encloses",
+            element=line.names[0], remedy="put a ConstantSpeed in front, or " + remedy,
+        )  # fmt: skip
     require_tree(assembly, "a certificate does")
     refuse_dragged(assembly)
     refuse_torque_tables(line, remedy, "tables are not enclosed")

@@ -34,6 +34,8 @@ SIDES = (4, 8, 16, 32, 64, 128)
 """Harmonics of P beyond its mean, tried in turn."""
 UNSOLVED = 2
 """Numbers of harmonics with which the equations were not solved, after which no more are tried."""
+MATTERS = 1e-3
+"""Size of a harmonic of the equations, relative to the largest, from which on P has it too."""
 FADED = 1e-5
 """Size of the last harmonics, relative to all, with which they are enough."""
 
@@ -60,10 +62,7 @@ class LyapunovSeries:
 def modal_box(box: BoxMatrix) -> ModalBox | None:
     """Of a box, about the mean of its middle; None where that has no modes that decay."""
     mean = box.parts[0, box.last].real
-    n = len(mean) // 2
-    energy = np.zeros_like(mean)
-    energy[:n, :n] = (box.stiffness + box.stiffness.T) / 2
-    energy[n:, n:] = np.diag(1 / box.mass)
+    energy = box.energy
     root = np.sqrt(np.abs(np.diagonal(energy)))
     if not (np.isfinite(mean).all() and root.min() > 0):
         return None
@@ -82,14 +81,16 @@ def modal_box(box: BoxMatrix) -> ModalBox | None:
         if undamped is None:
             return None
         modes, decay = undamped
-    modes = modes / root[:, None]
-    to_modes = np.linalg.inv(modes)
-    return ModalBox(to_modes @ box.parts @ modes, modes, to_modes, decay)
+    stated: Complex = np.asarray(modes / root[:, None], dtype=complex)
+    to_modes: Complex = np.asarray(np.linalg.inv(stated), dtype=complex)
+    return ModalBox(to_modes @ box.parts @ stated, stated, to_modes, decay)
 
 
 def _energy_modes(scaled: Array, energy: Array) -> tuple[Complex, Array] | None:
     """Modes of the undamped line, which are orthogonal, with decay rates that their own damping gives them."""
     n = len(scaled) // 2
+    if len(scaled) != 2 * n:
+        return None
     try:
         square, shapes = scipy.linalg.eigh(energy[:n, :n], np.linalg.inv(energy[n:, n:]))
     except np.linalg.LinAlgError:
@@ -108,14 +109,24 @@ def _energy_modes(scaled: Array, energy: Array) -> tuple[Complex, Array] | None:
 
 def lyapunov_series(box: BoxMatrix, modal: ModalBox, sides: int | None = None) -> LyapunovSeries:
     """P of a box; with ``sides`` harmonics of it, or as many as it needs."""
-    unsolved = 0
-    for count in (sides,) if sides is not None else SIDES:
+    unsolved, least = 0, _least_sides(modal.h[0])
+    enough = tuple(one for one in SIDES if one >= least) or (least,)
+    for count in (sides,) if sides is not None else enough:
         found = _Solver.of(box, modal, count).series()
         unsolved += not found.solved
         # Where more harmonics do not help the line is near to its limit, and a smaller box has to decide.
         if sides is not None or (found.solved and _faded(found.parts)) or unsolved >= UNSOLVED:
             break
     return found
+
+
+def _least_sides(h: Complex) -> int:
+    """The last harmonic of the equations that P has to follow."""
+    last = len(h) // 2
+    size = np.abs(h).sum(axis=(1, 2))
+    size[last] = 0.0
+    strong = np.flatnonzero(size[last:] > MATTERS * size.max(initial=0.0))
+    return int(strong.max(initial=0))
 
 
 def _faded(parts: Complex) -> bool:
