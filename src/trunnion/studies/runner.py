@@ -292,14 +292,16 @@ class StudyRun:
 
     def _died(self, future: Any) -> bool:
         """Whether the workers died that ran it; once it has ended."""
-        scale("distributed").wait([future])
-        if future.status == "finished":
-            return False
-        if future.status == "error" and isinstance(future.exception(), scale("distributed").scheduler.KilledWorker):
+        distributed = scale("distributed")
+        try:
+            future.result()
+        except distributed.scheduler.KilledWorker:
             return True
-        if future.status == "error":
-            raise _of_worker(future.exception())
-        raise ComputationError(LOST)
+        except distributed.CancelledError:
+            raise ComputationError(LOST) from None
+        except Exception as error:
+            raise _of_worker(error) from None
+        return False
 
 
 def _of_worker(error: BaseException) -> Exception:
