@@ -11,6 +11,7 @@ import pytest
 from studies.asked import BATCH, CALLS, data_of, grid, line, stated
 
 import trunnion as tn
+from trunnion.studies import runner
 from trunnion.studies import study as study_module
 from trunnion.studies.points import StudyQuestion
 from trunnion.studies.task import DIED
@@ -28,7 +29,7 @@ class Future:
     def __init__(self, number: int, outcome: Any, status: str) -> None:
         self.key, self.outcome, self.status = number, outcome, status
 
-    def result(self) -> Any:
+    def result(self, timeout: float | None = None) -> Any:
         if self.status == "error":
             raise self.outcome
         return self.outcome
@@ -103,3 +104,21 @@ def test_random_deaths_change_nothing(tmp_path) -> None:
     assert found.outcome.ok and found.failed == 0 and client.deaths > 4
     tn.study({**asked, "store": str(tmp_path / "b.zarr")}, line=line(), workers=0)
     assert data_of(tmp_path / "a.zarr") == data_of(tmp_path / "b.zarr")
+
+
+def test_workers_that_do_not_come_back_are_not_waited_for(tmp_path, monkeypatch) -> None:
+    class Gone(DyingClient):
+        def submit(self, function: Any, *args: Any, pure: bool) -> Future:
+            future = super().submit(function, *args, pure=pure)
+            future.add_done_callback = lambda call: None  # type: ignore[method-assign]
+            return future
+
+        def nthreads(self) -> dict[str, int]:
+            return {}
+
+        def cancel(self, *_: Any, **__: Any) -> None:
+            """Nobody hears it."""
+
+    monkeypatch.setattr(runner, "GONE", 1.0)
+    with pytest.raises(tn.ComputationError, match="no workers are left for 1 s; what is done is kept"):
+        tn.study(stated(tmp_path / "a.zarr", block=8), line=line(), client=Gone())

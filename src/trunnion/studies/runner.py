@@ -33,6 +33,8 @@ AHEAD = 3
 """Tasks a worker that are sent."""
 MOST_BLOCKS = 256
 """Blocks of a task."""
+GONE = 120.0
+"""Seconds without any worker after which nobody waits for one."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
 ATTEMPTS = 3
@@ -88,6 +90,7 @@ class StudyRun:
     cores: int = 1
     seconds_a_block: float = 0.0
     suspects: list[tuple[StudyPart, int]] = field(default_factory=list)
+    last_seen: float = field(default_factory=monotonic)
 
     def __post_init__(self) -> None:
         self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
@@ -213,6 +216,7 @@ class StudyRun:
                     future = arrived.get(timeout=PATIENCE)
                 except queue.Empty:
                     self._require_scheduler(flight)
+                    self._require_workers()
                     ended = ended or time_is_up()
                     if ended:
                         break
@@ -293,15 +297,34 @@ class StudyRun:
     def _died(self, future: Any) -> bool:
         """Whether the workers died that ran it; once it has ended."""
         distributed = scale("distributed")
-        try:
-            future.result()
-        except distributed.scheduler.KilledWorker:
-            return True
-        except distributed.CancelledError:
-            raise ComputationError(LOST) from None
-        except Exception as error:
-            raise _of_worker(error) from None
-        return False
+        while True:
+            try:
+                future.result(timeout=PATIENCE)
+                return False
+            except (TimeoutError, distributed.TimeoutError):
+                self._require_workers()
+            except distributed.scheduler.KilledWorker:
+                return True
+            except distributed.CancelledError:
+                raise ComputationError(LOST) from None
+            except Exception as error:
+                raise _of_worker(error) from None
+
+    def _require_workers(self) -> None:
+        """Refuse to wait for workers that do not come back.
+
+        Raises
+        ------
+        ComputationError : there has been none for ``GONE`` seconds, or the scheduler has gone.
+        """
+        if self.client.status not in ("running", "newly-created"):
+            raise ComputationError(LOST)
+        if self.client.nthreads():
+            self.last_seen = monotonic()
+        elif monotonic() - self.last_seen > GONE:
+            raise ComputationError(
+                f"no workers are left for {GONE:.0f} s; what is done is kept: resume"
+            )
 
 
 def _of_worker(error: BaseException) -> Exception:
