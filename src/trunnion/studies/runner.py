@@ -33,7 +33,9 @@ AHEAD = 3
 """Tasks a worker that are sent."""
 MOST_BLOCKS = 256
 """Blocks of a task."""
-GONE = 120.0
+LATE = 45.0
+"""Seconds after which a process of this machine that has not come back is replaced."""
+GONE = 180.0
 """Seconds without any worker after which nobody waits for one."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
@@ -90,7 +92,9 @@ class StudyRun:
     cores: int = 1
     seconds_a_block: float = 0.0
     suspects: list[tuple[StudyPart, int]] = field(default_factory=list)
+    own: bool = False
     last_seen: float = field(default_factory=monotonic)
+    last_whole: float = field(default_factory=monotonic)
 
     def __post_init__(self) -> None:
         self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
@@ -319,12 +323,25 @@ class StudyRun:
         """
         if self.client.status not in ("running", "newly-created"):
             raise ComputationError(LOST)
-        if self.client.nthreads():
+        alive = self.client.nthreads()
+        if len(alive) >= self.cores:
+            self.last_whole = monotonic()
+        elif self.own and monotonic() - self.last_whole > LATE:
+            self._replace_lost(set(alive))
+        if alive:
             self.last_seen = monotonic()
         elif monotonic() - self.last_seen > GONE:
-            raise ComputationError(
-                f"no workers are left for {GONE:.0f} s; what is done is kept: resume"
-            )
+            raise ComputationError(f"no workers are left for {GONE:.0f} s; what is done is kept: resume")
+
+    def _replace_lost(self, alive: set[str]) -> None:
+        """Start others for processes of this machine that died before their keeper knew that they had begun: Dask
+        forgets these."""
+        cluster = self.client.cluster
+        lost = [name for name, one in cluster.workers.items() if getattr(one, "worker_address", None) not in alive]
+        if lost:
+            cluster.sync(cluster.scale_down, lost)
+        cluster.scale(self.cores)
+        self.last_whole = monotonic()
 
 
 def _of_worker(error: BaseException) -> Exception:
