@@ -23,6 +23,7 @@ WHAT: Mapping[str, Callable[..., tuple[Assembly, Any]]] = {
     "disturbance": movements.disturbance,
     "run-up": movements.run_up,
     "transient": movements.transient,
+    "passing": movements.passing,
 }
 ASKED: Mapping[str, tuple[str, ...]] = {
     "turning": ("speed",),
@@ -32,6 +33,7 @@ ASKED: Mapping[str, tuple[str, ...]] = {
     "disturbance": ("speed", "beside"),
     "run-up": ("speeds", "acceleration"),
     "transient": ("scenario",),
+    "passing": ("speeds", "scenario"),
 }
 """Which arguments each takes."""
 
@@ -54,14 +56,15 @@ def animate(
     line : a ``Driveline`` or its ``Assembly``.
     what : "turning", shafts rigid, joints at work; "mode", of the straight line; "response", linear, to all that
         excites it; "motion", its true periodic motion, gaps and all; "disturbance", that which grows fastest beside one
-        that decays; "run-up", through its resonances; "transient", a scenario of the file.
+        that decays; "run-up", through its resonances; "transient", a scenario of the file;
+        "passing", whether it comes from one speed to another under the torques of a scenario or of its motor.
     speed : of the input [rad/s], a number or a text with its unit; default the operating speed of the file. Of turning,
         response, motion and disturbance.
     mode : its number, counted from 1 among those that vibrate; default 1.
     beside : speed of the other disturbance [rad/s]; default the nearest one looked at where it does the opposite.
-    speeds : first and last of a run-up [rad/s]; default the range of the file.
+    speeds : first and last of a run-up or a passing [rad/s]; default the range of the file.
     acceleration : of a run-up [rad/s²]; default what takes ten seconds.
-    scenario : of a transient, by name; default the first.
+    scenario : of a transient, by name, default the first; of a passing, default the line's motor.
 
     Returns
     -------

@@ -312,6 +312,20 @@ def transient(line: Driveline | Assembly, scenario: str | None = None) -> tuple[
     return transient_movement(found)
 
 
+def passing(
+    line: Driveline | Assembly, speeds: tuple[float, float] | None = None, scenario: str | None = None
+) -> tuple[Assembly, Movement]:
+    """From one speed to another under the torques of a scenario or of a motor of the line, or as far as it comes."""
+    from trunnion.motion.passing.passing import passing as follow
+
+    ends = speeds or stated_range(assemble(line).line)
+    if ends is None:
+        raise InputError("are not known", key="speeds", remedy="give the lowest and the highest speed")
+    found = follow(line, ends, scenario=scenario)
+    shown, one = transient_movement(found.run)
+    return shown, replace(one, title="passing", said=found.outcome.sentence)
+
+
 def transient_movement(found: Transient) -> tuple[Assembly, Movement]:
     """A transient that is computed already."""
     shown = found.line.assembly

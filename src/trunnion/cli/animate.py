@@ -41,7 +41,7 @@ def animate(
 
     trunnion animate truck.toml --what disturbance --speed 1500rpm -o why.gif
 
-    --what  turning, mode, response, motion, disturbance, run-up or transient.
+    --what  turning, mode, response, motion, disturbance, run-up, transient or passing.
     --mode  Number of a mode, from 1 among those that vibrate.
     --beside  Speed of the other disturbance; default: the nearest one where it does the opposite.
     --acceleration  Of a run-up [rad/s²]; default: what takes ten seconds.

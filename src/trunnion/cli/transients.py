@@ -50,6 +50,12 @@ def _scenario(line: tn.Driveline, named: str) -> str:
     return named or known[0]
 
 
+def _acting(line: tn.Driveline, named: str) -> str | None:
+    """The same, or none where a motor of the line drives it."""
+    driven = not line.scenarios and any(isinstance(one, tn.Motor) for _, one in line.parts)
+    return None if driven and not named else _scenario(line, named)
+
+
 @Command("passing", within=True)
 def passing(
     line: Line,
@@ -68,11 +74,9 @@ def passing(
     --scenario  Whose torques and friction act; default: the only one of the file.
     --phase RADIANS  Angle of the input when it begins.
     """
-    acting = line.scenario(_scenario(line, scenario))
-    found = tn.passing(
-        line, (from_, to), torque=acting.torques, friction=acting.frictions, phase=phase, progress=progress
-    )
-    content = {"scenario": acting.name, **found.to_dict()}
+    acting = _acting(line, scenario)
+    found = tn.passing(line, (from_, to), scenario=acting, phase=phase, progress=progress)
+    content = {"scenario": acting or "", **found.to_dict()}
     return CommandOutput(found, content=lambda: content, text=lambda: found.describe(unit), outcome=found.outcome)
 
 
@@ -121,9 +125,8 @@ def capture_map(
     --phases  Starting phases of every cell.
     --processes  That compute.
     """
-    acting = line.scenario(_scenario(line, scenario))
     found = tn.capture_map(
-        line, (from_, to), x, y, torque=acting.torques, friction=acting.frictions, drive=drive or None,
+        line, (from_, to), x, y, scenario=_acting(line, scenario), drive=drive or None,
         phases=phases, processes=processes, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit), outcome=found.outcome)

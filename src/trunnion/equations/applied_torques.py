@@ -89,6 +89,11 @@ class PlacedTorque:
         return None if self.stated.formula is None else formula(self.stated.formula)
 
     @cached_property
+    def _through(self) -> Array:
+        """Powers (4, piece) of the monotone cubic between its knots."""
+        return np.asarray(PchipInterpolator(self.axes[0].knots, np.array(self.stated.torque)).c[::-1])
+
+    @cached_property
     def called(self) -> CalledFunction | None:
         """What is stated as a function in Python."""
         return CalledFunction(self.stated.function) if isinstance(self.stated, TorqueFunction) else None
@@ -133,7 +138,7 @@ class PlacedTorque:
             return TorquePiece(0.0, 0.0, above, below)
         low, high = knots[piece], knots[piece + 1]
         if self.stated.between == "cubic":
-            above[:, 0] = PchipInterpolator(knots, torque).c[::-1, piece]
+            above[:, 0] = self._through[:, piece]
         else:
             above[:2, 0] = torque[piece], (torque[piece + 1] - torque[piece]) / (high - low)
         return TorquePiece(float(low), 0.0, above, below)

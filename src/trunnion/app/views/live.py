@@ -30,6 +30,7 @@ MOTIONS = {
     "the disturbance that grows fastest": "disturbance",
     "run-up": "run-up",
     "scenario of the file": "transient",
+    "passed or captured": "passing",
 }
 ASKS = {
     "turning": ("speed",),
@@ -39,6 +40,7 @@ ASKS = {
     "disturbance": ("speed",),
     "run-up": ("rate",),
     "transient": ("scenario",),
+    "passing": ("scenario",),
 }
 """Which controls a motion has."""
 
@@ -105,6 +107,8 @@ class LiveView(View):
                 more = {"speeds": speed_range(line)}
                 if (rate := self.typed("rate")) is not None:
                     more["acceleration"] = rate
+            case "passing":
+                more = {"speeds": speed_range(line), "scenario": str(self.settings["scenario"]) or None}
             case "transient":
                 more = {"scenario": str(self.settings["scenario"])}
             case _:

@@ -27,13 +27,25 @@ from trunnion.motion.orbits.frequency_response import methods_of
 from trunnion.pictures.picture import Axis, single
 
 PERIODIC, RUN_UP, TRANSIENT, RATTLE = "periodic response", "run-up", "transient", "rattle over speed"
+PASSING, FATIGUE = "passed or captured", "fatigue"
 POINCARE, EXPONENTS, CHAOS = "Poincaré map", "Lyapunov exponents", "is it chaos?"
-MOTIONS = {PERIODIC: "periodic", RUN_UP: "run-up", TRANSIENT: "transient", RATTLE: "rattle", POINCARE: "section",
-           EXPONENTS: "exponents", CHAOS: "chaos"}  # fmt: skip
+MOTIONS = {
+    PERIODIC: "periodic",
+    RUN_UP: "run-up",
+    TRANSIENT: "transient",
+    PASSING: "passing",
+    FATIGUE: "fatigue",
+    RATTLE: "rattle",
+    POINCARE: "section",
+    EXPONENTS: "exponents",
+    CHAOS: "chaos",
+}
 ASKS = {
     "periodic": ("speed",),
     "run-up": ("rate", "spring"),
     "transient": ("scenario",),
+    "passing": ("scenario",),
+    "fatigue": (),
     "rattle": ("spring", "points"),
     "section": ("of", "speed", "returns"),
     "exponents": ("of", "speed"),
@@ -161,6 +173,13 @@ class MotionView(View):
                 shown = {"unit": unit_of(line)[0]}
                 call = Call("tn.transient", (LINE, str(self.settings["scenario"])))
                 return [ViewStep("transient", call, "plotted", shown, drawing=shown, title=TRANSIENT)]
+            case "passing":
+                shown = {"unit": unit_of(line)[0]}
+                acting = {"scenario": str(self.settings["scenario"]) or None}
+                call = Call("tn.passing", (LINE, speed_range(line)), acting)
+                return [ViewStep("passing", call, "plotted", shown, drawing=shown, title=PASSING)]
+            case "fatigue":
+                return [ViewStep("fatigue", Call("tn.fatigue", (LINE,)), "plotted", title=FATIGUE)]
             case "rattle":
                 return self._rattle(line)
             case "section":

@@ -16,6 +16,7 @@ from trunnion.driveline.arguments import one_number, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, pack
+from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
@@ -137,6 +138,7 @@ def capture_map(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    scenario: Scenario | str | None = None,
     drive: str | None = None,
     phases: int | ArrayLike = 8,
     tolerance: float = 1e-9,
@@ -153,7 +155,7 @@ def capture_map(
     line : a ``Driveline`` (or its ``Assembly``) without a ConstantSpeed.
     speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
     x, y : (parameter, first, last, how many), in SI units: "HookeJoint 1.angle", say, or "factor" of the drive torque.
-    torque, friction : what acts, as in ``passing``.
+    torque, friction, scenario : what acts, as in ``passing``.
     drive : name of the disk whose torques the factor scales; by default the one that torques act on, or the
         line's Motor.
     phases : how many starting phases, even over half a turn and every other one half a turn on; or angles [rad].
@@ -181,7 +183,7 @@ def capture_map(
     array([[0., 1.],
            [0., 0.]])
     """
-    trials = trials_of(line, ends_of(speeds), lasting(torque, friction), drive, phases, tolerance)
+    trials = trials_of(line, ends_of(speeds), lasting(line, torque, friction, scenario), drive, phases, tolerance)
     columns, rows = _values(trials.line, "x", x), _values(trials.line, "y", y)
     if x[0] == y[0]:
         raise InputError("is varied twice", key="y", value=y[0], remedy="give another parameter")

@@ -16,6 +16,7 @@ from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
@@ -148,6 +149,7 @@ def least_drive(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    scenario: Scenario | str | None = None,
     drive: str | None = None,
     factors: tuple[float, float] = (0.1, 10.0),
     points: int = 17,
@@ -163,7 +165,7 @@ def least_drive(
     ----------
     line : a ``Driveline`` (or its ``Assembly``) without a ConstantSpeed.
     speeds : the first and the last [rad/s] of its input, numbers or texts with a unit; from 0, rising.
-    torque, friction : what acts, as in ``passing``.
+    torque, friction, scenario : what acts, as in ``passing``.
     drive : name of the disk whose torques are scaled; by default the one that torques act on, or the line's Motor.
     factors : the smallest and the largest that are tried, of the torque as it is given.
     points : how many of them first, evenly in the logarithm; then the least one is found by bisection.
@@ -191,7 +193,7 @@ def least_drive(
     >>> 1.0 < found.least < 1.6
     True
     """
-    trials = trials_of(line, ends_of(speeds), lasting(torque, friction), drive, phases, tolerance)
+    trials = trials_of(line, ends_of(speeds), lasting(line, torque, friction, scenario), drive, phases, tolerance)
     low, high = _range(factors)
     count = whole_number(points, "points", 2)
     if count > MOST_POINTS:

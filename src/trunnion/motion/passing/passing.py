@@ -24,6 +24,7 @@ from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
@@ -62,6 +63,7 @@ def passing(
     *,
     torque: Sequence[AppliedTorque] = (),
     friction: Sequence[FrictionTorque] = (),
+    scenario: Scenario | str | None = None,
     phase: float = 0.0,
     tolerance: float = 1e-9,
     within: float | None = None,
@@ -76,6 +78,7 @@ def passing(
     torque : what drives it, and what acts besides; tables over time last beyond their ends. A Motor of the line drives
         by its own curve.
     friction : dry friction on its disks.
+    scenario : instead of both, a scenario or the name of one of the line's, whose torques and friction act.
     phase : angle [rad] of the input when it begins; whether a line passes may depend on it.
     tolerance : error allowed per step. A second run at thirty times as much must end alike, or nothing is decided.
     within : seconds of computing after which it ends undecided.
@@ -101,7 +104,7 @@ def passing(
     """
     description = line.line if isinstance(line, Assembly) else line
     first, last = ends_of(speeds)
-    asked = lasting(torque, friction)
+    asked = lasting(line, torque, friction, scenario)
     prepared, acting = begun_line(description, asked, first)
     angle, rigid = one_number(phase, "phase", "np.pi / 2, say"), rigid_time(prepared, acting, first, last)
     made = _Follower(prepared, acting, first, last, angle, rigid)

@@ -9,6 +9,8 @@ import numpy as np
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_speed, speeds_of
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.scenarios import Scenario
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import InputError
 from trunnion.motion.transients.prepare import Actions, actions_of, prepared_line
@@ -28,13 +30,25 @@ def ends_of(speeds: Sequence[float | str]) -> tuple[float, float]:
     return float(ends[0]), float(ends[1])
 
 
-def lasting(torque: Sequence[AppliedTorque], friction: Sequence[FrictionTorque]) -> Actions:
-    """What acts, tables lasting beyond their ends.
+def lasting(
+    line: Driveline | Assembly,
+    torque: Sequence[AppliedTorque],
+    friction: Sequence[FrictionTorque],
+    scenario: Scenario | str | None = None,
+) -> Actions:
+    """What acts, or what does in a scenario, tables lasting beyond their ends.
 
     Raises
     ------
-    InputError : a formula or a function of time without an end.
+    InputError : a scenario that is not there, or beside torques; a formula or a function of time without an end.
     """
+    if scenario is not None:
+        description = line.line if isinstance(line, Assembly) else line
+        stated = description.scenario(scenario) if isinstance(scenario, str) else scenario
+        if torque or friction:
+            problem = "says what acts by itself"
+            raise InputError(problem, key="scenario", value=stated.name, remedy="leave out torque and friction, or it")
+        torque, friction = stated.torques, stated.frictions
     for one in torque:
         if one.by_program and "time" in one.depends and one.until is None:
             raise InputError(
