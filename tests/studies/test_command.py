@@ -84,3 +84,12 @@ def test_without_the_extra(study, monkeypatch) -> None:
     said = 'error: scale: studies need dask, which is not installed; install it with: python -m pip install "trunnion['
     assert answer.exit_code == 2 and answer.stderr.startswith(said) and answer.stderr.count("\n") == 1
     assert study("study.toml", "--dry-run").exit_code == 0
+
+
+def test_show_says_what_sampled_numbers_follow(study, here: Path) -> None:
+    sampled = {"parameter": [{"path": "Shaft 1.damping", "tolerance": "20 %"}], "sampling": {"points": 64}}
+    asked = stated(Path("s.zarr"), line="line.toml", arguments={"speed": 1.0}, **{**sampled})
+    (here / "study.toml").write_text(tomli_w.dumps(asked))
+    assert study("study.toml", "--workers", "0").exit_code == 0
+    shown = study("show", "s.zarr").stdout
+    assert "variance of growth_rate by parameter, from 64 points\n  Shaft 1.damping: 9" in shown

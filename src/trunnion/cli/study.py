@@ -15,7 +15,7 @@ from trunnion.cli import output
 from trunnion.cli.readers import TABLES_ANYWHERE, read_time
 from trunnion.cli.typed import Json, Within
 from trunnion.driveline.refusals import nearest
-from trunnion.errors import InputError
+from trunnion.errors import ComputationError, InputError
 
 if TYPE_CHECKING:
     from trunnion.studies.result import Study
@@ -40,7 +40,7 @@ def study(
             "--output",
             "-o",
             metavar="PATH",
-            help="Of export: file ending in .nc, .csv or .parquet; of show: .png, .pdf or .svg; repeat it for more.",
+            help="Of export: file ending in .nc, .csv or .parquet; repeat it for more.",
         ),
     ] = None,
     workers: Annotated[
@@ -120,6 +120,22 @@ def _of_store(
 
         found = read(store)
         _say(found, as_json, whole=False)
+        if not as_json:
+            _say_sensitivities(found)
+
+
+def _say_sensitivities(found: Study) -> None:
+    """What the numbers of a sampled study follow."""
+    from trunnion.studies.sensitivities import sensitivities
+
+    if found.design.sampling is None or found.design.axes:
+        return
+    for one in found.quantities:
+        if one.kind == "number":
+            try:
+                output.say(str(sensitivities(found, one.path)))
+            except ComputationError as error:
+                output.say(f"no sensitivities of {one.path}: {error}")
 
 
 def _status(store: str, as_json: bool) -> None:

@@ -33,6 +33,10 @@ AHEAD = 3
 """Tasks a worker that are sent."""
 MOST_BLOCKS = 256
 """Blocks of a task."""
+LATE = 45.0
+"""Seconds after which a process of this machine that has not come back is replaced."""
+GONE = 180.0
+"""Seconds without any worker after which nobody waits for one."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
 ATTEMPTS = 3
@@ -88,6 +92,9 @@ class StudyRun:
     cores: int = 1
     seconds_a_block: float = 0.0
     suspects: list[tuple[StudyPart, int]] = field(default_factory=list)
+    own: bool = False
+    last_seen: float = field(default_factory=monotonic)
+    last_whole: float = field(default_factory=monotonic)
 
     def __post_init__(self) -> None:
         self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
@@ -213,6 +220,7 @@ class StudyRun:
                     future = arrived.get(timeout=PATIENCE)
                 except queue.Empty:
                     self._require_scheduler(flight)
+                    self._require_workers()
                     ended = ended or time_is_up()
                     if ended:
                         break
@@ -292,14 +300,48 @@ class StudyRun:
 
     def _died(self, future: Any) -> bool:
         """Whether the workers died that ran it; once it has ended."""
-        scale("distributed").wait([future])
-        if future.status == "finished":
-            return False
-        if future.status == "error" and isinstance(future.exception(), scale("distributed").scheduler.KilledWorker):
-            return True
-        if future.status == "error":
-            raise _of_worker(future.exception())
-        raise ComputationError(LOST)
+        distributed = scale("distributed")
+        while True:
+            try:
+                future.result(timeout=PATIENCE)
+                return False
+            except (TimeoutError, distributed.TimeoutError):
+                self._require_workers()
+            except distributed.scheduler.KilledWorker:
+                return True
+            except distributed.CancelledError:
+                raise ComputationError(LOST) from None
+            except Exception as error:
+                raise _of_worker(error) from None
+
+    def _require_workers(self) -> None:
+        """Refuse to wait for workers that do not come back.
+
+        Raises
+        ------
+        ComputationError : there has been none for ``GONE`` seconds, or the scheduler has gone.
+        """
+        if self.client.status not in ("running", "newly-created"):
+            raise ComputationError(LOST)
+        alive = self.client.nthreads()
+        if len(alive) >= self.cores:
+            self.last_whole = monotonic()
+        elif self.own and monotonic() - self.last_whole > LATE:
+            self._replace_lost(set(alive))
+        if alive:
+            self.last_seen = monotonic()
+        elif monotonic() - self.last_seen > GONE:
+            raise ComputationError(f"no workers are left for {GONE:.0f} s; what is done is kept: resume")
+
+    def _replace_lost(self, alive: set[str]) -> None:
+        """Start others for processes of this machine that died before their keeper knew that they had begun: Dask
+        forgets these."""
+        cluster = self.client.cluster
+        lost = [name for name, one in cluster.workers.items() if getattr(one, "worker_address", None) not in alive]
+        if lost:
+            cluster.sync(cluster.scale_down, lost)
+        cluster.scale(self.cores)
+        self.last_whole = monotonic()
 
 
 def _of_worker(error: BaseException) -> Exception:

@@ -120,7 +120,7 @@ def completed(
     else:
         return run.all()
     with ways as connected:
-        run.client = connected
+        run.client, run.own = connected, client is None and scheduler is None
         run.cores = require_workers(connected, store, scheduler or "here")
         run.progress.dashboard = connected.dashboard_link or ""
         run.progress.workers = run.cores
