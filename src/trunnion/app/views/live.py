@@ -117,7 +117,7 @@ class LiveView(View):
         self.choose("part", ["", *line.as_stated.names])
         self.show_question()
         self.widgets["part"].visible = True
-        self.of("now").edit(str(self.settings["part"]))
+        self._change(str(self.settings["part"]))
 
     def show_question(self) -> None:
         """And always which part is changed."""
@@ -128,7 +128,13 @@ class LiveView(View):
         """A part is changed beside the picture."""
         super().chosen(key, value)
         if key == "part":
-            self.of("now").edit(str(value))
+            self._change(str(value))
+
+    def _change(self, name: str) -> None:
+        """Show the fields of an element beside the picture."""
+        side = self.of("now")
+        assert isinstance(side, _LivePane)
+        side.edit(name)
 
     def pick(self, name: str) -> None:
         """A body was clicked: what it belongs to in the file is the part to change."""
@@ -137,7 +143,7 @@ class LiveView(View):
         part = line.names[line.index(name)] if known else ""
         if part != self.settings["part"]:
             self.put("part", part)
-            self.of("now").edit(part)
+            self._change(part)
 
     def group_of(self, name: str) -> tuple[FieldGroup, ...]:
         """The fields of an element of the file."""
@@ -150,7 +156,7 @@ class LiveView(View):
     def edited(self, data: dict[str, Any]) -> None:
         """What is done in the fields beside the picture."""
         self.session.edit(change_of(data))
-        self.of("now").edit(str(self.settings["part"]))
+        self._change(str(self.settings["part"]))
 
     def steps(self, line: Driveline) -> list[ViewStep]:
         """The motion that is asked for."""
