@@ -8,11 +8,11 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
-from trunnion.exchange.network import Drive, Gear, Inertia, Network, Spring
+from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Network
 
 
 @dataclass(frozen=True)
-class Matrices:
+class NetworkMatrices:
     """M q″ + C q′ + K q = P u: q (n,) the rotations called ``rotations`` [rad], u (m,) torques on the ``inertias``
     [N m], positive in the sense in which rotations count.
 
@@ -33,7 +33,7 @@ class Matrices:
     damping_of: Array
 
 
-def matrices_of(network: Network) -> Matrices:
+def matrices_of(network: Network) -> NetworkMatrices:
     """The matrices of a network; every group that gears join is measured at its first inertia.
 
     Raises
@@ -42,7 +42,9 @@ def matrices_of(network: Network) -> Matrices:
     """
     share = _shares(network)
     names = {
-        int(np.flatnonzero(share[one.at])[0]): one.name for one in reversed(network.of(Inertia)) if share[one.at].any()
+        int(np.flatnonzero(share[one.at])[0]): one.name
+        for one in reversed(network.of(FlangeInertia))
+        if share[one.at].any()
     }
     kept = sorted(names)
     if not kept:
@@ -50,26 +52,34 @@ def matrices_of(network: Network) -> Matrices:
         raise InputError("has nothing that can vibrate", element=network.name or "line", remedy=remedy)
     share = share[:, kept]
     for column, key in enumerate(kept):
-        first = next(one for one in network.of(Inertia) if one.name == names[key])
+        first = next(one for one in network.of(FlangeInertia) if one.name == names[key])
         share[:, column] /= share[first.at, column]
-    inertias, springs = network.of(Inertia), network.of(Spring)
+    inertias, springs = network.of(FlangeInertia), network.of(FlangeSpring)
     on = np.array([share[one.at] for one in inertias])
     twist = np.array([share[one.far] - share[one.near] for one in springs]).reshape(len(springs), len(kept))
     moments, viscous = (np.array([getattr(one, key) for one in inertias]) for key in ("inertia", "viscous_load"))
     k, c = (np.array([getattr(one, key) for one in springs]) for key in ("stiffness", "damping"))
     sense = np.sign([network.turning[one.at] for one in inertias])
-    return Matrices(
-        tuple(names[key] for key in kept), tuple(one.name for one in inertias), tuple(one.name for one in springs),
-        on.T * moments @ on, twist.T * c @ twist + on.T * viscous @ on, twist.T * k @ twist, on.T,
-        -sense * [one.load_torque for one in inertias], twist, k, c,
-    )  # fmt: skip
+    return NetworkMatrices(
+        rotations=tuple(names[key] for key in kept),
+        inertias=tuple(one.name for one in inertias),
+        springs=tuple(one.name for one in springs),
+        mass=on.T * moments @ on,
+        damping=twist.T * c @ twist + on.T * viscous @ on,
+        stiffness=twist.T * k @ twist,
+        input=on.T,
+        load=-sense * [one.load_torque for one in inertias],
+        twist=twist,
+        stiffness_of=k,
+        damping_of=c,
+    )
 
 
 def _shares(network: Network) -> Array:
     """How every flange turns with each group that gears join (flange, group); with none where a drive holds it."""
     count = len(network.turning)
     group, ratio = np.arange(count), np.ones(count)
-    for gear in network.of(Gear):
+    for gear in network.of(FlangeGear):
         near, far = group[gear.near], group[gear.far]
         if near == far:
             raise InputError("closes a loop of gears", element=gear.name, remedy="leave it out")
@@ -79,6 +89,6 @@ def _shares(network: Network) -> Array:
         group[moved] = near
     share = np.zeros((count, count))
     share[np.arange(count), group] = ratio
-    for drive in network.of(Drive):
+    for drive in network.of(FlangeDrive):
         share[:, group[drive.at]] = 0.0
     return share

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.errors import InputError
-from trunnion.exchange.network import Drive, Gear, Inertia, Item, Network, Spring
+from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Item, Network
 
 ROTATIONAL = "Modelica.Mechanics.Rotational"
 KEYWORDS = frozenset(
@@ -56,14 +56,14 @@ def _declarations(one: Item, network: Network, names: _Identifiers) -> Iterator[
     """What declares an item, and which of its ports stand at which flange."""
     key, comment = names.new(one.name), _text(one.name)
     match one:
-        case Drive(_, at, None):
+        case FlangeDrive(_, at, None):
             yield f"Components.Fixed {key} {comment}", [(at, f"{key}.flange")]
-        case Drive(_, at, turns):
+        case FlangeDrive(_, at, turns):
             yield f"Sources.ConstantSpeed {key}(w_fixed={turns!r}) {comment}", [(at, f"{key}.flange")]
-        case Spring(_, near, far, stiffness, damping):
+        case FlangeSpring(_, near, far, stiffness, damping):
             ends = [(near, f"{key}.flange_a"), (far, f"{key}.flange_b")]
             yield f"Components.SpringDamper {key}(c={stiffness!r}, d={damping!r}) {comment}", ends
-        case Gear(_, near, far, ratio):
+        case FlangeGear(_, near, far, ratio):
             yield (
                 f"Components.IdealGear {key}(ratio={ratio}) {comment}",
                 [
@@ -71,7 +71,7 @@ def _declarations(one: Item, network: Network, names: _Identifiers) -> Iterator[
                     (far, f"{key}.flange_b"),
                 ],
             )
-        case Inertia(name, at, inertia, load, viscous):
+        case FlangeInertia(name, at, inertia, load, viscous):
             start = "" if network.speed is None else f", w(start={network.speed * network.turning[at]!r})"
             yield f"Components.Inertia {key}(J={inertia!r}{start}) {comment}", [(at, f"{key}.flange_a")]
             if load:
@@ -79,7 +79,7 @@ def _declarations(one: Item, network: Network, names: _Identifiers) -> Iterator[
                 source = names.new(f"load of {name}")
                 yield f"Sources.ConstantTorque {source}(tau_constant={torque!r})", [(at, f"{source}.flange")]
             if viscous:
-                if network.speed is None and network.of(Drive):
+                if network.speed is None and network.of(FlangeDrive):
                     raise InputError(
                         "acts by a speed that is not stated", element=name, key="viscous_load", value=viscous,
                         remedy="write speed in [operation]",

@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.errors import InputError, short
 from trunnion.exchange.modelica import ROTATIONAL
-from trunnion.exchange.network import Drive, Gear, Inertia, Network, Spring, read_ratio
+from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Network, read_ratio
 
 _TOKEN = re.compile(
     r"""\s+|//[^\n]*|/\*.*?\*/|(?P<text>"(?:[^"\\]|\\.)*")|(?P<number>\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)"""
@@ -210,18 +210,20 @@ class _Made:
         for one in self.components:
             match one.kind:
                 case "Components.Fixed" if self.port(one, "flange") in held:
-                    found.items.append(Drive(one.name, self.port(one, "flange")))
+                    found.items.append(FlangeDrive(one.name, self.port(one, "flange")))
                 case "Sources.ConstantSpeed":
-                    found.items.append(Drive(one.name, self.port(one, "flange"), self.number(one, "w_fixed")))
+                    found.items.append(FlangeDrive(one.name, self.port(one, "flange"), self.number(one, "w_fixed")))
                 case "Components.Inertia":
-                    found.items.append(Inertia(one.name, self.port(one, "flange_a"), self.number(one, "J")))
+                    found.items.append(FlangeInertia(one.name, self.port(one, "flange_a"), self.number(one, "J")))
                 case "Components.SpringDamper":
-                    found.items.append(Spring(one.name, *self.ends(one), self.number(one, "c"), self.number(one, "d")))
+                    found.items.append(
+                        FlangeSpring(one.name, *self.ends(one), self.number(one, "c"), self.number(one, "d"))
+                    )
                 case "Components.IdealGear":
-                    found.items.append(Gear(one.name, *self.ends(one), self.ratio(one)))
+                    found.items.append(FlangeGear(one.name, *self.ends(one), self.ratio(one)))
         self.add_loads(found, {at for at in grounds if at not in held})
         first = next(iter(self.of("Components.Inertia")), None)
-        if first is not None and START in first.values and not found.of(Drive):
+        if first is not None and START in first.values and not found.of(FlangeDrive):
             found.speed = self.number(first, START)
         return found
 
@@ -280,11 +282,11 @@ _LEADING = ("Components.Inertia", "Components.SpringDamper", "Components.IdealGe
 
 def _turning(network: Network) -> dict[int, float]:
     """The mean speed of every flange over that of the first drive or inertia."""
-    found = {next((one.at for kind in (Drive, Inertia) for one in network.of(kind)), 0): 1.0}
-    left = [one for one in network.items if isinstance(one, Spring | Gear)]
+    found = {next((one.at for kind in (FlangeDrive, FlangeInertia) for one in network.of(kind)), 0): 1.0}
+    left = [one for one in network.items if isinstance(one, FlangeSpring | FlangeGear)]
     while joined := next((one for one in left if one.near in found or one.far in found), None):
         left.remove(joined)
-        ratio = float(joined.ratio) if isinstance(joined, Gear) else 1.0
+        ratio = float(joined.ratio) if isinstance(joined, FlangeGear) else 1.0
         if joined.near in found:
             found.setdefault(joined.far, found[joined.near] / ratio)
         else:
@@ -296,7 +298,7 @@ def _load(network: Network, one: _Component, at: int, key: str, value: float) ->
     from dataclasses import replace
 
     for place, item in enumerate(network.items):
-        if isinstance(item, Inertia) and item.at == at:
+        if isinstance(item, FlangeInertia) and item.at == at:
             network.items[place] = replace(item, **{key: getattr(item, key) + value})
             return
     raise InputError("acts on no inertia", element=one.name, remedy="connect it to an Inertia")

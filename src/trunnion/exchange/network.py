@@ -22,7 +22,7 @@ from trunnion.errors import InputError
 
 
 @dataclass(frozen=True)
-class Drive:
+class FlangeDrive:
     """A rotation that is given at a flange; ``speed`` is that of this flange [rad/s], None where none is stated."""
 
     name: str
@@ -31,7 +31,7 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Inertia:
+class FlangeInertia:
     """A moment of inertia [kg m²] at a flange, with a constant torque [N m] and one per speed [N m s/rad] that resist
     its rotation."""
 
@@ -43,7 +43,7 @@ class Inertia:
 
 
 @dataclass(frozen=True)
-class Spring:
+class FlangeSpring:
     """Stiffness [N m/rad] and damping [N m s/rad] between two flanges."""
 
     name: str
@@ -54,7 +54,7 @@ class Spring:
 
 
 @dataclass(frozen=True)
-class Gear:
+class FlangeGear:
     """A rigid gear: flange ``near`` turns ``ratio`` times as fast as ``far``."""
 
     name: str
@@ -74,7 +74,7 @@ def read_ratio(text: str) -> Fraction:
     return found
 
 
-Item = Drive | Inertia | Spring | Gear
+Item = FlangeDrive | FlangeInertia | FlangeSpring | FlangeGear
 
 
 @dataclass
@@ -150,24 +150,26 @@ def _add(
         match part:
             case Prescribed():
                 turning = found.turning[own[0]]
-                found.items.append(Drive(name, own[0], None if speed is None else speed * turning))
+                found.items.append(FlangeDrive(name, own[0], None if speed is None else speed * turning))
             case Heavy(at, of, loaded):
                 constant, viscous = _loads(element) if loaded else (0.0, 0.0)
                 label = f"{of} {name}".strip() if of else name
                 if of == "end of":
                     label = f"end {at + 1} of {name}"
-                found.items.append(Inertia(label, own[at], next(inertias), constant, viscous))
+                found.items.append(FlangeInertia(label, own[at], next(inertias), constant, viscous))
             case Geared(ratio, to):
                 gears += 1
                 far = found.new_flange(found.turning[own[to]] / float(ratio))
                 label = f"gears of {name}" if isinstance(element, Elastic | GearPair) else name
-                found.items.append(Gear(label if gears == 1 else f"{label} {gears}", own[to], far, Fraction(ratio)))
+                found.items.append(
+                    FlangeGear(label if gears == 1 else f"{label} {gears}", own[to], far, Fraction(ratio))
+                )
                 own.append(far)
             case Jointed(orders, to) if not orders or not getattr(element, "angle", 0.0):
                 own.append(own[to])
             case Sprung(to, closes, None):
                 far = found.new_flange(found.turning[own[to]]) if closes is None else behind(closes)
-                found.items.append(Spring(name, own[to], far, *next(links)))
+                found.items.append(FlangeSpring(name, own[to], far, *next(links)))
                 own.append(far)
             case _:
                 remedy = "leave it out, or describe it by disks, shafts and ratios"
@@ -200,7 +202,7 @@ def loop_closed(network: Network) -> str | None:
     """The name of the first spring or gear that joins what is joined already; None of a tree."""
     group = list(range(len(network.turning)))
     for one in network.items:
-        if isinstance(one, Spring | Gear):
+        if isinstance(one, FlangeSpring | FlangeGear):
             near, far = group[one.near], group[one.far]
             if near == far:
                 return one.name
@@ -211,9 +213,14 @@ def loop_closed(network: Network) -> str | None:
 def bare_flange(network: Network) -> str | None:
     """The name of a spring or gear at whose end nothing is heavy, nor by gears behind it; None where all is heavy."""
     group = list(range(len(network.turning)))
-    for gear in network.of(Gear):
+    for gear in network.of(FlangeGear):
         near, far = group[gear.near], group[gear.far]
         group = [near if g == far else g for g in group]
-    heavy = {group[one.at] for one in network.items if isinstance(one, Drive | Inertia)}
-    ends = ((one.name, end) for one in network.items if isinstance(one, Spring | Gear) for end in (one.near, one.far))
+    heavy = {group[one.at] for one in network.items if isinstance(one, FlangeDrive | FlangeInertia)}
+    ends = (
+        (one.name, end)
+        for one in network.items
+        if isinstance(one, FlangeSpring | FlangeGear)
+        for end in (one.near, one.far)
+    )
     return next((name for name, end in ends if group[end] not in heavy), None)

@@ -13,7 +13,15 @@ from fractions import Fraction
 from typing import Any
 
 from trunnion.errors import InputError
-from trunnion.exchange.network import Drive, Gear, Inertia, Network, Spring, bare_flange, loop_closed
+from trunnion.exchange.network import (
+    FlangeDrive,
+    FlangeGear,
+    FlangeInertia,
+    FlangeSpring,
+    Network,
+    bare_flange,
+    loop_closed,
+)
 
 _LISTS = {"DISKS": 3, "SHAFTS": 5, "GEARS": 5}
 """Lists of the script, and how many values a row has."""
@@ -60,10 +68,10 @@ def script_of(network: Network) -> str:
     _refuse(network)
     return _SCRIPT.format(
         name=ascii(network.name),
-        disks=_rows((one.name, one.at, one.inertia) for one in network.of(Inertia)),
-        shafts=_rows((one.name, one.near, one.far, one.stiffness, one.damping) for one in network.of(Spring)),
+        disks=_rows((one.name, one.at, one.inertia) for one in network.of(FlangeInertia)),
+        shafts=_rows((one.name, one.near, one.far, one.stiffness, one.damping) for one in network.of(FlangeSpring)),
         gears=_rows(
-            (one.name, one.near, one.far, one.ratio.denominator, one.ratio.numerator) for one in network.of(Gear)
+            (one.name, one.near, one.far, one.ratio.denominator, one.ratio.numerator) for one in network.of(FlangeGear)
         ),
     )
 
@@ -74,10 +82,10 @@ def _rows(rows: Any) -> str:
 
 def _refuse(network: Network) -> None:
     other = "export it to csv, matlab or modelica"
-    for drive in network.of(Drive):
+    for drive in network.of(FlangeDrive):
         remedy = f"describe the drive by a Disk with its inertia, or {other}"
         raise InputError("holds a rotation, which openTorsion does not", element=drive.name, remedy=remedy)
-    for one in network.of(Inertia):
+    for one in network.of(FlangeInertia):
         for key in ("load_torque", "viscous_load"):
             if value := getattr(one, key):
                 problem = "is a load, which an assembly of openTorsion does not have"
@@ -85,12 +93,12 @@ def _refuse(network: Network) -> None:
     if (name := bare_flange(network)) is not None:
         remedy = "put a Disk there, or join springs in series into one"
         raise InputError("ends where nothing is heavy, which openTorsion does not solve", element=name, remedy=remedy)
-    if network.of(Gear) and (name := loop_closed(network)) is not None:
+    if network.of(FlangeGear) and (name := loop_closed(network)) is not None:
         remedy = f"open the loop, or {other}"
         raise InputError(
             "closes a loop of a line with gears, which openTorsion does not hold", element=name, remedy=remedy
         )
-    if not network.of(Spring):
+    if not network.of(FlangeSpring):
         raise InputError("has no spring", element=network.name or "line", remedy="give it a Shaft")
 
 
@@ -103,14 +111,14 @@ def read_script(text: str, source: str) -> Network:
     """
     stated = _stated(text, source)
     found = Network(stated["NAME"])
-    found.items += [Inertia(name, at, _number(inertia, name, source)) for name, at, inertia in stated["DISKS"]]
+    found.items += [FlangeInertia(name, at, _number(inertia, name, source)) for name, at, inertia in stated["DISKS"]]
     for name, near, far, k, c in stated["SHAFTS"]:
-        found.items.append(Spring(name, near, far, _number(k, name, source), _number(c, name, source)))
+        found.items.append(FlangeSpring(name, near, far, _number(k, name, source), _number(c, name, source)))
     for name, near, far, under, over in stated["GEARS"]:
         under, over = (Fraction(_number(one, name, source)) for one in (under, over))
         if not under or not over:
             raise _unlike(source, f"the radii of {name}")
-        found.items.append(Gear(name, near, far, over / under))
+        found.items.append(FlangeGear(name, near, far, over / under))
     return found
 
 

@@ -10,7 +10,7 @@ from trunnion.driveline.elements import MOST_TEETH, ConstantSpeed, Disk, Element
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.shafts import Shaft
 from trunnion.errors import InputError
-from trunnion.exchange.network import Drive, Gear, Inertia, Item, Network, Spring
+from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Item, Network
 
 SAME_SPEED = 1e-9
 """Share by which the speeds of two drives may miss each other."""
@@ -38,7 +38,7 @@ class _Rebuilt:
         self.turning: dict[int, float] = {}
 
     def line(self) -> Driveline:
-        first = next((one for kind in (Drive, Inertia) for one in self.network.of(kind)), None)
+        first = next((one for kind in (FlangeDrive, FlangeInertia) for one in self.network.of(kind)), None)
         if first is None:
             raise InputError("has neither a drive nor an inertia", key="line", remedy="write what its shafts turn")
         self.turning[first.at] = 1.0
@@ -60,9 +60,9 @@ class _Rebuilt:
 
     def _sit(self, flange: int) -> None:
         """Put every inertia and drive of a flange there."""
-        for one in [one for one in self.left if isinstance(one, Drive | Inertia) and one.at == flange]:
+        for one in [one for one in self.left if isinstance(one, FlangeDrive | FlangeInertia) and one.at == flange]:
             self.left.remove(one)
-            if isinstance(one, Drive):
+            if isinstance(one, FlangeDrive):
                 made = _made(ConstantSpeed, name=one.name, **self._behind(flange))
             else:
                 loads = {"load_torque": one.load_torque, "viscous_load": one.viscous_load}
@@ -78,10 +78,10 @@ class _Rebuilt:
     def _join(self, one: Item, flange: int) -> list[int]:
         """Put a spring or gear that leads on from a flange; the new flange behind it, if it is one."""
         self.left.remove(one)
-        assert isinstance(one, Spring | Gear)
+        assert isinstance(one, FlangeSpring | FlangeGear)
         far = one.far if one.near == flange else one.near
         closes = far in self.turning
-        if isinstance(one, Spring):
+        if isinstance(one, FlangeSpring):
             loss = {"damping": one.damping} if one.damping else {}
             end = {"to": self.seat[far].name} if closes else {}
             made = _made(Shaft, name=one.name, stiffness=one.stiffness, **loss, **end, **self._behind(flange))
@@ -115,7 +115,7 @@ class _Rebuilt:
 
     def _speed(self) -> float | None:
         """The input speed [rad/s] that the drives state together."""
-        stated = [one for one in self.network.of(Drive) if one.speed is not None]
+        stated = [one for one in self.network.of(FlangeDrive) if one.speed is not None]
         if not stated:
             return self.network.speed
         speeds = [one.speed / self.turning[one.at] for one in stated]
@@ -131,7 +131,7 @@ def _made(kind: type[Element], **data: Any) -> Element:
 
 
 def _touches(one: Item, flange: int) -> bool:
-    return isinstance(one, Spring | Gear) and flange in (one.near, one.far)
+    return isinstance(one, FlangeSpring | FlangeGear) and flange in (one.near, one.far)
 
 
 def _ratio(ratio: Fraction) -> dict[str, float | int]:

@@ -7,7 +7,7 @@ import io
 from fractions import Fraction
 
 from trunnion.errors import InputError
-from trunnion.exchange.network import Drive, Gear, Inertia, Item, Network, Spring, read_ratio
+from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Item, Network, read_ratio
 
 HEAD = (
     "name", "kind", "from", "to", "inertia [kg m^2]", "stiffness [N m/rad]", "damping [N m s/rad]", "ratio [1]",
@@ -34,13 +34,13 @@ def table_of(network: Network) -> str:
 
 def _cells(one: Item) -> list[str]:
     match one:
-        case Drive(_, at, speed):
+        case FlangeDrive(_, at, speed):
             return ["drive", str(at), "", "", "", "", "", "", "", "" if speed is None else repr(speed)]
-        case Inertia(_, at, inertia, load, viscous):
+        case FlangeInertia(_, at, inertia, load, viscous):
             return ["inertia", str(at), "", repr(inertia), "", "", "", _or_none(load), _or_none(viscous), ""]
-        case Spring(_, near, far, stiffness, damping):
+        case FlangeSpring(_, near, far, stiffness, damping):
             return ["spring", str(near), str(far), "", repr(stiffness), repr(damping), "", "", "", ""]
-        case Gear(_, near, far, ratio):
+        case FlangeGear(_, near, far, ratio):
             return ["gear", str(near), str(far), "", "", "", str(ratio), "", "", ""]
 
 
@@ -67,11 +67,11 @@ def read_table(text: str, source: str) -> Network:
         raise InputError("does not begin with the columns of a line", key=source, remedy=_SAVED)
     found = Network("")
     for number, row in enumerate(rows[1:], start=2):
-        _read_row(found, _Row(f"{source}: row {number}", [*row, *[""] * (len(HEAD) - len(row))]))
+        _read_row(found, _TableRow(f"{source}: row {number}", [*row, *[""] * (len(HEAD) - len(row))]))
     return found
 
 
-class _Row:
+class _TableRow:
     """Cells of a row, read with complaints that name their place."""
 
     def __init__(self, place: str, cells: list[str]) -> None:
@@ -111,27 +111,27 @@ class _Row:
             raise self.wrong("is no ratio", "ratio", "write 41/10 or 4.1, say, and not zero") from None
 
 
-def _read_row(found: Network, row: _Row) -> None:
+def _read_row(found: Network, row: _TableRow) -> None:
     match row.cells["kind"]:
         case "line":
             found.name, found.speed = row.name, row.speed()
         case "drive":
-            found.items.append(Drive(row.name, row.flange("from"), row.speed()))
+            found.items.append(FlangeDrive(row.name, row.flange("from"), row.speed()))
         case "inertia":
             found.items.append(
-                Inertia(
+                FlangeInertia(
                     row.name, row.flange("from"), row.number("inertia [kg m^2]"), row.number("load_torque [N m]", 0.0),
                     row.number("viscous_load [N m s/rad]", 0.0),
                 )
             )  # fmt: skip
         case "spring":
             found.items.append(
-                Spring(
+                FlangeSpring(
                     row.name, row.flange("from"), row.flange("to"), row.number("stiffness [N m/rad]"),
                     row.number("damping [N m s/rad]", 0.0),
                 )
             )  # fmt: skip
         case "gear":
-            found.items.append(Gear(row.name, row.flange("from"), row.flange("to"), row.ratio()))
+            found.items.append(FlangeGear(row.name, row.flange("from"), row.flange("to"), row.ratio()))
         case _:
             raise row.wrong("is no kind of part", "kind", "write drive, inertia, spring or gear")
