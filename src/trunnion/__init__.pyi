@@ -13,6 +13,7 @@ from trunnion.design.sensitivity.sensitivity import sensitivity as sensitivity
 from trunnion.design.tolerance.tolerance_study import tolerance_study as tolerance_study
 from trunnion.driveline import AppliedTorque as AppliedTorque
 from trunnion.driveline import Belt as Belt
+from trunnion.driveline import Brake as Brake
 from trunnion.driveline import CentrifugalPendulum as CentrifugalPendulum
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
@@ -99,6 +100,9 @@ from trunnion.floquet.tongues.tongues import tongues as tongues
 from trunnion.floquet.tongues.windows import minimum_damping as minimum_damping
 from trunnion.floquet.tongues.windows import stable_windows as stable_windows
 from trunnion.measured.bench import measure as measure
+from trunnion.measured.identification.identify import identify as identify
+from trunnion.measured.identification.knowable import identifiability as identifiability
+from trunnion.measured.overlay import compare_measured as compare_measured
 from trunnion.measured.signals.measurement import Measurement as Measurement
 from trunnion.measured.signals.measurement import PulseTrain as PulseTrain
 from trunnion.measured.signals.measurement import SampledSignal as SampledSignal
@@ -151,6 +155,7 @@ from trunnion.pictures.layout import sketch as sketch
 from trunnion.reporting.report import report as report
 from trunnion.reporting.submission import submission as submission
 from trunnion.response.campbell_diagram import campbell_diagram as campbell_diagram
+from trunnion.response.coupling_temperatures import coupling_temperatures as coupling_temperatures
 from trunnion.response.kinetostatics import CrossFriction as CrossFriction
 from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sensitivity
 from trunnion.response.kinetostatics import check_limits as check_limits

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import CURVE, FEATURES, UNEVEN, feature
+from trunnion.driveline.elements import Rotor
+from trunnion.driveline.features import CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
@@ -68,16 +69,23 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
 
 
 def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
-    """What is said of pendulums where no speed is asked of: they are held as at the operating speed."""
+    """What is said where no speed is asked of: pendulums are held, and couplings loaded, as at the operating speed."""
     if line.operation is None or line.operation.speed is None:
         return ()
     at = Words(speed_unit(line)).rounded(line.operation.speed)
-    says = f"is held as at {at}, where the line operates; campbell_diagram has every speed"
-    return tuple(Finding(Gravity.CAUTION, f"{name} {says}") for name in feature(PENDULUM).places(line))
+    loaded = any(isinstance(one, Rotor) and one.loaded_by_speed for one in line.elements)
+    says = {PENDULUM: "is held", OVER_TORQUE: "is loaded"} if loaded else {PENDULUM: "is held"}
+    there = f"as at {at}, where the line operates; campbell_diagram has every speed"
+    return tuple(
+        Finding(Gravity.CAUTION, f"{name.removesuffix('.stiffnesses')} {what} {there}")
+        for key, what in says.items()
+        for name in feature(key).places(line)
+    )
 
 
 _LIKE = {
     "rolling resistance": "load torque",
+    "brake": "load torque",
     "air drag": "quadratic load",
     "slip of a tyre": DRAGGED,
     "elastic teeth of planets": "closed loop",
@@ -127,6 +135,7 @@ _EVEN = {
 _STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyond its capacity is refused"}
 _NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
 PENDULUM = "centrifugal pendulum"
+HEATED = "temperature of a coupling"
 _NO_SPEED = {PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated"}
 _OTHER_SPEEDS = {PENDULUM: "the square of the speed holds it, and equations here are of one speed"}
 _NO_PATH = {PENDULUM: "it swings along a path, which is not followed"}
@@ -154,7 +163,9 @@ _SERIES: dict[str, Reason] = {
 }
 _IN_ROWS = {**_HELD, **_SERIES}
 _BY_PLACE = {**_IN_ROWS, **QUASI_STATIC}
-_AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes")
+_AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes") | {
+    OVER_TORQUE: "it holds for small motions about one mean torque, and the torque changes"
+}
 ONE_MOTION = "dry friction at one motion"
 _DRY_FRICTION = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
 _SLOWEST = {"dry friction": "the slowest mode, over whose periods it speeds up, is that of the linear line"}
@@ -184,6 +195,7 @@ _UNPROVABLE = {
     DRAGGED: "what it drags may stand anywhere, so that one disturbance never dies out",
     **dict.fromkeys((CURVE, LAG), "a curve over the speed is not enclosed"),
     PENDULUM: "the square of the speed holds it, and the proof is of springs that do not follow the speed",
+    OVER_TORQUE: "a table over the mean torque is not enclosed",
 }
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Reason] = {
@@ -234,6 +246,7 @@ _NOT_EXACT = {
     **_ONE_DRIVE,
     **_NO_PATH,
     **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
+    OVER_TORQUE: "it goes with the loads at the speed that branches and sweeps follow",
     **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
@@ -245,7 +258,8 @@ _NOT_EXACT = {
 _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no phase"}
 _RIGID = dict.fromkeys(
     (
-        "inertia", "stiffness", "tube inertia", "bending stiffness", "damping", "loss factor", "damping ratio",
+        "inertia", "stiffness", OVER_TORQUE, HEATED, "tube inertia", "bending stiffness", "damping", "loss factor",
+        "damping ratio",
         "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "tyre", "vehicle",
         "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
@@ -358,6 +372,7 @@ ROWS: dict[str, Row] = {
         refused={
             **_ONE_DRIVE,
             LAG: "equations of motion have no lagging torque",
+            OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
             **_NO_PATH,
             "excitation that varies with speed or load": "its amplitude would change on the way",
         },

@@ -126,6 +126,13 @@ ANALYSES = (
         view="orders",
     ),
     Analysis(
+        "coupling_temperatures",
+        "Where the temperature of elastic couplings settles by the heat of their damping, if anywhere.",
+        features="linear motion",
+        pictures={"CouplingTemperatures.plot": "trunnion.pictures.coupling_temperatures:coupling_temperatures"},
+        command="trunnion.cli.orders:coupling_temperatures",
+    ),
+    Analysis(
         "speed_sweep",
         "Torque and twist amplitude of every shaft over speed, all orders together; free–free lines included.",
         features="linear motion",
@@ -381,6 +388,18 @@ ANALYSES = (
             "MeasuredOrderMap.plot": "trunnion.pictures.measured:order_map",
         },
         command="trunnion.cli.measured:track_orders",
+    ),
+    Analysis(
+        "compare_measured",
+        "Measured orders over what the line predicts, with a sentence on what differs.",
+        pictures={"MeasuredComparison.plot": "trunnion.pictures.measured:comparison"},
+        command="trunnion.cli.measured:compare_measured",
+    ),
+    Analysis(
+        "identify",
+        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
+        pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
+        command="trunnion.cli.measured:identify",
     ),
     Analysis(
         "certify_chaos",

@@ -33,6 +33,8 @@ EXPECTED = {
     "fatigue": ALWAYS,
     "gear-hammer": ALWAYS,
     "din-740": ALWAYS,
+    "coupling-temperature": ALWAYS,
+    "brake-heat": ALWAYS,
     "damper-heat": ALWAYS,
     "pendulum-travel": ALWAYS,
     "slip-clutch": ALWAYS,
@@ -173,6 +175,11 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     wide = [tn.Limit(of="shaft", max_torque=1e6)]
     shaft = tn.Shaft(name="shaft", stiffness=4e4, damping=20.0)
     soft = tn.Coupling(name="shaft", stiffness=4e4, damping=20.0, vibratory_torque=20.0)
+    drags = tn.Brake(name="drags", inertia=0.1, torque=1.0, heat_rating=1.0)
+    warm = tn.Coupling(
+        name="shaft", stiffness=4e4, damping=20.0, temperature=300.0, thermal_resistance=1e4, ambient_temperature=300.0,
+        highest_temperature=300.01,
+    )  # fmt: skip
     hot = tn.ViscousDamper(name="hot", ring_inertia=0.2, damping=20.0, heat_rating=0.1)
     swings = tn.CentrifugalPendulum(name="swings", mass=1.0, radius=0.1, order=3.1, largest_travel=1e-4, damping=0.1)
     tube = tn.Shaft(
@@ -186,6 +193,8 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     return {
         "own-limits": tn.Driveline([engine, shaft, load], limits=tight),
         "din-740": tn.Driveline([engine, soft, load], limits=wide),
+        "coupling-temperature": tn.Driveline([engine, warm, load], limits=wide),
+        "brake-heat": tn.Driveline([engine, shaft, load, drags], limits=wide),
         "damper-heat": tn.Driveline([engine, hot, shaft, load], limits=[*wide, tn.Limit(of="hot", max_torque=1e6)]),
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(
@@ -324,7 +333,7 @@ def test_equal_within_one_degree_up_to_rounding() -> None:
 # ---- What is shipped -------------------------------------------------------------------------------------------------
 
 
-LONG = ("four-wheel-drive", "passenger-car")
+LONG = ("four-wheel-drive", "passenger-car", "rolling-mill-strip")
 
 
 @pytest.mark.parametrize(

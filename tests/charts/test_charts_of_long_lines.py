@@ -14,6 +14,7 @@ from trunnion.floquet.charts.axes import axis
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.chart_pixels import judge_matrices
 from trunnion.floquet.charts.matrix_interpolation import matrix_patches
+from trunnion.numerics.chain import chain_monodromy
 from trunnion.numerics.patches.patches import Box
 
 ANGLES = "factor of HookeJoint *.angle"
@@ -63,6 +64,38 @@ def test_every_pixel_against_integration() -> None:
     assert np.all(off <= chart.error_estimate.ravel() + found.error)
     unstable = chart.spectral_radius > 1
     assert 0.02 < unstable.mean() < 0.9 and np.array_equal(unstable, (found.radius > 1).reshape(unstable.shape))
+
+
+@pytest.mark.parametrize("seed", [13, 30])  # the second with a mesh whose stiffness varies
+def test_errors_of_coarse_charts_hold_and_are_of_use(seed: int) -> None:
+    """Every pixel integrated by itself, at random against modes by Hill's blocks; the kernel's own bounds say a hundred
+    times as much and more."""
+    line = random_tree(seed, 20, 22, driven=True)
+    assert (seed == 30) == any(e.kind == "GearPair" for e in line.elements)
+    chart = charted(line, (150.0, 300.0), (0.3, 1.2), (8, 6))
+    assert chart.function.direct and np.median(chart.error_estimate) < 2e-8 and chart.error_estimate.max() < 1e-7
+    bends = {name: e.angle for name, e in zip(line.names, line.elements, strict=True) if e.kind == "HookeJoint"}
+    rng = np.random.default_rng(seed)
+    for row, column in zip(rng.integers(0, 6, 5), rng.integers(0, 8, 5), strict=True):
+        bent = line.replace_all({name: {"angle": chart.y[row] * angle} for name, angle in bends.items()})
+        true = tn.stability(bent, float(chart.x[column]))
+        off = abs(chart.spectral_radius[row, column] - true.spectral_radius)
+        assert off <= chart.error_estimate[row, column] + true.error_estimate
+
+
+@pytest.mark.parametrize("half", [True, False])
+def test_one_column_at_a_time_as_all_of_them(half: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both kernels of plain chains, of slow and fast points beside each other."""
+    assembly = assemble(uniform(14))
+    across, up = axis(assembly, ("speed", 50.0, 900.0, 2), "x")[0], axis(assembly, (ANGLES, 0.1, 0.9, 2), "y")[0]
+    family = LineFamily(assembly, across, up, float("nan"), True, half_windows=half)
+    batch = family.batch(np.geomspace(50.0, 900.0, 20), np.linspace(0.1, 0.9, 20))
+    found, error, trace = family._integrated(batch, 1e-10, 1)
+    monkeypatch.setattr(chain_monodromy, "SHORT", 1000)
+    other, bound, damping = family._integrated(batch, 1e-10, 1)
+    assert not np.array_equal(found, other)
+    assert (np.linalg.norm(found - other, axis=(1, 2)) <= error + bound).all() and error.max() < 2 * bound.max()
+    assert trace == pytest.approx(damping, rel=1e-12)
 
 
 def turning(rate: float) -> Any:

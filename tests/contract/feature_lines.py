@@ -179,6 +179,11 @@ def clutch(rubs: bool = False, **more: float) -> Change:
     return front(tn.Clutch(**stages, friction=[{"torque": 0.5, "stiffness": 2e4}], **more))
 
 
+def coupled(**more: object) -> Change:
+    """An elastic coupling in front."""
+    return front(tn.Coupling(damping=5, name="front", **more))
+
+
 def clutched(**more: float) -> Change:
     """A slip clutch behind the hub."""
     return behind("hub", tn.SlipClutch(name="slips", **more), tn.Disk(inertia=0.05, name="plate"))
@@ -201,6 +206,11 @@ def pendulum() -> tn.CentrifugalPendulum:
 
 def machine(one: object) -> Change:
     """On the hub."""
+    return behind("hub", one)
+
+
+def flanged(one: object) -> Change:
+    """Behind the hub."""
     return behind("hub", one)
 
 
@@ -255,6 +265,13 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
 CHANGES: dict[str, tuple[Change, Change]] = {
     "inertia": (same, put("hub", inertia=0.15)),
     "stiffness": (same, put("front", stiffness=2e4)),
+    "stiffness over mean torque": (
+        coupled(stiffness=1e4), coupled(torques=[0.0, 30.0, 200.0], stiffnesses=[4e3, 2.5e4, 3e4])
+    ),
+    "temperature of a coupling": (
+        coupled(stiffness=1e4),
+        coupled(stiffness=1e4, temperature=350.0, temperatures=[300.0, 360.0], stiffness_factors=[1.0, 0.6]),
+    ),
     "viscous damper": (same, damped_by(tn.ViscousDamper(ring_inertia=0.03, damping=4.0, stiffness=900.0))),
     "damper without a spring": (same, damped_by(tn.ViscousDamper(inertia=0.02, ring_inertia=0.03, damping=4.0))),
     "tuned damper": (same, damped_by(tn.TunedDamper(ring_inertia=0.03, stiffness=2e3, damping=1.0))),
@@ -314,6 +331,9 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
     "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
     "load torque": (same, put("load", load_torque=80.0)),
+    "brake": (
+        flanged(tn.Disk(inertia=0.02, name="brake")), flanged(tn.Brake(inertia=0.02, torque=15.0, name="brake"))
+    ),
     "viscous load": (same, put("load", viscous_load=0.5)),
     "quadratic load": (same, put("load", quadratic_load=0.005)),
     "torque curve": (machine(tn.Pump(inertia=0.05, load_torque=15.0, name="pump")), machine(asynchronous())),

@@ -48,6 +48,19 @@ def limited(line: tn.Driveline) -> tn.Driveline:
     return line.model_copy(update={"limits": limits})
 
 
+def heated(line: tn.Driveline) -> tn.Driveline:
+    """With a coupling and a disk at the far end, which vibrate and warm it."""
+    rubber = tn.Coupling(
+        stiffness=9e3, relative_damping=0.5, loss_factor_frequency=200.0, temperature=310.0,
+        temperatures=[300.0, 400.0], stiffness_factors=[1.0, 0.7], thermal_resistance=0.5, ambient_temperature=305.0,
+        name="rubber",
+    )  # fmt: skip
+    if line.damping_ratio is not None:
+        rubber = rubber.but(relative_damping=None, loss_factor_frequency=None)
+    shaken = tn.Disk(inertia=0.15, excitation=[{"order": 2, "amplitude": 4.0}], name="shaken")
+    return line.but(elements=[*line.elements, rubber.but(after="load"), shaken])
+
+
 def with_duty(line: tn.Driveline) -> tn.Driveline:
     """With an S–N curve of all shafts, which counts means, and a duty."""
     curve = tn.SNCurve(of="Shaft *", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
@@ -160,6 +173,11 @@ QUESTIONS = {
     "order_response": Question(
         lambda line: tn.order_response(line, [90.0, 100.0]),
         lambda: tn.order_response(in_rpm(), GRID),
+    ),
+    "coupling_temperatures": Question(
+        lambda line: tn.coupling_temperatures(heated(line), [90.0, 100.0]),
+        lambda: tn.coupling_temperatures(heated(in_rpm()), GRID),
+        quick=("load torque", "excitation by order", "stiffness over mean torque", "dry friction"),
     ),
     "speed_sweep": Question(
         lambda line: tn.speed_sweep(line, [90.0, 100.0]),

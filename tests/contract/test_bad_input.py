@@ -18,6 +18,7 @@ from trunnion import (
 )
 from trunnion.driveline import (
     Belt,
+    Brake,
     CentrifugalPendulum,
     ConstantSpeed,
     Coupling,
@@ -83,6 +84,12 @@ def on_a_bare_shaft():
     return Driveline([Disk(inertia=1.0), Shaft(stiffness=100.0), ViscousDamper(ring_inertia=0.1, damping=1.0)])
 
 
+def rubber(**changes):
+    """A coupling whose factors go over temperature."""
+    stated = {"stiffness": 1e4, "temperature": 310.0, "temperatures": [300.0, 350.0], "stiffness_factors": [1.0, 0.8]}
+    return Coupling(**{k: v for k, v in (stated | {"name": "rubber"} | changes).items() if v is not None})
+
+
 RUBS = {"torque": 1, "stiffness": 1}
 KLOSS = {"breakdown_torque": 500.0, "breakdown_slip": 0.2, "synchronous_speed": 157.0}
 CURVE = [{"speed": 0.0, "torque": 90.0}, {"speed": 150.0, "torque": 200.0}]
@@ -135,6 +142,12 @@ def pendulum(**changes: object) -> CentrifugalPendulum:
 
 def belt(**changes):
     return Belt(**{"radius_in": 0.1, "radius_out": 0.2, "span_stiffness": 1e5} | changes)
+
+
+def long_line(inertias: int) -> Driveline:
+    """A chain with a joint at its front."""
+    chain = [e for _ in range(inertias) for e in (Shaft(stiffness=1e5, damping=1.0), Disk(inertia=0.1))]
+    return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
 
 
 def planetary(**changes: object) -> Planetary:
@@ -1320,6 +1333,70 @@ PYTHON = [
     (lambda: Shaft(stiffness="2e4 Nm"), "Shaft.stiffness = '2e4 Nm': Nm is not", "write N*m/rad"),
     (lambda: Shaft(stiffness=1, damping="3 N*m*s"), "Shaft.damping = '3 N*m*s': ", "write N*m*s/rad"),
     (lambda: Operation(speed="1500 1/min"), "operation.speed = '1500 1/min': ", '"1500 rpm"'),
+    (
+        lambda: engine(gas_torque=[], firing_intervals=["180 deg", "-180 deg", "360 deg", "360 deg"]),
+        "Engine.firing_intervals = ['180 deg', '-180 deg', '360 deg', '360 deg']: must not be negative",
+        "crank angle from each firing",
+    ),
+    (lambda: Brake(inertia=1.0), "Brake.torque: is missing", 'write torque = "200 N*m"'),
+    (lambda: Brake(inertia=1.0, torque=-5), "Brake.torque = -5: must not be negative", "either direction"),
+    (lambda: Brake(inertia=0, torque=5), "Brake.inertia = 0: must be positive", "kg"),
+    (
+        lambda: Brake(inertia=1.0, torque=5, static_torque=4),
+        "Brake.static_torque = 4: is less than torque",
+        "leave it out",
+    ),
+    (
+        lambda: Brake(inertia=1.0, torque=5, stribeck_speed=1),
+        "Brake.static_torque: is missing beside stribeck_speed",
+        "at rest",
+    ),
+    (lambda: Coupling(), "Coupling.stiffness: is missing", "relative_damping = 1.13"),
+    (
+        lambda: Coupling(torques=[1, 2], stiffnesses=[3]),
+        "Coupling.stiffnesses = [3]: has 1 values beside 2 torques",
+        "write one for each",
+    ),
+    (lambda: Coupling(torques=[1], stiffnesses=[3]), "Coupling.torques = [1]: must be two or more", "no table"),
+    (
+        lambda: Coupling(torques=["3 N*m", "2 N*m"], stiffnesses=[1, 2]),
+        "Coupling.torques = ['3 N*m', '2 N*m']: must rise: 2 N*m after 3 N*m",
+        "sort them",
+    ),
+    (
+        lambda: Coupling(torques=[-1, 2], stiffnesses=[1, 2]),
+        "Coupling.torques = [-1, 2]: must not be negative",
+        "0 or above",
+    ),
+    (lambda: Coupling(torques=[1, 2], stiffnesses=[0, 2]), "Coupling.stiffnesses = [0, 2]: must be positive", "leave"),
+    (
+        lambda: Coupling(stiffness=1, torques=[1, 2], stiffnesses=[1, 2]),
+        "Coupling.stiffnesses = [1, 2]: stands beside stiffness",
+        "leave one of the two out",
+    ),
+    (lambda: Coupling(torques=5, stiffnesses=[1, 2]), "Coupling.torques = 5: is not a list of torques", "say"),
+    (lambda: rubber(temperature=None), "rubber.temperature: is missing beside temperatures", "coupling_temperatures"),
+    (lambda: rubber(temperature=60), "rubber.temperature = 60: is -213.15 °C, and must lie", "in kelvin"),
+    (lambda: rubber(temperature="90 degC"), "rubber.temperature = '90 degC': lies beyond temperatures", "add points"),
+    (lambda: rubber(stiffness_factors=None), "rubber.temperatures = [300.0, 350.0]: have no factors", "write"),
+    (lambda: rubber(temperatures=None), "rubber.stiffness_factors = [1.0, 0.8]: has no temperatures", "write"),
+    (lambda: rubber(stiffness_factors=[1, 0]), "rubber.stiffness_factors = [1, 0]: must be", "0.6"),
+    (
+        lambda: rubber(damping_factors=[1]),
+        "rubber.damping_factors = [1]: has 1 values beside 2 temperatures",
+        "one for",
+    ),
+    (lambda: rubber(thermal_resistance=0.1), "rubber.ambient_temperature: is missing beside thermal_resistance", "30"),
+    (
+        lambda: rubber(ambient_temperature=300),
+        "rubber.thermal_resistance: is missing beside ambient_temperature",
+        "K/W",
+    ),
+    (
+        lambda: Coupling(stiffness=1.0, thermal_resistance=0.1, ambient_temperature=300.0),
+        "Coupling.temperature: is missing beside thermal_resistance",
+        "write temperature",
+    ),
     (lambda: Shaft(stiffness="5 foo"), "Shaft.stiffness = '5 foo': unknown unit 'foo'", "known are rad deg"),
     (lambda: Shaft(stiffness="5 N*m/("), "Shaft.stiffness = '5 N*m/(': unknown unit", "12 kN*m/rad"),
     (lambda: Shaft(stiffness="5 __import__('os')"), "Shaft.stiffness = ", "unknown unit"),
@@ -1780,6 +1857,11 @@ PYTHON = [
         lambda: Driveline([Shaft(stiffness=1.0)] * 100_000),
         "driveline: has 100000 elements, at most 5000 are taken; stability would need 1.6e+03 GB and 7.5e+02 h",
         "join neighbouring parts",
+    ),
+    (
+        lambda: tn.stability_chart(long_line(300), ("speed", 60, 300, 200), ("HookeJoint 1.angle", 0.0, 0.4, 150)),
+        "driveline: has 300 unknowns: a chart of 30000 points would take about",
+        "stability() at single speeds",
     ),
     (lambda: Driveline(3), "elements: must be a list, not a int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not a Disk", "tn.Driveline(["),

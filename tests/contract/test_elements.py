@@ -11,6 +11,7 @@ import pytest
 import trunnion as tn
 from trunnion.driveline import (
     Belt,
+    Brake,
     CentrifugalPendulum,
     Clutch,
     ConstantSpeed,
@@ -118,6 +119,7 @@ MACHINES = [
     Fan(inertia=3, rated_power="30 kW", rated_speed="1480 rpm", load_torque=2),
     Pump(inertia=0.3, load_torque="120 N*m", viscous_load=0.2),
     Propeller(inertia=60, entrained_inertia=15, quadratic_load=20, damping_factor=2.9),
+    Brake(inertia=0.3, torque="200 N*m", static_torque="260 N*m", stribeck_speed="20 rpm", heat_rating="5 kW"),
 ]
 WITH_STAGES = [
     RzeppaJoint(

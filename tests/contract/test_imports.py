@@ -52,6 +52,8 @@ LAYERS = (
     {"design/limits"},
     {"design", "design/sensitivity", "design/comparison", "design/optimisation", "design/tolerance"},
     {"design/remedies"},
+    # Judging by what was measured takes limits and bounds.
+    {"measured/identification"},
     # Asks any of the analyses by its name in the registry, at very many points.
     {"studies"},
     {"pictures", "animation", "animation/player"},

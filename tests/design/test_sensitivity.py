@@ -444,3 +444,51 @@ def test_kinks_are_told_from_curves(values, expected, kink):
         assert np.all(np.isnan(found)) and error == pytest.approx(np.ones(2), rel=1e-9)
     else:
         assert found == pytest.approx(np.array(expected), abs=1e-7) and np.all(error < 1e-6)
+
+
+def test_a_long_line_against_differences_of_what_it_does():
+    """Modes by Hill's blocks and responses solved together, against lines moved by hand and single analyses of them."""
+    elements = [tn.ConstantSpeed()]
+    for i in range(18):
+        k = 1e5 * (2 + math.sin(1.3 * i * i))
+        elements += [tn.Shaft(stiffness=k, damping=2e-5 * k), tn.Disk(inertia=0.1 + 0.01 * i)]
+        if i in (5, 11):
+            elements.append(tn.HookeJoint(angle=0.3))
+    elements[-1] = tn.Disk(inertia=0.1, excitation=[{"order": 1.5, "amplitude": 20.0}])
+    line, speed = tn.Driveline(elements), 150.0
+    moved = {"Shaft 3.stiffness": 1e-4, "HookeJoint 2.angle": 1e-4, "Disk 7.inertia": 1e-4, "Shaft 9.damping": 1e-3}
+    found = tn.sensitivity(line, speed, list(moved), of=["growth", "torques"])
+    grows, spring = "growth rate at 150 rad/s", "peak torque of Shaft 4 at 150 rad/s"
+    for path, share in moved.items():
+        name, key = path.split(".")
+        value = getattr(line.elements[line.names.index(name)], key)
+        growth = central(lambda c: tn.stability(c, speed).growth_rate, line, path, value, share * value)
+        assert found.derivatives(grows)[path] == pytest.approx(float(growth), rel=1e-4), path
+        torque = central(
+            lambda c: float(tn.order_response(c, [speed]).peak_torque[0, 3]), line, path, value, share * value
+        )
+        assert found.derivatives(spring)[path] == pytest.approx(float(torque), rel=1e-5), path
+
+
+def test_modes_of_a_long_line_as_the_matrices_of_the_period_give_them(monkeypatch):
+    """Growth rates of lines whose largest multiplier belongs to one mode, or to two that meet."""
+    from trunnion.design.sensitivity import growth
+    from trunnion.design.sensitivity.directions import Neighbourhood, directions_of
+    from trunnion.equations.coefficients import assemble
+
+    elements = [tn.ConstantSpeed()]
+    for i in range(16):
+        elements += [tn.Shaft(stiffness=2e5, damping=1e-3), tn.Disk(inertia=0.1)]
+        if i in (2, 8):
+            elements.append(tn.HookeJoint(angle=0.4))
+    assembly = assemble(tn.Driveline(elements))
+    first = 2 * math.sqrt(2e5 / 0.1) * math.sin(math.pi / 66)
+    near, paths = Neighbourhood(assembly), ["Shaft 2.stiffness", "HookeJoint *.angle", "Disk 3.inertia"]
+    directions = directions_of(assembly, paths)
+    row = near.row(2 * first)
+    one = growth.radius_slope(near, row, directions)
+    monkeypatch.setattr(growth, "_by_modes", lambda *asked: None)
+    other = growth.radius_slope(near, row, directions)
+    assert one.radius > 1.05 and not one.refused
+    assert one.radius == pytest.approx(other.radius, rel=1e-10)
+    assert np.all(np.abs(one.slope - other.slope) <= one.error + other.error + 1e-8 * np.abs(one.slope))

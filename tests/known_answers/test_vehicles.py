@@ -125,3 +125,36 @@ def test_what_slip_needs_is_said() -> None:
         tn.periodic_response(line, 50.0)
     assert "slip of left tyre has no spring that holds it" in str(tn.stability(line, 50.0))
     assert "(slip alone drags it along" in str(tn.natural_frequencies(line))
+
+
+def test_a_wheel_of_another_size_is_a_ratio_and_winds_the_line_up():
+    """Stated as a radius it is said to do nothing of the kind; as a ratio the two slips pull against each other."""
+    first, second, stiffness, travel, pulls = 0.3, 0.297, 9e3, 25.0, 6e4
+    ring = {"stiffness": stiffness, "damping": 30.0, "slip_stiffness": pulls, "travel_speed": travel, "inertia": 0.4}
+    car = tn.Vehicle(name="car", mass=1200.0, wheel_radius=first)
+
+    def driven(*smaller: object) -> tn.Driveline:
+        return tn.Driveline(
+            [
+                tn.ConstantSpeed(), tn.Shaft(stiffness=2e4, damping=5.0), tn.Disk(inertia=0.1, name="hub"),
+                tn.Shaft(stiffness=8e3, damping=1.0, name="front axle"), tn.Disk(inertia=1.0),
+                tn.Tyre(**ring, radius=first, name="front"), car,
+                tn.Shaft(stiffness=8e3, damping=1.0, name="rear axle", after="hub"), tn.Disk(inertia=1.0), *smaller,
+            ]
+        )  # fmt: skip
+
+    said = r"rear.radius: is 297 mm beside a wheel_radius of 300 mm.*Ratio\(ratio=1.0101"
+    with pytest.warns(tn.InputRemark, match=said):
+        driven(tn.Tyre(**ring, radius=second, name="rear", to="car"))
+    ratio = tn.Ratio(ratio=first / second)
+    line = driven(ratio, tn.Tyre(**ring, radius=first, name="rear", to="car"))
+    found = tn.order_response(line, [travel / first])
+    torque = {name: found.mean_torque[0, i] for i, name in enumerate(found.springs)}
+    # Both wheels turn alike; the car goes at the speed at which the two slips pull against each other.
+    # F_1 = C (ω r_1 − v)/v_ref, F_2 = C (ω r_2 − v)/v_ref and F_1 + F_2 = 0: v = ω (r_1 + r_2)/2.
+    omega = travel / first
+    force = pulls * (omega * first - omega * (first + second) / 2) / travel
+    assert abs(torque["front axle"]) == pytest.approx(force * first, rel=0.02)
+    assert abs(torque["rear axle"]) == pytest.approx(force * second, rel=0.02)
+    assert np.sign(torque["front axle"]) != np.sign(torque["rear axle"])
+    assert any("winds the line up" in one.sentence for one in found.findings)

@@ -182,6 +182,34 @@ def test_a_misfire_brings_half_orders_and_the_worst_is_found():
     assert silent.vibratory_torque == pytest.approx(np.full((4, 1), silent.normal[0])), "masses go on moving"
 
 
+def test_every_cylinder_is_named_with_what_it_does_most():
+    line = engine(excitation=GAS, firing_angles=FOUR)
+    found = tn.misfire(line, np.linspace(200.0, 400.0, 61))
+    rows = found.by_cylinder()
+    assert [row["cylinder"] for row in rows] == [f"cylinder {n} of engine" for n in (1, 2, 3, 4)]
+    times = [row["times that of all firing"] for row in rows]
+    assert times == pytest.approx(found.vibratory_torque[:, 0] / found.normal[0])
+    assert int(np.argmax(times)) + 1 == found.worst[1]
+    assert all(row["cylinder"] in str(found) for row in rows) and found.findings == ()
+
+
+def test_an_undamped_resonance_under_misfire_is_said_and_not_skipped():
+    """Order 0.5 meets the mode of a line without damping at the first of two speeds."""
+    even, half = [f"{k} deg" for k in (0, 180, 360, 540)], [{"order": k / 2, "amplitude": 9.0} for k in (1, 4)]
+    drive = tn.Disk(inertia=1.0, drive_share=1, excitation=half, firing_angles=even, name="engine")
+    line = tn.Driveline([drive, tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0)])
+    found = tn.misfire(line, [np.sqrt(2e4) / 0.5, 200.0])
+    assert list(found.unsettled) == [1, 1, 1, 1] and np.isfinite(found.vibratory_torque).all()
+    said = [one.sentence for one in found.findings]
+    for n in (1, 2, 3, 4):
+        assert (
+            f"With engine {n} out of work no steady state exists at 1 of the speeds, undamped resonances: left out."
+            in said
+        )
+    nowhere = tn.misfire(line, [np.sqrt(2e4) / 0.5])
+    assert np.isnan(nowhere.vibratory_torque).all() and len(nowhere.findings) >= 4
+
+
 CSV = """order,speed [rpm],amplitude [N*m],phase [deg]
 # measured
 2,600,180,-90

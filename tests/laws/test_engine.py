@@ -365,6 +365,9 @@ def test_a_cylinder_out_of_work_in_the_other_way_is_left_out_and_a_line_needs_sp
     line = ship(engine(gas_torque=GAS, damping=300.0, cut_out=3))
     assert [number for _, number in tn.misfire(line, [70.0]).cylinders] == [1, 2, 4, 5, 6]
     assert not [name for name in line.replace("engine", cut_out=None, misfiring=3)._silent if "cylinder 3 cut" in name]
+    found = tn.misfire(line, [70.0])
+    assert found.stated == "engine cylinder 3 cut out" and "all firing" not in str(found)
+    assert "engine cylinder 3 cut out [N m]" in found.table()[0]
     rigid = tn.Driveline([engine(gas_torque=GAS, rigid=True), tn.Disk(inertia=2.0, load_torque=30.0)])
     with pytest.raises(tn.InputError, match="has no springs"):
         tn.misfire(rigid, [70.0])

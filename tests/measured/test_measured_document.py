@@ -25,6 +25,9 @@ def test_the_description_of_the_page() -> None:
 def test_examples_run_in_order() -> None:
     text, names = pages.run_page("measured")
     assert "measurement of 3 channels" in text and "pitch errors of 2 wheels" in text
+    fitted = names["fitted"]
+    assert np.all((fitted.low < [2e4, np.deg2rad(12)]) & (fitted.high > [2e4, np.deg2rad(12)]))
+    assert "its peak comes" in text and "tube, stiffness: 17 kN*m/rad →" in text
     found, line = names["found"], names["line"]
     truth = tn.order_response(line, found.speed)
     orders = np.round(truth.order, 9).tolist()
@@ -79,5 +82,24 @@ def test_the_command(tmp_path: Path) -> None:
     ):
         refused = CliRunner().invoke(app, [*words, *wrong, "-o", str(tmp_path / "b.png")])
         assert refused.exit_code == 2 and said in refused.output, refused.output
+    data = [str(tmp_path / "run.csv"), "--calibration", str(tmp_path / "straight.csv"), "--reference", "input"]
+    data += ["--orders", "2"]
+    tn.dump(line.replace("Shaft 1", stiffness=1.7e4), tmp_path / "thought.toml")
+    data += ["--line", str(tmp_path / "thought.toml")]
+    over = CliRunner().invoke(app, ["compare-measured", *data, "-o", str(tmp_path / "over.png")])
+    assert over.exit_code == 0 and "21 % larger" in over.stdout, over.output
+    free = ["--free", "Shaft 1.stiffness:10 kN*m/rad:40 kN*m/rad"]
+    better = tmp_path / "better.toml"
+    asked = ["identify", *data, *free, "--json", "--write", str(better), "-o", str(tmp_path / "fit.png")]
+    fit = CliRunner().invoke(app, asked)
+    assert fit.exit_code == 0, fit.output
+    (low,), (high,) = (json.loads(fit.stdout)[key] for key in ("low", "high"))
+    assert low - 3 * (high - low) < 2e4 < high + 3 * (high - low)
+    assert abs(tn.load(better).elements[2].torsional_stiffness - 2e4) < 100
+    for words, said in ((["--free", "x:1"], "is no parameter with bounds"), ([], "--free: is missing")):
+        refused = CliRunner().invoke(app, ["identify", *data, *words])
+        assert refused.exit_code == 2 and said in refused.output, refused.output
+    alone = CliRunner().invoke(app, ["compare-measured", data[0], "-o", str(tmp_path / "c.png")])
+    assert alone.exit_code == 2 and "--line: is missing" in alone.output
     missing = CliRunner().invoke(app, ["track-orders", str(tmp_path / "none.wav")])
     assert missing.exit_code == 2 and "is not there" in missing.output

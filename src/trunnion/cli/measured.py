@@ -104,3 +104,116 @@ def track_orders(
         found, draw=partial(found.plot, channel=channel), text=lambda: found.headline, more=more,
         content=lambda: found.to_dict() | {"findings": output.findings_json(found.findings)},
     )  # fmt: skip
+
+
+def _required_line(asked: CommandInput) -> tn.Driveline:
+    raise InputError("is missing", key="--line", remedy="name the driveline file that the data are of")
+
+
+NeededLine = Annotated[Any, OptionReader(_line, missing=_required_line)]
+
+
+@Command("compare measured")
+def compare_measured(
+    measurement: Recorded,
+    *,
+    line: NeededLine,
+    orders: Annotated[list[float] | None, OptionReader(_orders)],
+    reference: str = "",
+    calibration: Annotated[Any, OptionReader(_reference_run)],
+    between: Annotated[tuple[float, float] | None, OptionReader(_between)],
+    window: Annotated[int, NumberBounds(1, 1000)] = 8,
+    channel: str = "",
+    unit: SpeedUnit,
+) -> CommandOutput:
+    """Example: trunnion compare-measured run-up.wav --line truck.toml --orders 1,2,4 -o overlay.png
+
+    --line FILE  Driveline that the data are of.
+    --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
+    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
+    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
+    --window  Turns of a window.
+    --channel  What is drawn; default the first that moves.
+    """
+    data = tn.track_orders(
+        measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
+        unit=unit,
+    )  # fmt: skip
+    found = tn.compare_measured(line, data)
+    if channel:
+        data.column(channel)
+    return CommandOutput(
+        found, draw=partial(found.plot, channel=channel), more=lambda: output.table(found.table(), "Differences"),
+        content=lambda: found.to_dict() | {"findings": output.findings_json(found.findings)},
+    )  # fmt: skip
+
+
+def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[str, str]]:
+    parts = text.rsplit(":", 2)
+    if len(parts) != 3:
+        raise InputError(
+            "is no parameter with bounds", key=key, value=text, remedy='write "tube.stiffness:10kN*m/rad:40kN*m/rad"'
+        )
+    return parts[0], (parts[1], parts[2])
+
+
+def _speeds(asked: CommandInput, text: str, key: str) -> list[float]:
+    from trunnion.cli.readers import read_speed
+
+    return [read_speed(asked, one, key) for one in text.split(",")]
+
+
+@Command("identify")
+def identify(
+    measurement: Recorded,
+    *,
+    line: NeededLine,
+    free: Annotated[list[tuple[str, tuple[str, str]]], OptionReader(_bounds, several=True)],
+    orders: Annotated[list[float] | None, OptionReader(_orders)],
+    reference: str = "",
+    calibration: Annotated[Any, OptionReader(_reference_run)],
+    between: Annotated[tuple[float, float] | None, OptionReader(_between)],
+    window: Annotated[int, NumberBounds(1, 1000)] = 8,
+    tongue_at: Annotated[list[float] | None, OptionReader(_speeds)],
+    write: Path | None = None,
+    channel: str = "",
+    progress: Progress,
+    unit: SpeedUnit,
+) -> CommandOutput:
+    """Example: trunnion identify run-up.wav --line truck.toml --free "tube.stiffness:10 kN*m/rad:40 kN*m/rad"
+
+    --line FILE  Driveline that the data are of, as it is thought to be.
+    --free PARAMETER:LOW:HIGH  What may differ, with its bounds; repeat it for more.
+    --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
+    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
+    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
+    --window  Turns of a window.
+    --tongue-at SPEED,…  Speeds at which the distance from the nearest instability is told.
+    --write FILE  Writes the driveline with the values found.
+    --channel  What is drawn; default the first that moves.
+    """
+    if not free:
+        raise InputError("is missing", key="--free", remedy='write --free "tube.stiffness:10kN*m/rad:40kN*m/rad"')
+    data = tn.track_orders(
+        measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
+        unit=unit,
+    )  # fmt: skip
+    if channel:
+        data.column(channel)
+    found = tn.identify(line, data, dict(free), tongue_at=tongue_at or (), progress=progress)
+    if write is not None:
+        tn.dump(found.line, write)
+
+    def more() -> None:
+        output.table(found.table(), "Parameters")
+        for one in found.changes:
+            output.say(f"  {one}")
+        output.findings(found.findings)
+
+    return CommandOutput(
+        found, draw=partial(found.plot, channel=channel), written=[write] if write else [],
+        text=lambda: found.headline, more=more,
+        content=lambda: found.to_dict() | {"findings": output.findings_json(found.findings)},
+    )  # fmt: skip

@@ -148,10 +148,27 @@ def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: Spe
 
     def more() -> None:
         output.table(result.table())
+        output.table(result.by_cylinder(), "every cylinder out of work in turn")
+        output.findings(result.findings)
 
     return CommandOutput(
         result, draw=partial(seen.plot, operating=line.operation), table=result.data,
         content=lambda: _misfire_json(result), text=lambda: result.headline, more=more,
+    )  # fmt: skip
+
+
+@Command("temperatures of couplings")
+def coupling_temperatures(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit) -> CommandOutput:
+    """Example: trunnion coupling-temperatures ship.toml --speed 300rpm:800rpm -o temperatures.png"""
+    result = tn.coupling_temperatures(line, speeds).in_unit(unit)
+
+    def more() -> None:
+        output.table(result.table())
+        output.findings(result.findings)
+
+    return CommandOutput(
+        result, draw=partial(result.plot, operating=line.operation), table=result.data,
+        text=lambda: result.headline, more=more,
     )  # fmt: skip
 
 
@@ -259,7 +276,8 @@ def _misfire_json(result: Misfire) -> dict[str, Any]:
         "worst": result.names[result.cylinders.index(result.worst)],
         "cylinders": list(result.names),
         "springs": result.table(),
-        "findings": output.findings_json(result.response.findings),
+        "by_cylinder": result.by_cylinder(),
+        "findings": output.findings_json((*result.findings, *result.response.findings)),
     }
 
 

@@ -6,8 +6,10 @@ Importing this package loads pydantic and nothing heavier; pint is loaded when t
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
 from trunnion.driveline.ball_joints import Ripple, RzeppaJoint
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch, Slider
 from trunnion.driveline.component_files import component, components
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
@@ -32,7 +34,7 @@ from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.scenarios import LevelCrossing, Scenario
 from trunnion.driveline.schedules import Schedule
 from trunnion.driveline.schema import json_schema
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
@@ -90,6 +92,7 @@ __all__ = [
     "TorquePoint",
     "TransmissionError",
     "Belt",
+    "Brake",
     "Clutch",
     "Slider",
     "SlipClutch",

@@ -242,7 +242,11 @@ class Engine(Composite):
         if len(intervals) != count:
             problem = f"must be {count} angles, one after each firing, the last back to the first"
             raise InputError(problem, key="firing_intervals", value=len(intervals), remedy="leave them out where even")
-        if min(intervals) < 0 or abs(sum(intervals) - self.cycle) > SAME_ANGLE * count:
+        if min(intervals) < 0:
+            stated = f"{min(intervals) / DEGREE:.6g} deg"
+            remedy = "write the crank angle from each firing to the next; 0 where two fire together"
+            raise InputError("must not be negative", key="firing_intervals", value=stated, remedy=remedy)
+        if abs(sum(intervals) - self.cycle) > SAME_ANGLE * count:
             problem = f"make {sum(intervals) / DEGREE:.6g} deg together, and a cycle has {self.cycle / DEGREE:g}"
             remedy = "check them, and strokes"
             raise InputError(problem, key="firing_intervals", value=len(intervals), remedy=remedy)

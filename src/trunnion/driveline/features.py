@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import Damper, TunedDamper, ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
@@ -146,13 +148,14 @@ def _of_loaded(key: str) -> tuple[str, ...]:
 
 
 CURVE = "torque curve"
+OVER_TORQUE = "stiffness over mean torque"
 FEATURES = (
     Feature(
         "inertia",
         (
             "Disk.inertia", "Disk.outer_diameter", "Disk.inner_diameter", "Disk.thickness", "Disk.density",
             "Disk.material", "Disk.mass", "Disk.radius", "Propeller.entrained_inertia",
-            *(f"{kind}.inertia" for kind in MACHINES),
+            *(f"{kind}.inertia" for kind in (*MACHINES, "Brake")),
         ),
     ),
     Feature(
@@ -161,6 +164,14 @@ FEATURES = (
             *_of_springs("stiffness"), "Shaft.outer_diameter", "Shaft.inner_diameter", "Shaft.length",
             "Shaft.shear_modulus", "Shaft.material",
         ),
+    ),
+    Feature(
+        OVER_TORQUE, _of("Coupling", "torques", "stiffnesses"), _where(Coupling, "stiffnesses", lambda one: one.torques)
+    ),
+    Feature(
+        "temperature of a coupling",
+        _of("Coupling", "temperature", "temperatures", "stiffness_factors", "damping_factors"),
+        _where(Coupling, "temperature", lambda one: one.temperatures),
     ),
     Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
     Feature(DRAGGED, (), _dragged),
@@ -288,6 +299,7 @@ FEATURES = (
     ),
     Feature("load torque", _of_loaded("load_torque")),
     Feature("drive share", _of_loaded("drive_share")),
+    Feature("brake", _of("Brake", "torque"), _kind(Brake)),
     Feature("viscous load", _of_loaded("viscous_load")),
     Feature(
         "quadratic load",
@@ -298,7 +310,7 @@ FEATURES = (
         (
             *_of_loaded("curve"), "TorquePoint.speed", "TorquePoint.torque", "Generator.power",
             *(one for key in (*KLOSS, "gain", "set_speed", "torque_limit") for one in _of_loaded(key)),
-            "Propeller.damping_factor",
+            "Propeller.damping_factor", "Brake.static_torque", "Brake.stribeck_speed",
         ),
         _curves,
     ),
@@ -345,9 +357,14 @@ NOT_FEATURES = {
     "PressureCurve.load": "a label",
     "Shaft.tensile_strength": "a rating, which checks compare with",
     **dict.fromkeys(
-        (f"Coupling.{key}" for key in ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")),
+        (f"Coupling.{key}" for key in (*Coupling.ratings, "highest_temperature")),
         "a rating, which checks compare with",
     ),
+    **dict.fromkeys(
+        ("Coupling.thermal_resistance", "Coupling.ambient_temperature"),
+        "coupling_temperatures finds by them where the temperature settles",
+    ),
+    "Brake.heat_rating": "a rating, which checks compare with",
     "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
     **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",

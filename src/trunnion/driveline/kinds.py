@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from trunnion.driveline.ball_joints import RzeppaJoint
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.differential import Differential
 from trunnion.driveline.elements import ConstantSpeed, Disk, Element, Ratio
@@ -15,7 +17,7 @@ from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint,
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.vehicle import Tyre, Vehicle
@@ -37,6 +39,7 @@ KINDS: dict[str, type[Element]] = {
         Fan,
         Pump,
         Propeller,
+        Brake,
         ViscousDamper,
         TunedDamper,
         CentrifugalPendulum,

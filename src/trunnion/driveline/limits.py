@@ -21,7 +21,9 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.addressed import Addressed, Elements, Where, in_turn
 from trunnion.driveline.belts import Belt
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
@@ -40,7 +42,7 @@ from trunnion.driveline.quantities import (
     shown,
 )
 from trunnion.driveline.record import listed, one_of
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError
@@ -61,7 +63,7 @@ SPRING_KINDS: tuple[type[Element], ...] = (
     Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, CentrifugalPendulum, Belt, Tyre,
 )  # fmt: skip
 """Elements that carry a torque, meshes aside."""
-_TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller)
+_TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller, Brake)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
     "max_torque": (*SPRING_KINDS, GearPair),
     "vibratory_torque": (*SPRING_KINDS, GearPair),

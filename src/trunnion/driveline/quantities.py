@@ -89,7 +89,12 @@ VELOCITY = QuantityKind("velocity", "m/s", "80 km/h", (("km/h", 1 / 3.6, 0.0),))
 POWER = QuantityKind("power", "W", "300 W", (("kW", 1e3, 1e3), ("W", 1.0, 0.0)))
 ACCELERATION = QuantityKind("angular acceleration", "rad/s^2", "300 rad/s^2")
 TIME = QuantityKind("time", "s", "0.3 s", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0)))
+TEMPERATURE = QuantityKind("temperature", "K", "60 degC")
+THERMAL_RESISTANCE = QuantityKind("thermal resistance", "K/W", "0.15 K/W")
 RATIO = QuantityKind("ratio", "1", "0.02")
+FREEZING = 273.15
+"""0 °C in kelvin; the only unit whose zero is not that of the SI unit."""
+CELSIUS = "degC"
 KINDS = (
     ANGLE,
     SPEED,
@@ -112,6 +117,8 @@ KINDS = (
     POWER,
     ACCELERATION,
     TIME,
+    TEMPERATURE,
+    THERMAL_RESISTANCE,
     RATIO,
 )
 
@@ -195,6 +202,8 @@ def _parse_text(text: str, kind: QuantityKind) -> float:
     for spelling, plain in _SPELLINGS.items():
         unit = unit.replace(spelling, plain)
     unit = re.sub(r"(?<=[a-z])(?=-?[0-9])", "^", unit)  # kg m2, min-1
+    if kind is TEMPERATURE and unit == CELSIUS:
+        return float(Decimal(number) + Decimal(str(FREEZING)))
     try:
         return _scaled(number, _factor(unit, kind))
     except InputError as error:
@@ -278,6 +287,9 @@ def written(value: float, kind: QuantityKind, unit: str | None = None) -> float 
 
     `unit` prefers one of the units of `kind` over the usual choice.
     """
+    if kind is TEMPERATURE:
+        text = f"{value - FREEZING:.10g} {CELSIUS}"
+        return text if _is_number(text) and parse(text, kind) == value else value
     symbol, size = eye_unit(value, kind, unit)
     if size != 1.0:
         for digits in (12, 15):
@@ -287,14 +299,23 @@ def written(value: float, kind: QuantityKind, unit: str | None = None) -> float 
     return value
 
 
+def _is_number(text: str) -> bool:
+    """Whether a text begins with a number as files write them."""
+    return _NUMBER.fullmatch(text.partition(" ")[0]) is not None
+
+
 def shown(value: float, kind: QuantityKind, unit: str | None = None, digits: int = 6) -> str:
     """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
+    if kind is TEMPERATURE:
+        return f"{_plain(value - FREEZING, digits)} °C"
     symbol, size = eye_unit(value, kind, unit)
     return _plain(value / size, digits) + ("" if kind is RATIO else f" {symbol}")
 
 
 def against(value: float, limit: float, kind: QuantityKind, digits: int = 4) -> str:
     """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
+    if kind is TEMPERATURE:
+        return f"{shown(value, kind, digits=digits)} against {shown(limit, kind, digits=digits)}"
     small = min(abs(value), abs(limit))
     symbol, size = eye_unit(small if small > SAME_UNIT * abs(limit) else limit, kind)
     left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
@@ -380,6 +401,8 @@ if TYPE_CHECKING:
     Power: TypeAlias = Stated[float, float | str]
     Acceleration: TypeAlias = Stated[float, float | str]
     Time: TypeAlias = Stated[float, float | str]
+    Temperature: TypeAlias = Stated[float, float | str]
+    ThermalResistance: TypeAlias = Stated[float, float | str]
     Dimensionless: TypeAlias = Stated[float, float | str]
 
     Of = TypeVar("Of")
@@ -421,6 +444,8 @@ else:
     Power = Annotated[float, Quantity(POWER)]
     Acceleration = Annotated[float, Quantity(ACCELERATION)]
     Time = Annotated[float, Quantity(TIME)]
+    Temperature = Annotated[float, Quantity(TEMPERATURE)]
+    ThermalResistance = Annotated[float, Quantity(THERMAL_RESISTANCE)]
     Dimensionless = Annotated[float, Quantity(RATIO)]
 
     class _Row:

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ValidationError
 
 from trunnion.errors import InputError, short
 
-MOST_WORDS = 20
+MOST_WORDS = 16
 """Most known words that a remedy lists."""
 
 

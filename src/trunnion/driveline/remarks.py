@@ -13,9 +13,10 @@ from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import ConstantSpeed, Rotor
 from trunnion.driveline.machines import ElectricMachine
 from trunnion.driveline.parts import Dragged, Sprung
-from trunnion.driveline.quantities import FREQUENCY, shown
+from trunnion.driveline.quantities import FREQUENCY, LENGTH, shown
 from trunnion.driveline.shafts import Shaft, SpringElement
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.driveline.vehicle import Tyre, Vehicle
 
 HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
 DRAGGED, LAG = "damper without a spring", "lag of a motor"
@@ -90,6 +91,28 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
                 f"{name}: its torque lags above {corner}, as forced responses of straight lines have it; elsewhere its "
                 "slope is taken as quasi-static, which holds well below that",
             )
+
+    for name, tyre, vehicle in _rolling(line):
+        if tyre.radius is not None and abs(tyre.radius - vehicle.wheel_radius) > ALIKE * vehicle.wheel_radius:
+            ratio = vehicle.wheel_radius / tyre.radius
+            own, other = shown(tyre.radius, LENGTH), shown(vehicle.wheel_radius, LENGTH)
+            yield (
+                DRAGGED,
+                f"{name}.radius: is {own} beside a wheel_radius of {other}; it turns as fast as all others, with no "
+                f"wind-up; for a wheel of another size write {other} and Ratio(ratio={ratio:.6g}) in front of the tyre",
+            )
+
+
+def _rolling(line: ElementChain) -> Iterator[tuple[str, Tyre, Vehicle]]:
+    """Every tyre and the vehicle that it carries."""
+    for i, (name, tyre) in enumerate(zip(line.names, line.elements, strict=True)):
+        if isinstance(tyre, Tyre):
+            behind = [k for k, parent in enumerate(line.parents) if parent == i]
+            places = [line.names.index(tyre.to)] if tyre.to in line.names else behind
+            for k in places:
+                vehicle = line.elements[k]
+                if isinstance(vehicle, Vehicle):
+                    yield name, tyre, vehicle
 
 
 def _slip_clutch_before(line: ElementChain, name: str) -> str:

@@ -103,6 +103,10 @@ RULES = {
         ),
         NamedRule("gear-hammer", "the teeth of a mesh stay in contact", "mechanics"),
         NamedRule("din-740", "ratings that a `Coupling` states", "DIN 740-2 in form"),
+        NamedRule(
+            "coupling-temperature", "a coupling settles below the temperature that it states", "the maker's sheet"
+        ),
+        NamedRule("brake-heat", "the friction power that a brake states as its rating", "the maker's sheet"),
         NamedRule("damper-heat", "the heat that a damper states as its rating", "the maker's sheet"),
         NamedRule("pendulum-travel", "the travel that a centrifugal pendulum states as its stop", "the file"),
         NamedRule("slip-clutch", "a slip clutch sticks: its torque stays below its capacity", "mechanics"),

@@ -64,6 +64,7 @@ _RULES: dict[str, dict[str, Any]] = {
             "clamping_shares": ["clamping_times"],
         }
     },
+    "Brake": {"dependentRequired": {"stribeck_speed": ["static_torque"]}},
     "CentrifugalPendulum": {"oneOf": [{"required": ["order"]}, {"required": ["length"]}]},
     "Disk": {
         "oneOf": [{"required": ["inertia"]}, _geometry(_SOLID, "density"), {"required": _ROLLING}],

@@ -1,9 +1,8 @@
-"""Torsional springs with one stiffness: shafts, which may be tubes with inertia, and elastic couplings."""
+"""Torsional springs with one stiffness: shafts, which may be tubes with inertia, and what elastic couplings share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import pi
 from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
@@ -21,10 +20,8 @@ from trunnion.driveline.quantities import (
     Frequency,
     Length,
     Maybe,
-    Power,
     Pressure,
     Stiffness,
-    Torque,
     optional,
 )
 from trunnion.driveline.record import Name
@@ -103,7 +100,7 @@ class SpringElement(Elastic):
     def damping_coefficient(self) -> float:
         """c [N m s/rad], as stated or from the loss factor at its frequency; 0 where that holds at any frequency."""
         if self.loss is None or self.loss_factor_frequency is None:
-            return self.damping
+            return float(self.damping_of(lambda key: getattr(self, key)))
         return self.loss * self.torsional_stiffness / self.loss_factor_frequency
 
     @property
@@ -199,55 +196,3 @@ class Shaft(SpringElement):
             return 0.0
         assert self.outer_diameter and self.length and self.inner_diameter is not None
         return tube_inertia(self.outer_diameter, self.inner_diameter, self.length, self.density)
-
-
-class Coupling(SpringElement):
-    """An elastic coupling as its maker lists it: dynamic stiffness, relative damping, ratings; no inertia of its own.
-
-    Parameters
-    ----------
-    stiffness : dynamic torsional stiffness [N m/rad] at the load it runs at.
-    relative_damping : ψ, energy lost per cycle over the elastic energy at its largest twist; η = ψ/2π.
-    loss_factor_frequency : at which ψ holds; without it at all frequencies, as rubber's nearly does (see ``Shaft``).
-    damping, loss_factor : instead of ψ.
-    nominal_torque : T_KN [N m], carried continuously.
-    maximum_torque : T_Kmax [N m], carried briefly.
-    vibratory_torque : T_KW [N m], amplitude carried continuously at 10 Hz.
-    heat_rating : P_KV [W], damping heat carried continuously.
-    fork_offset : as of a ``Shaft``.
-    to : as of a ``Shaft``.
-
-    The ratings change no motion; checks compare with them.
-
-    >>> coupling = Coupling(stiffness="35 kN*m/rad", relative_damping=1.13, nominal_torque="10 kN*m")
-    >>> round(coupling.loss, 4)
-    0.1798
-    """
-
-    example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'
-    ratings: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
-    idle: ClassVar[tuple[str, ...]] = ratings
-
-    relative_damping: Maybe[Dimensionless] = optional(default=None, description="loss per cycle over elastic energy")
-    nominal_torque: Maybe[Torque] = optional(default=None, description="rating, carried continuously (T_KN)")
-    maximum_torque: Maybe[Torque] = optional(default=None, description="rating, carried briefly (T_Kmax)")
-    vibratory_torque: Maybe[Torque] = optional(
-        default=None, description="rating, amplitude carried continuously at 10 Hz (T_KW)"
-    )
-    heat_rating: Maybe[Power] = optional(default=None, description="rating, damping heat carried continuously (P_KV)")
-
-    @model_validator(mode="after")
-    def _consistent(self) -> Self:
-        if self.stiffness is None:
-            raise InputError("is missing", key="stiffness", remedy=f"write {self.example}")
-        not_negative(self, "relative_damping")
-        positive(self, *self.idle)
-        if self.relative_damping is not None and self.loss_factor is not None:
-            value, remedy = self.relative_damping, "leave one of the two out; the loss factor is ψ/2π"
-            raise InputError("stands beside loss_factor", key="relative_damping", value=value, remedy=remedy)
-        return self
-
-    @property
-    def loss(self) -> float | None:
-        """η = ψ/2π, or the loss factor as stated."""
-        return self.loss_factor if self.relative_damping is None else self.relative_damping / (2 * pi)

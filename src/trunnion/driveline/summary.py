@@ -46,6 +46,9 @@ def _numbers(element: Element) -> list[str]:
         kind = element.quantity_of(key)
         if key in drawn or key in ("name", "after"):
             continue
+        if key == "sheet":
+            parts.append(f"from {value.component}")
+            continue
         if key in _LISTS:
             count = len(value) if len(value) > 1 or key != "excitation" else "one"
             parts.append(f"{key.replace('_', ' ')} of {count} {_LISTS[key]}{'s' if len(value) > 1 else ''}")
@@ -57,7 +60,7 @@ def _numbers(element: Element) -> list[str]:
             parts.append(f"{key.replace('_', ' ')} {', '.join(shown(v, kind) if kind else str(v) for v in value)}")
             continue
         number = shown(value, kind) if kind else value
-        if key == "loss_factor_frequency":
+        if key == "loss_factor_frequency" and "loss_factor" in element.stated:
             parts[-1] += f" at {number}"
         else:
             parts.append(f"{key.replace('_', ' ')} {number}")

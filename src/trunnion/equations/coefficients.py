@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.parameters import PackedLine, pack
@@ -24,6 +25,7 @@ from trunnion.driveline.pendulums import CentrifugalPendulum, Swinging
 from trunnion.driveline.shafts import Elastic, SpringElement
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
+from trunnion.equations.coupling_tables import table_stiffness
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import mean_load, mean_loads, own_load, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
@@ -209,12 +211,35 @@ def _joint_law(assembly: Assembly, table: Array, place: int) -> JointLaw:
     return element.law(lambda key: table[:, assembly.packed.column(place, key), None])
 
 
-def shaft_stiffness(assembly: Assembly, table: Array, element: int, number: int = 0) -> Array:
-    """Torsional stiffness [N m/rad] of one spring, by its ``number`` in the element; with stages, of its stiffest."""
+def shaft_stiffness(
+    assembly: Assembly, table: Array, element: int, number: int = 0, torque: Array | None = None
+) -> Array:
+    """Torsional stiffness [N m/rad] of one spring, by its ``number`` in the element; with stages, of its stiffest.
+
+    ``torque`` : mean one that it carries (case,) [N m], which the stiffness of a coupling may follow.
+    """
     shaft = assembly.line.elements[element]
+    if isinstance(shaft, Coupling):
+        carried = np.zeros(len(table)) if torque is None else torque
+        if shaft.torques and np.isnan(carried).any():
+            carried = _as_it_operates(assembly, table, element)
+        return table_stiffness(
+            shaft, assembly.line.names[element], lambda key: table[:, assembly.packed.column(element, key)], carried
+        )
     if has_stages(shaft):
         return stage_law(assembly.line, element, assembly.packed.column, table).slopes.max(axis=1)
     return _link(assembly, table, element, number)[0]
+
+
+def _as_it_operates(assembly: Assembly, table: Array, element: int) -> Array:
+    """Mean torque (case,) [N m] of the spring of an element, as the line operates where no speed is asked of: at its
+    speed, or the highest of its range."""
+    operation, speeds = assembly.line.operation, table.copy()
+    stated = None if operation is None else operation.speed or (operation.speed_range or (None, None))[1]
+    if stated is not None:
+        speeds[:, 0] = np.where(np.isfinite(table[:, 0]), table[:, 0], stated)
+    own = next(e for e, one in enumerate(assembly.topology.compliances) if element in one.shafts)
+    return np.asarray(assembly.static_torque(speeds)[:, own])
 
 
 def _link(assembly: Assembly, table: Array, element: int, number: int) -> tuple[Array, Array]:
@@ -262,6 +287,7 @@ def _damping_and_loss(
 ) -> tuple[Array, Array]:
     """Damping [N m s/rad] of one shaft or mesh, and ηk [N m/rad] of a loss factor that holds at all frequencies."""
     column, none, one = assembly.packed.column, np.zeros(len(table)), assembly.line.elements[element]
+    heated = one.damping_factor(lambda key: table[:, column(element, key)]) if isinstance(one, Coupling) else 1.0
     if isinstance(one, Elastic) and not isinstance(one, SpringElement):
         return _link(assembly, table, element, number)[1], none
     if assembly.line.damping_ratio is not None:
@@ -271,7 +297,8 @@ def _damping_and_loss(
     elif (stated := column(element, "relative_damping")) >= 0:
         lost = table[:, stated] / (2 * np.pi) * stiffness
     else:
-        return spring_damping(assembly.line.elements[element], element, column, table), none
+        return spring_damping(assembly.line.elements[element], element, column, table) * heated, none
+    lost = lost * heated
     frequency = column(element, "loss_factor_frequency")
     return (lost / table[:, frequency], none) if frequency >= 0 else (none, lost)
 
@@ -326,7 +353,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     shift = np.zeros((len(table), len(topo.stations)))
     for e, compliance in enumerate(topo.compliances):
         shafts = compliance.shafts
-        each = [shaft_stiffness(assembly, table, i, compliance.number) for i in shafts]
+        each = [shaft_stiffness(assembly, table, i, compliance.number, static[:, e]) for i in shafts]
         stiffness[:, e] = _stiffness(each)
         if damped:
             parts = [
@@ -401,6 +428,8 @@ def _sharing(assembly: Assembly, table: Array) -> tuple[Array, Array]:
     stiffness, damping = np.zeros((2, len(table), len(topo.compliances)))
     for e, compliance in enumerate(topo.compliances):
         element = assembly.line.elements[compliance.shafts[0]]
+        if topo.in_loops[e]:
+            _refuse_tables_in_loops(assembly, compliance)
         linear = len(getattr(element, "stiffnesses", ())) <= 1 and not getattr(element, "total_backlash", 0.0)
         if has_stages(element) and not linear and topo.in_loops[e]:
             raise InputError(
@@ -415,6 +444,15 @@ def _sharing(assembly: Assembly, table: Array) -> tuple[Array, Array]:
             if isinstance(element, Tyre):
                 damping[:, e] *= _travels(assembly, table, compliance)
     return stiffness, damping
+
+
+def _refuse_tables_in_loops(assembly: Assembly, compliance: Compliance) -> None:
+    for i in compliance.shafts:
+        if isinstance(one := assembly.line.elements[i], Coupling) and one.torques:
+            raise InputError(
+                "follow the mean torque, and it lies in a loop, whose springs share torque by their stiffness",
+                element=assembly.line.names[i], key="stiffnesses", remedy="write stiffness, at the torque it runs at",
+            )  # fmt: skip
 
 
 def _travels(assembly: Assembly, table: Array, compliance: Compliance) -> Array:

@@ -20,6 +20,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonics
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
@@ -211,7 +212,9 @@ class LineSystem(Portable):
         if self.leaves and topo.free:
             stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
         if on.acceleration:
-            refuse_curves(topo, "use tn.order_response at several speeds, or tn.simulate at one")
+            elsewhere = "use tn.order_response at several speeds, or tn.simulate at one"
+            refuse_curves(topo, elsewhere)
+            refuse_torque_tables(self.assembly.line, elsewhere)
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense

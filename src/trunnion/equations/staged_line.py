@@ -27,6 +27,7 @@ from trunnion.driveline.elements import Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble, joint_laws
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import refuse_second_speed
@@ -323,6 +324,7 @@ def _refuse_inexact(assembly: Assembly) -> None:
     refuse_dragged(assembly)
     refuse_slip_clutches(line)
     refuse_pendulums(line)
+    refuse_torque_tables(line, elsewhere)
     for element, name in zip(line.elements, line.names, strict=True):
         found: tuple[str, str] | None = None
         if name in nonuniform:

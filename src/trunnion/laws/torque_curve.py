@@ -274,6 +274,43 @@ class Opposite:
 
 
 @dataclass(frozen=True)
+class StribeckCurve:
+    """Dry friction that falls with the speed of slip: sign(ω) (T_c + (T_s − T_c) e^(−|ω|/ω_s)).
+
+    sliding T_c and static T_s [N m], falling ω_s [rad/s]: numbers or arrays.
+
+    >>> brake = StribeckCurve(sliding=200.0, static=260.0, falling=2.0)
+    >>> print(round(float(brake.value(2.0)), 3), round(float(brake.slope(2.0)), 3))
+    222.073 -11.036
+    """
+
+    sliding: Any
+    static: Any
+    falling: Any
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """Everywhere."""
+        return -np.inf, np.inf
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """It turns its sign with the speed."""
+        return (0.0,)
+
+    def _falls(self, speed: Any) -> Any:
+        return (self.static - self.sliding) * np.exp(-np.abs(speed) / self.falling)
+
+    def value(self, speed: Any) -> Array:
+        """Torque [N m]."""
+        return np.asarray(np.where(np.asarray(speed) < 0, -1.0, 1.0) * (self.sliding + self._falls(speed)))
+
+    def slope(self, speed: Any) -> Array:
+        """−(T_s − T_c)/ω_s e^(−|ω|/ω_s) [N m s/rad]."""
+        return np.asarray(-self._falls(speed) / self.falling)
+
+
+@dataclass(frozen=True)
 class FlowCurve:
     """A torque T by the square of the speed whose slope is ``factor`` T/ω and not 2 T/ω: the flow does not follow.
 

@@ -43,7 +43,7 @@ LENGTH = {
     "PiecewiseShaft": 1.25, "Planetary": 0.9, "ViscousDamper": 0.7, "DualMassFlywheel": 1.25, "Belt": 0.9,
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
     "SlipClutch": 0.7, "CentrifugalPendulum": 0.7, "Motor": 0.95, "Generator": 0.95,
-    "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8,
+    "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8, "Brake": 0.7,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 THROW = 0.5
@@ -272,6 +272,16 @@ def _blades(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     _box(axes, place.part(-0.17, 0.17), 0.2, fc="#8fa9b8", zorder=4)
 
 
+def _brake(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """A disk between two pads that hang from above."""
+    _bar(axes, place.start, place.end)
+    _box(axes, place.part(-0.05, 0.05), 0.62, fc="#9db7c9")
+    tilt = np.rad2deg(place.direction)
+    for side in (-1, 1):
+        pad = place.middle + 0.14 * side * _along(place.direction) + 0.42 * _across(place.direction)
+        axes.add_patch(Ellipse(tuple(pad), 0.16, 0.4, angle=tilt, fc="#e0a458", ec=INK, lw=1.1, zorder=4))
+
+
 def _pump(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """The circle of a pump with its triangle."""
     _bar(axes, place.start, place.end)
@@ -438,6 +448,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "Fan": _blades,
     "Propeller": _blades,
     "Pump": _pump,
+    "Brake": _brake,
 }
 
 

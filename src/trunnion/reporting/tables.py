@@ -17,6 +17,7 @@ from trunnion.driveline.engine import Engine
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
@@ -79,6 +80,10 @@ def _numbers(element: Element) -> list[str]:
     parts = [firing(element)] if isinstance(element, Engine) else []
     for key, value in element.stated.items():
         if key in ("name", "after", "firing_order"):
+            continue
+        if isinstance(value, Sheet):
+            departures = ", ".join(f"{k.replace('_', ' ')} ({one} there)" for k, one in element.departures.items())
+            parts.append(f"from the sheet {value.words}" + (f", but for {departures}" if departures else ""))
             continue
         kind = element.quantity_of(key)
         if isinstance(value, tuple):

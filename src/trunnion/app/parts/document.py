@@ -361,6 +361,7 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Fan": {"inertia": "3 kg*m^2", "rated_power": "30 kW", "rated_speed": "1480 rpm"},
     "Pump": {"inertia": "0.3 kg*m^2", "rated_power": "30 kW", "rated_speed": "1480 rpm"},
     "Propeller": {"inertia": "60 kg*m^2", "rated_power": "900 kW", "rated_speed": "300 rpm"},
+    "Brake": {"inertia": "0.3 kg*m^2", "torque": "200 N*m"},
     "HookeJoint": {"angle": "12 deg"},
     "IdealJoint": {"angle": "12 deg"},
     "TripodJoint": {"angle": "8 deg", "radius": "30 mm", "length": "0.5 m"},

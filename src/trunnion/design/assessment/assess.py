@@ -7,8 +7,10 @@ from collections.abc import Iterator
 
 from trunnion.design.assessment.assessment_input import WHOLE, AssessmentInput, LoadCaseResponse, SearchEffort, cases_of
 from trunnion.design.assessment.bending import bending
+from trunnion.design.assessment.brake_heat import brake_heat
 from trunnion.design.assessment.check import Check, in_order, worst
 from trunnion.design.assessment.compared import uncovered
+from trunnion.design.assessment.coupling_heat import coupling_heat
 from trunnion.design.assessment.couplings import coupling_ratings
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.fatigue_life import fatigue_life
@@ -32,7 +34,7 @@ from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
-OF_RESPONSE = (stated_limits, coupling_ratings, ship_shafts, gear_hammer, slip_clutches)
+OF_RESPONSE = (stated_limits, coupling_ratings, coupling_heat, brake_heat, ship_shafts, gear_hammer, slip_clutches)
 
 
 @keeps_time

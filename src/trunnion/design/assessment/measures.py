@@ -180,7 +180,8 @@ def _share(assembly: Assembly, table: Array, element: str, compliance: int) -> A
     """Share (row,) of the twist of shafts in series that falls on one of them: the softest twists most."""
     names = assembly.line.names
     shafts = assembly.topology.compliances[compliance].shafts
-    soft = {names[i]: 1 / shaft_stiffness(assembly, table, i) for i in shafts}
+    torque = assembly.static_torque(table)[:, compliance]
+    soft = {names[i]: 1 / shaft_stiffness(assembly, table, i, torque=torque) for i in shafts}
     return np.asarray(soft[element] / sum(soft.values()))
 
 

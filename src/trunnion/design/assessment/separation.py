@@ -45,6 +45,7 @@ def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Che
         yield Check(ALL, Status.NOT_APPLICABLE, RULE, "nothing excites the line by orders")
         return
     clear: list[tuple[float, str, float]] = []
+    without: str | None = None
     frequency = case.modes.imag
     for m in range(frequency.shape[1]):
         near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
@@ -59,7 +60,8 @@ def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Che
         what = "meets" if met else f"comes within {100 * near:.2g} % of"
         here = case.modes[at, m]
         gain = abs(here) / max(-2 * here.real, 1e-300)
-        without = few(unlimited(case.assembly))
+        if without is None:
+            without = few(unlimited(case.assembly))
         needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
         said = f"{order_name(*order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
         yield _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))

@@ -27,7 +27,7 @@ from trunnion.design.assessment.separation import separation
 from trunnion.design.sensitivity.differences import slope
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
 from trunnion.design.sensitivity.growth import radius_slope
-from trunnion.design.sensitivity.responses import SpectrumSlope, spectrum_slope
+from trunnion.design.sensitivity.responses import SpectrumSlope, spectrum_slopes
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import ComputationError, InputError
 from trunnion.response.orders.response import response_of_spectrum
@@ -108,6 +108,10 @@ class _Values:
             case.name: set() if case.costly else {check.name for check in of_response(subject, case)}
             for case in subject.cases
         }
+        self.of_modes = {
+            case.name: set() if case.costly else {check.name for check in separation(subject, case)}
+            for case in subject.cases
+        }
         self._seen: defaultdict[tuple[str, float, str, float], dict[str, Array]] = defaultdict(dict)
         self._around: dict[tuple[str, float], tuple[dict[str, SpectrumSlope | None], float]] = {}
 
@@ -117,10 +121,13 @@ class _Values:
 
     def slope(self, case: LoadCaseResponse, speed: float, check: Check, one: Direction) -> tuple[Array, Array] | None:
         """Derivatives of value and margin by shares of the direction's size, and their errors."""
-        around, pace = self._slopes_at(case, speed) if self.exact(case, check) else ({}, 0.0)
+        exact = self.exact(case, check)
+        around, pace = self._slopes_at(case, speed) if exact or check.name in self.of_modes[case.name] else ({}, 0.0)
         if (own := around.get(one.label)) is None:
             return slope(partial(self.at, case, speed, check, one))
-        return own.slope(partial(self.about, case, speed, check, one, own), pace)
+        beside = partial(self.about, case, speed, check, one, own)
+        # Separation asks the response for no more than which orders count.
+        return own.slope(beside, pace) if exact else slope(beside)
 
     def about(
         self, case: LoadCaseResponse, speed: float, check: Check, one: Direction, around: SpectrumSlope, share: float
@@ -133,7 +140,8 @@ class _Values:
         if key not in self._seen:
             subject, own = _of(self.subject, case, line)
             own = replace(own, low=speed, high=speed, given=(speed,), known=around.response(own.assembly, share))
-            self._seen[key] = _read(of_response(replace(subject, cases=(own,)), own))
+            one_case = replace(subject, cases=(own,))
+            self._seen[key] = _read((*of_response(one_case, own), *separation(one_case, own)))
         return self._seen[key].get(check.name, np.full(2, np.nan))
 
     def _slopes_at(self, case: LoadCaseResponse, speed: float) -> tuple[dict[str, SpectrumSlope | None], float]:
@@ -141,10 +149,11 @@ class _Values:
         key = case.name, speed
         if key not in self._around:
             near = Neighbourhood(case.assembly)
-            every = {
-                one.label: spectrum_slope(near, speed, _under_load(case, one)) if np.isfinite(speed) else None
-                for one in self.directions
-            }
+            labels = [one.label for one in self.directions]
+            every: dict[str, SpectrumSlope | None] = dict.fromkeys(labels)
+            if np.isfinite(speed):
+                under = [_under_load(case, one) for one in self.directions]
+                every = dict(zip(labels, spectrum_slopes(near, speed, under), strict=True))
             self._around[key] = every, max((one.pace for one in every.values() if one is not None), default=0.0)
         return self._around[key]
 

@@ -13,21 +13,31 @@ different modes are equally large, the larger of them has none: both are refused
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 from trunnion.design.sensitivity.differences import CENTRAL, SMOOTH_STEP, central
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.equations.linear import line_matrices, over_mass, periodic_linear_system, rigid_motions
+from trunnion.equations.steady_base import require_steady_base
+from trunnion.equations.topology import require_period
+from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
+from trunnion.floquet.propagation.tree_mode_motion import mode_motion
+from trunnion.floquet.propagation.tree_modes import floquet_modes
+from trunnion.floquet.stability.stability import LONG
+from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.spectrum import spectral_radius
+from trunnion.waiting import keep_time
 
 TOLERANCE = 1e-12
 COALESCE = 1e-5
 """Relative error of a derivative by that of the monodromy matrix, from which two multipliers count as one."""
+MOST_NUMBERS = 4_000_000
+"""Entries of the matrices of lines beside one that are made together."""
 EQUAL = 1e-9
 """Relative distance of two radii that count as equal."""
 
@@ -60,25 +70,66 @@ def radius_slope(
     InputError : no such line; see ``periodic_linear_system``.
     ComputationError : the integration did not settle.
     """
+    every = [(one, True) for one in directions] + [(one, False) for one in axes]
+    judged = _by_modes(near, row) or _by_the_period(near, row)
+    none, radius = np.full(len(every), np.nan), judged.radius
+    if not len(judged.multiplier):
+        return RadiusSlope(1.0, judged.period, none, none, "the line can only turn as a whole")
+    if isinstance(judged.motion, str):
+        return RadiusSlope(radius, judged.period, none, none, judged.motion)
+    slope, error = np.zeros((2, len(every)))
+    for d, change in enumerate(_changes(near, row, every, judged)):
+        whole, half = (float((part.mean() * judged.period).real) for part in (change, change[::2]))
+        slope[d], error[d] = whole, abs(whole - half) + judged.relative * float(np.abs(change).mean() * judged.period)
+    return RadiusSlope(radius, judged.period, slope, error)
+
+
+@dataclass(frozen=True)
+class _CriticalMode:
+    """multiplier: all that are judged; radius: of the largest; relative: error of a derivative by that of Z;
+    motion: of the largest, or why it has no derivative."""
+
+    multiplier: Complex
+    radius: float
+    period: float
+    relative: float
+    motion: ModeMotion | str
+
+
+def _by_modes(near: Neighbourhood, row: Array) -> _CriticalMode | None:
+    """Of a long line, from Hill's blocks along its tree; None where these do not tell all modes."""
+    topo = near.assembly.topology
+    if topo.size < LONG or topo.graph:
+        return None
+    co, turns = near.assembly.coefficients(row), require_period(near.assembly.line, topo)
+    require_steady_base(near.assembly, row)
+    modes = floquet_modes(topo, co, turns)
+    if modes is None:
+        return None
+    values, period = modes.multiplier, 2 * np.pi * float(turns)
+    radius, critical = float(spectral_radius(values, modes.error)[0]), complex(values[0])
+    if _equally_large(values, critical, radius):
+        return _CriticalMode(values, radius, period, np.inf, _equal_words(radius))
+    distance = float(np.sort(np.abs(values - critical))[1])
+    relative = 2 * float(modes.error[0]) / max(distance, 1e-300)
+    motion = mode_motion(topo, co, turns, complex(modes.exponent[0]))
+    if motion is None or not relative < COALESCE:
+        return _CriticalMode(values, radius, period, relative, _coalescing_words(critical, radius))
+    return _CriticalMode(values, radius, period, relative, motion)
+
+
+def _by_the_period(near: Neighbourhood, row: Array) -> _CriticalMode:
+    """From the matrices of a whole period."""
     assembly = near.assembly
     system = periodic_linear_system(assembly, row)
     run = propagated(system, TOLERANCE)
-    co = assembly.coefficients(row)
-    values, bounds = judged_multipliers(run, rigid_motions(assembly.topology, co))
-    every = [(one, True) for one in directions] + [(one, False) for one in axes]
-    none = np.full(len(every), np.nan)
+    values, bounds = judged_multipliers(run, rigid_motions(assembly.topology, assembly.coefficients(row)))
     if not len(values):
-        return RadiusSlope(1.0, system.period, none, none, "the line can only turn as a whole")
+        return _CriticalMode(values, 1.0, system.period, np.inf, "")
     radius = float(spectral_radius(values, bounds)[0])
     critical = complex(values[int(np.argmax(np.abs(values)))])
-
-    def without(why: str) -> RadiusSlope:
-        return RadiusSlope(radius, system.period, none, none, why)
-
-    others = np.abs(values - critical) > 0
-    others &= np.abs(values - critical.conjugate()) > 1e-12 * radius
-    if np.any(np.abs(values[others]) > radius * (1 - EQUAL)):
-        return without(f"two multipliers are equally large ({radius:.6g}), so the larger of them has none")
+    if _equally_large(values, critical, radius):
+        return _CriticalMode(values, radius, system.period, np.inf, _equal_words(radius))
     motion = floquet_mode(system, run, critical)
     spread = np.linalg.eigvals(run.scaled_monodromy)
     distance = np.sort(np.abs(spread - critical))[1] if len(spread) > 1 else np.inf
@@ -88,20 +139,68 @@ def radius_slope(
         condition = float(np.linalg.norm(motion.right[0] / run.scale) * np.linalg.norm(motion.left[0] * run.scale))
     relative = 2 * uncertain * condition / max(float(distance), 1e-300)
     if motion is None or not relative < COALESCE:
-        words = f"{critical.real:.6g}" if abs(critical.imag) < 1e-3 * radius else f"{critical:.6g}"
-        return without(f"two multipliers coalesce at {words}")
-    n, count = system.size, len(motion.right)
-    tau = system.period * np.arange(count) / count
+        return _CriticalMode(values, radius, system.period, relative, _coalescing_words(critical, radius))
+    return _CriticalMode(values, radius, system.period, relative, motion)
+
+
+def _equally_large(values: Complex, critical: complex, radius: float) -> bool:
+    others = np.abs(values - critical) > 0
+    others &= np.abs(values - critical.conjugate()) > 1e-12 * radius
+    return bool(np.any(np.abs(values[others]) > radius * (1 - EQUAL)))
+
+
+def _equal_words(radius: float) -> str:
+    return f"two multipliers are equally large ({radius:.6g}), so the larger of them has none"
+
+
+def _coalescing_words(critical: complex, radius: float) -> str:
+    words = f"{critical.real:.6g}" if abs(critical.imag) < 1e-3 * radius else f"{critical:.6g}"
+    return f"two multipliers coalesce at {words}"
+
+
+def _changes(
+    near: Neighbourhood, row: Array, every: Sequence[tuple[Direction, bool]], judged: _CriticalMode
+) -> Iterator[Complex]:
+    """l(τ) ∂A/∂p r(τ) (time,) along every direction."""
+    motion = judged.motion
+    assert isinstance(motion, ModeMotion)
+    n, count = near.assembly.topology.size, len(motion.right)
+    tau = judged.period * np.arange(count) / count
+    whole = n < LONG or near.assembly.topology.graph
+    look, together = (_whole, 1) if whole else (_along_tree, max(1, MOST_NUMBERS // (len(CENTRAL) * count * n)))
+    for begin in range(0, len(every), together):
+        some = every[begin : begin + together]
+        keep_time()
+        table = np.concatenate([near.rows(row, one, SMOOTH_STEP * CENTRAL, follow=follow) for one, follow in some])
+        beside = look(near, table, tau, motion).reshape(len(some), len(CENTRAL), count)
+        for (one, _), values in zip(some, beside, strict=True):
+            yield -central(values, SMOOTH_STEP * one.size)
+
+
+def _whole(near: Neighbourhood, table: Array, tau: Array, motion: ModeMotion) -> Complex:
+    """l M⁻¹(K x/Ω² + C x′/Ω) (case, time) of lines beside one."""
+    stiffness, damping = _per_mass(near, table, tau)
+    n = stiffness.shape[-1]
     place, rate, adjoint = motion.right[:, :n], motion.right[:, n:], motion.left[:, n:]
-    slope, error = np.zeros((2, len(every)))
-    for d, (one, follow) in enumerate(every):
-        table = near.rows(row, one, SMOOTH_STEP * CENTRAL, follow=follow)
-        stiffness, damping = _per_mass(near, table, tau)
-        change = -np.einsum("ti,tij,tj->t", adjoint, central(stiffness, SMOOTH_STEP * one.size), place)
-        change -= np.einsum("ti,tij,tj->t", adjoint, central(damping, SMOOTH_STEP * one.size), rate)
-        whole, half = (float((part.mean() * system.period).real) for part in (change, change[::2]))
-        slope[d], error[d] = whole, abs(whole - half) + relative * float(np.abs(change).mean() * system.period)
-    return RadiusSlope(radius, system.period, slope, error)
+    found: Complex = np.einsum("ti,ctij,tj->ct", adjoint, stiffness, place)
+    return found + np.einsum("ti,ctij,tj->ct", adjoint, damping, rate)
+
+
+def _along_tree(near: Neighbourhood, table: Array, tau: Array, motion: ModeMotion) -> Complex:
+    """The same from the entries of a tree."""
+    topo, co = near.assembly.topology, near.assembly.coefficients(table)
+    m, n = tree_matrices(topo, co, tau), topo.size
+    place, rate, adjoint = (part.T[:, None] for part in (motion.right[:, :n], motion.right[:, n:], motion.left[:, n:]))
+    speed = co.speed[:, None]
+    weight = adjoint / m.mass.own
+    total = np.zeros((len(table), len(tau)), dtype=complex)
+    tied = np.flatnonzero(m.parent >= 0)
+    front = m.parent[tied]
+    for entries, moved in ((m.stiffness, place / speed**2), (m.damping, rate / speed)):
+        total += (weight * entries.own * moved).sum(axis=0)
+        total += (weight[tied] * entries.down[tied] * moved[front]).sum(axis=0)
+        total += (weight[front] * entries.up[tied] * moved[tied]).sum(axis=0)
+    return total
 
 
 def _per_mass(near: Neighbourhood, table: Array, tau: Array) -> tuple[Array, Array]:

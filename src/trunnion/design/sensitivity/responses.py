@@ -8,6 +8,7 @@ then taken of X₀ + X′s, for steps s so small that X changes by ``LINEAR`` of
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -21,10 +22,12 @@ from trunnion.design.sensitivity.directions import Direction, Neighbourhood
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
+from trunnion.floquet.stability.stability import LONG
 from trunnion.response.orders.response import response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 from trunnion.steady.orders.spectrum import order_spectrum
+from trunnion.waiting import keep_time
 
 PARTS = ("amplitude", "base", "mean", "damping", "loss")
 LINEAR = 1e-4
@@ -41,6 +44,8 @@ LINEAR_KEYS = ("damping", "mesh_damping", "impact_damping", "relative_damping", 
 """Numbers in which the equations are linear, so that any step gives their slope; a wide one keeps what little damping
 does to a stiff spring's equations above rounding."""
 WIDE_STEP = 0.25
+MOST_NUMBERS = 1_500
+"""Unknowns of the directions that are solved for together: bounded memory."""
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 """Fourth difference: nothing of smooth parts is left in it, so it shows what rounding does to a slope."""
 
@@ -98,29 +103,56 @@ class SpectrumSlope:
         return found[0], found[1] + rounding + self.noise * np.abs(here)
 
 
-def spectrum_slope(near: Neighbourhood, speed: float, one: Direction) -> SpectrumSlope | None:
-    """How the response at ``speed`` [rad/s] changes along a direction; None where the lines beside it have none: their
-    torques do not balance, or a frequency of excitation moves.
+def spectrum_slopes(
+    near: Neighbourhood, speed: float, directions: Sequence[Direction]
+) -> Iterator[SpectrumSlope | None]:
+    """How the response at ``speed`` [rad/s] changes along each direction; None where the lines beside it have none:
+    their torques do not balance, or a frequency of excitation moves.
     """
     assert not has_periodic_base(near.assembly)
-    row = near.row(speed)
-    keys = {near.assembly.packed.labels[i].rpartition(".")[2] for i in one.columns.index}
-    step = WIDE_STEP if keys <= set(LINEAR_KEYS) else SMOOTH_STEP
-    table = np.concatenate([row, near.rows(row, one, step * CENTRAL)])
-    table[:, 0] = speed
+    size = near.assembly.topology.size
+    together = max(1, MOST_NUMBERS // size) if size >= LONG else 1
+    for begin in range(0, len(directions), together):
+        keep_time()
+        some = directions[begin : begin + together]
+        try:
+            yield from _solved_together(near, speed, some)
+        except InputError:
+            yield from (_alone(near, speed, one) for one in some)
+
+
+def _alone(near: Neighbourhood, speed: float, one: Direction) -> SpectrumSlope | None:
     try:
-        found = order_spectrum(near.assembly, table[:, 0], table=table, linearised=True)
+        return next(_solved_together(near, speed, [one]))
     except InputError:
         return None
+
+
+def _solved_together(near: Neighbourhood, speed: float, directions: Sequence[Direction]) -> Iterator[SpectrumSlope]:
+    """About one response, whose matrices serve all of them."""
+    row, steps = near.row(speed), [_step(near, one) for one in directions]
+    beside = [near.rows(row, one, step * CENTRAL) for one, step in zip(directions, steps, strict=True)]
+    table = np.concatenate([row, *beside])
+    table[:, 0] = speed
+    found = order_spectrum(near.assembly, table[:, 0], table=table, linearised=True)
     parts = {key: getattr(found, key) for key in PARTS}
     whole = {key: np.broadcast_to(part, (len(table), *part.shape[1:])) for key, part in parts.items()}
     first: dict[str, Any] = {key: part[:1] for key, part in whole.items()}
     here = replace(found, speed=found.speed[:1], cut_off=found.cut_off[:1], **first)
-    change = {key: central(part[1:], step)[None] for key, part in whole.items()}
-    rough = {key: np.tensordot(FOURTH, whole[key][[1, 2, 0, 3, 4]], 1)[None] / step for key in ("amplitude", "mean")}
-    around = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
-    # Where the equations are not linear in a number, the fourth difference holds more than rounding.
-    return around if step == WIDE_STEP else replace(around, noise=min(around.noise, ROUNDING * around.pace / step))
+    for d, step in enumerate(steps):
+        rows = 1 + len(CENTRAL) * d + np.arange(len(CENTRAL))
+        own = np.insert(rows, 2, 0)  # in the order of their steps
+        moves = np.any(beside[d] != row)  # a load case may state what the direction would move
+        change = {key: moves * central(part[rows], step)[None] for key, part in whole.items()}
+        rough = {key: np.tensordot(FOURTH, whole[key][own], 1)[None] / step for key in ("amplitude", "mean")}
+        around = SpectrumSlope(here, change, _share(here, rough["amplitude"], rough["mean"]))
+        # Where the equations are not linear in a number, the fourth difference holds more than rounding.
+        yield around if step == WIDE_STEP else replace(around, noise=min(around.noise, ROUNDING * around.pace / step))
+
+
+def _step(near: Neighbourhood, one: Direction) -> float:
+    keys = {near.assembly.packed.labels[i].rpartition(".")[2] for i in one.columns.index}
+    return WIDE_STEP if keys <= set(LINEAR_KEYS) else SMOOTH_STEP
 
 
 def _share(here: OrderSpectrum, amplitude: NDArray[Any], mean: Array) -> float:

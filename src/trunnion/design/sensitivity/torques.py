@@ -14,7 +14,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.design.sensitivity.differences import slope
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
-from trunnion.design.sensitivity.responses import spectrum_slope
+from trunnion.design.sensitivity.responses import spectrum_slopes
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
@@ -39,7 +39,8 @@ def exact_torque_slopes(
     for v, speed in enumerate(speeds.tolist()):
         values = partial(torques, speeds[[v]])
         here[:, v] = values(near.assembly)[:, 0]
-        every = {one.label: spectrum_slope(near, speed, one) for one in directions}
+        labels = [one.label for one in directions]
+        every = dict(zip(labels, spectrum_slopes(near, speed, directions), strict=True))
         pace = max((around.pace for around in every.values() if around is not None), default=0.0)
 
         def look(one: Direction, v=v, values=values, every=every, pace=pace) -> tuple[Array, Array] | None:  # type: ignore[no-untyped-def]

@@ -19,6 +19,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
@@ -348,6 +349,7 @@ def require_provable(assembly: Assembly) -> None:
         )
     require_tree(assembly, "a certificate does")
     refuse_dragged(assembly)
+    refuse_torque_tables(line, remedy, "tables are not enclosed")
     for station in topo.stations:
         if station.link is LinkKind.LOOSE:
             raise InputError(

@@ -27,6 +27,7 @@ from trunnion.floquet.charts.cost_model import compiling_pays, instead_of_compil
 from trunnion.floquet.charts.leading_group import distinguished
 from trunnion.floquet.charts.matrix_interpolation import matrix_patches
 from trunnion.floquet.charts.multiplier_interpolation import corners_of, leading_patches
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import (
     Window,
@@ -183,6 +184,15 @@ class LineFamily(ChartFamily):
         ends = self._coefficients(self.x.values[:1], self.y.values[:1])
         return chain_program(self.assembly.topology, ends, self._by_speed)
 
+    @property
+    def needs_stages(self) -> bool:
+        """Whether its equations have terms that series do not take."""
+        return has_extra(self.program, self.batch(self.x.values[[0, -1]], self.y.values[[0, -1]]))
+
+    def phase(self, x: Array, y: Array) -> float:
+        """Radians of the highest mode over half a period, no less than these, on average of points (x, y)."""
+        return float((self.batch(x, y).frequency * np.sqrt(self.size) * self.period / 2).mean())
+
     def rates(self, x: Array, y: Array) -> LineRates:
         """The equations at points (x, y), each a case."""
         return LineRates.of(self.assembly, self.table(x, y), self.statically_twisted)
@@ -205,7 +215,33 @@ class LineFamily(ChartFamily):
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices in the kernel's units, their errors and ∫ tr(M⁻¹C) dτ."""
         batch = self.batch(x, y)
+        found, error, trace = self._integrated(batch, tolerance, threads)
+        if self.size <= LARGEST_DENSE or self.set_aside:
+            return found, error, trace
+        size = np.sqrt((found**2).sum(axis=(1, 2)) / (2 * self.size))
+        rounding = ROUNDING * batch.frequency * np.sqrt(self.size) * self.period * np.maximum(1.0, size)
+        return found, np.minimum(error, RESERVE * self._share_of_bound * error + rounding), trace
+
+    def _integrated(self, batch: ChainBatch, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
+        """As ``matrices``, with the kernel's own bounds."""
         return chain_monodromy(self.program, batch, self._window(self.program, batch), tolerance, threads)
+
+    @cached_property
+    def _share_of_bound(self) -> float:
+        """The largest share of the kernel's bound that errors reach, at the corners of the axes and between.
+
+        The bound carries every step's error on as if nothing died out. Of long lines, whose fast modes do, it is a
+        thousand times too large and more; so matrices of some points are compared with sharper ones.
+        """
+        places = np.concatenate([[0.0, 0.0, 1.0, 1.0], np.mod(np.sqrt(2) * np.arange(1, BATCH - 3), 1.0)])
+        others = np.concatenate([[0.0, 1.0, 0.0, 1.0], np.mod(np.sqrt(3) * np.arange(1, BATCH - 3), 1.0)])
+        at = (axis.values[0] + share * (axis.values[-1] - axis.values[0])
+              for axis, share in ((self.x, places), (self.y, others)))  # fmt: skip
+        batch = self.batch(*at)
+        rough, bound, _ = self._integrated(batch, COMPARED, 1)
+        sharp = self._integrated(batch, COMPARED / 100, 1)[0]
+        share = np.linalg.norm(rough - sharp, axis=(1, 2)) / bound
+        return float(share.max()) if np.isfinite(share).all() else 1.0
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
@@ -397,8 +433,11 @@ AMPLIFICATION = {1: 1.0, 2: 4.0, 3: 30.0}
 """How much an error of Z can grow in its coefficients (norms of N_k), by number of unknowns."""
 RESOLVED = 20.0
 """Radians to either side of a patch's middle that its nodes resolve, with as many again for what is not a wave."""
-SAMPLED = 0.01
-"""Share of the tolerance that matrices of long lines are integrated to: they are known less well than asked."""
+SAMPLED = 0.25
+"""Share of the tolerance that matrices of long lines are integrated to."""
+COMPARED, RESERVE, ROUNDING = 1e-8, 10.0, 2e-15
+"""Tolerance at which the kernel's bounds of long lines are compared with errors, by what the largest share of a bound
+is multiplied, and rounding per radian of the fastest motion."""
 NODES_FOR_PIXELS, MOST_BYTES = 0.8, 1e9
 """Matrices that may be spent for a pixel of a long line, which costs as much by itself; memory that they may take."""
 FEWEST_SLABS = 3

@@ -41,6 +41,23 @@ def without_groups(size: int, pixels: int, mean_phase: float, longest_phase: flo
     return shown + (min(direct, slabs) if pixels >= fewest_for_slabs else direct)
 
 
+NODES_OF_MATRICES, STAGES = 2000, 4.0
+"""Matrices of the period that a chart of a long line is made of, at most; what each costs more with meshes or loads."""
+MOST_SECONDS = 3600.0
+"""Processor time of a chart of a long line, beyond which it is not begun."""
+
+
+def long_chart_seconds(size: int, pixels: int, phase: float, stages: bool) -> float:
+    """A chart of a long line, each matrix over ``phase`` radians of the highest mode."""
+    node = 0.014 * size**2 * phase * (STAGES if stages else 1.0)
+    return 1e-6 * (min(pixels, NODES_OF_MATRICES) * node + pixels * 750 * (size / 50) ** 3)
+
+
+def long_chart_bytes(size: int, pixels: int) -> float:
+    """What its matrices take while they are integrated."""
+    return 8.0 * (2 * size) ** 2 * (3 * BATCH + min(pixels, 128))
+
+
 COMPILING = 12.0
 """Seconds that compiling a line's kernels takes."""
 spent_in_numpy = 0.0

@@ -18,6 +18,7 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.first_order import LARGEST_DENSE
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
 from trunnion.equations.topology import require_period
@@ -27,9 +28,16 @@ from trunnion.floquet.charts.axes import AxisRequest, ChartAxis, axis, check_cor
 from trunnion.floquet.charts.building import BuiltChart, build, decide, family_for, fill, strategy_named
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.charts.chart_pixels import judge, multipliers_of, tells_all
-from trunnion.floquet.charts.cost_model import compiling_pays, instead_of_compiling
+from trunnion.floquet.charts.cost_model import (
+    MOST_SECONDS,
+    compiling_pays,
+    instead_of_compiling,
+    long_chart_bytes,
+    long_chart_seconds,
+)
 from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build_with_numpy
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
+from trunnion.numerics.memory import MOST, size_text
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
 from trunnion.results.verdict import Verdict
@@ -229,10 +237,28 @@ def _line_task(
     require_tree(assembly, "charts do")
     refuse_pendulums(assembly.line, NOT_ALIKE)
     family = LineFamily(assembly, across, up, base, twisted)
+    _refuse_too_long(family)
 
     said = [finding.sentence for finding in left_out(analysis, assembly.line)]
     remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", numpy_only), *said) if s)
     return Task(family, across, up, None if swept else base, assembly.line, remarks)
+
+
+def _refuse_too_long(family: LineFamily) -> None:
+    """Refuse a chart of a long line that would not end, or fill the memory."""
+    size, pixels = family.size, len(family.x.values) * len(family.y.values)
+    if size <= LARGEST_DENSE:
+        return
+    ends = family.x.values[[0, 0, -1, -1]], family.y.values[[0, -1, 0, -1]]
+    seconds = long_chart_seconds(size, pixels, family.phase(*ends), family.needs_stages)
+    memory = long_chart_bytes(size, pixels)
+    if seconds > MOST_SECONDS or memory > MOST:
+        raise InputError(
+            f"has {size} unknowns: a chart of {pixels} points would take about {seconds / 3600:.2g} h of processor "
+            f"time and {size_text(memory)} of memory",
+            element="driveline",
+            remedy="ask for fewer points, join neighbouring parts, or ask stability() at single speeds",
+        )
 
 
 def _idle(family: ChartFamily, x: ChartAxis, y: ChartAxis, what: str, numpy_only: bool = False) -> list[str]:

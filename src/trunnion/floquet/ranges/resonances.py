@@ -21,6 +21,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.steady_base import has_joint_angles
 from trunnion.equations.topology import require_period
+from trunnion.errors import InputError
 from trunnion.floquet.ranges.exponents import ExponentOrders, floquet_exponents
 from trunnion.floquet.ranges.span import Span
 from trunnion.laws.harmonic import forward
@@ -58,8 +59,20 @@ class Modes:
 
     @classmethod
     def of(cls, span: Span) -> Modes:
-        """Over a range, and a little beyond."""
-        speed = np.linspace((1 - BESIDE) * span.start, (1 + BESIDE) * span.high, GRID)
+        """Over a range, and a little beyond where all that the line states reaches that far.
+
+        Raises
+        ------
+        InputError : a curve or a table that ends within the range.
+        """
+        try:
+            return cls._between(span, (1 - BESIDE) * span.start, (1 + BESIDE) * span.high)
+        except InputError:
+            return cls._between(span, span.start, span.high)
+
+    @classmethod
+    def _between(cls, span: Span, low: float, high: float) -> Modes:
+        speed = np.linspace(low, high, GRID)
         return cls(speed, *loaded_modes(span.assembly, speed, span.table(speed)))
 
     def at(self, speed: Array, mode: Places) -> tuple[Complex, Complex]:

@@ -50,6 +50,8 @@ OVERSAMPLED = 16.0
 HALF_TAPS, STOPPED = 9, 125.0
 """Half the length of the filter before samples are left out, in samples that stay, and its damping [dB]."""
 SAME_RATIO = 5e-4
+TOO_LONG = 0.01
+"""Share of the largest amplitude that windows may miss beside a resonance before that is said."""
 LIKE_A_WHEEL = 3.0
 """Times of what pitch errors leave below which a whole order is not taken for the shaft's by itself."""
 SEEN, ALIKE = 3.0, 0.25
@@ -263,6 +265,7 @@ class _Tracking:
         names, bend = tuple(found), bent if trend else lambda amplitude: np.zeros(amplitude.shape)
         amplitude = np.stack([one.amplitude for one in found.values()], axis=2)
         self._say_hidden(names, orders, amplitude, np.stack(hidden, axis=1), np.stack(floor, axis=1))
+        self._say_short(names, amplitude, np.stack([bend(one.amplitude) for one in found.values()], axis=2), windows)
         if stretch.last_speed and between_words(stretch, unit):
             self.findings.append(Finding(Gravity.NOTE, between_words(stretch, unit)))
         return MeasuredOrders(
@@ -415,6 +418,25 @@ class _Tracking:
                 "times", element=train.name, key="pulses_per_turn", value=train.pulses_per_turn,
                 remedy=f"{figures(fits, 5)} pulses a turn would fit; or correct its place or that of {self.main.name}",
             )  # fmt: skip
+
+    def _say_short(
+        self, names: tuple[str, ...], amplitude: Complex, bend: Array, windows: tuple[RotationWindow, ...]
+    ) -> None:
+        """Resonances that a window is too long for."""
+        for column, name in enumerate(names):
+            largest = float(np.nanmax(np.abs(amplitude[:, :, column]), initial=0.0))
+            own = np.nan_to_num(bend[:, :, column])
+            if own.max(initial=0.0) > TOO_LONG * largest:
+                at = int(own.max(axis=1).argmax())
+                share = figures(100 * float(own.max()) / largest, 2)
+                self.findings.append(
+                    Finding(
+                        Gravity.CAUTION,
+                        f"Windows of {self.turns} turns are long for a resonance of {name} near "
+                        f"{figures(windows[at].speed, 3)} rad/s: up to {share} % of its amplitude is uncertain by "
+                        "that; take shorter windows, or a slower run-up.",
+                    )
+                )
 
     def _say_hidden(
         self, names: tuple[str, ...], orders: Array, amplitude: Complex, hidden: Flags, floor: Array

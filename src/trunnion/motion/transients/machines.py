@@ -11,6 +11,7 @@ from typing import ClassVar
 import numpy as np
 
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.machines import ElectricMachine, Generator, Machine, Motor, Propeller
@@ -47,7 +48,8 @@ def without_curves(
         converter, from standstill.
     """
     machines = {name: one for name, one in line.parts if isinstance(one, Machine) and one.tangent}
-    if not machines:
+    brakes = {name: one for name, one in line.parts if isinstance(one, Brake)}
+    if not machines and not brakes:
         return line, (), ()
     torques: list[AppliedTorque] = []
     frictions: list[FrictionTorque] = []
@@ -61,6 +63,11 @@ def without_curves(
         disks[name] = Disk(
             name=name, inertia=machine.moment_of_inertia, excitation=machine.excitation, after=machine.after
         )
+    for name, brake in brakes.items():
+        _refuse_falling(name, brake)
+        if brake.torque or brake.static_torque:
+            frictions.append(FrictionTorque(on=name, torque=brake.torque, static=brake.static_torque))
+        disks[name] = Disk(name=name, inertia=brake.inertia, excitation=brake.excitation, after=brake.after)
     # Names that count disks would shift by those that come in.
     named = [one if one.name else one.but(name=name) if isinstance(one, Disk) else one for name, one in line.parts]
     elements = [disks.get(name, one) for name, one in zip(line.names, named, strict=True)]
@@ -72,6 +79,14 @@ def _at_rest(machine: Machine) -> float:
     if isinstance(machine, Motor) or not machine.curve or machine.table.range[0] > 0:
         return 0.0
     return max(float(machine.table.torques[0]), 0.0)
+
+
+def _refuse_falling(name: str, brake: Brake) -> None:
+    if brake.stribeck_speed is not None:
+        raise InputError(
+            "lets friction fall with the speed, which is not followed here", element=name, key="stribeck_speed",
+            value=brake.stribeck_speed, remedy="leave it out: friction then falls at once from static_torque to torque",
+        )  # fmt: skip
 
 
 def _refuse(name: str, machine: Machine) -> None:

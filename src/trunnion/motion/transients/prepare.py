@@ -13,6 +13,7 @@ from trunnion.driveline.machines import Motor
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import LevelCrossing, wrong_places_of
 from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques
+from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
@@ -87,6 +88,7 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> tuple[LineSy
         the speed.
     """
     refuse_pendulums(line)
+    refuse_torque_tables(line, "write the stiffness at the torque that matters")
     driven, acting = driven_line(line, asked, speed)
     prepared = line_system(driven, abs(speed), leaves=True, slips=True)
     for one in prepared.torques:

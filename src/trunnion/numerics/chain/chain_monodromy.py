@@ -18,6 +18,7 @@ from trunnion.arrays import Array, Places
 from trunnion.numerics.batch import BATCH
 from trunnion.numerics.chain.chain_tables import ChainBatch, ChainProgram
 from trunnion.numerics.chain.half_period import whole_periods
+from trunnion.numerics.chain.long_series import integrate_long_series
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.threads import on_threads
@@ -26,6 +27,8 @@ from trunnion.waiting import keep_time
 MOST_STEPS = 200_000
 SMALL = 3
 """Unknowns up to which a block of lanes takes less time than starting a thread."""
+SHORT = 12
+"""Unknowns up to which the coefficients of all columns lie in a processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,8 @@ def chain_propagator(
     n, count = batch.stiffness.shape
     found = np.empty((count, 2 * n, 2 * n)), np.empty(count), np.empty(count)
     order, stretch = _alike_together(batch), (begin, length, tolerance, MOST_STEPS)
-    integrate = integrate_stages if has_extra(program, batch) else integrate_series
+    series = integrate_series if n <= SHORT else integrate_long_series
+    integrate = integrate_stages if has_extra(program, batch) else series
 
     def run(first: int, last: int) -> None:
         integrate(program, batch, order, first, last, *stretch, *found)

@@ -71,7 +71,7 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
             pair_series(parent, bent, block.unknown, near, w, column, column + wide * ROWS, scratch, squares, h)
         # No step is asked for less than its own rounding; otherwise steps would shrink for ever.
         asked = max(tolerance * h / length, ROUNDING)
-        s, fall = _length_of_step(squares, n, asked, last, grown)
+        s, fall = length_of_step(squares, n, asked, last, grown)
         if not s == s:
             h *= 0.1
             if h < 1e-7 * length:
@@ -96,7 +96,7 @@ def _propagate(program, block, begin, length, tolerance, most_steps, w, error, t
 
 
 @njit(nogil=True, inner=True)
-def _length_of_step(squares, n, asked, last, grown):
+def length_of_step(squares, n, asked, last, grown):
     """The step, in units, after which the neglected terms reach ``asked`` per unit; their sizes and that of Φ are kept.
 
     They fall at least as fast as the last four computed ones do, two by two because even and odd orders do not

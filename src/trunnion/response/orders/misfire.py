@@ -7,13 +7,14 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.silent_cylinders import cylinders
+from trunnion.driveline.silent_cylinders import cylinders, silent_cases
 from trunnion.errors import InputError
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
+from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
 
 
@@ -25,11 +26,16 @@ class Misfire(Result):
     springs: tuple[str, ...] = coordinate("spring")
     vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak over the speeds")
     speed: Array = variable("cylinder spring", "rad/s", "input speed where it is largest")
-    normal: Array = variable("spring", "N*m", "vibratory torque with all cylinders firing")
+    normal: Array = variable("spring", "N*m", "vibratory torque of the line as stated, mostly with all firing")
+    unsettled: Integers = variable(
+        "cylinder", "1", "speeds without a steady state, undamped resonances, left out above"
+    )
     line: Driveline = internal("with the worst cylinder out of work")
     response: OrderResponse = internal("of that line")
     unit: str = internal("of speeds in print")
     cut_out: bool = attribute("whether nothing is left of its gas torque", default=False)
+    stated: str = attribute("cylinders that are out of work already in the line as stated", default="all firing")
+    unsettled_as_stated: int = attribute("speeds without a steady state of the line as stated", default=0)
 
     @property
     @computed(coordinate("cylinder"), after="springs")
@@ -44,8 +50,9 @@ class Misfire(Result):
 
     @property
     def worst(self) -> tuple[str, int]:
-        """The cylinder whose misfire raises the torque of any spring most, relative to normal running."""
-        return self.cylinders[_worst(self.vibratory_torque, self.normal)]
+        """The cylinder whose misfire raises the torque of any spring most, relative to the line as stated; before
+        all others one that meets undamped resonances."""
+        return self.cylinders[_worst(self.vibratory_torque, self.normal, self.unsettled)]
 
     def _called(self, name: str, number: int) -> str:
         """A disk that carries one cylinder is that cylinder."""
@@ -62,16 +69,44 @@ class Misfire(Result):
         return f"{self._done}: {self._called(*self.worst)} is the worst of {len(self.cylinders)}"
 
     def table(self) -> list[dict[str, object]]:
-        """Largest vibratory torque [N m] of every spring with the worst cylinder out of work, and with all firing."""
+        """Largest vibratory torque [N m] of every spring with the worst cylinder out of work, and as stated."""
         row = self.cylinders.index(self.worst)
         return [
             {
                 "spring": spring, "vibratory torque [N m]": float(self.vibratory_torque[row, s]),
                 f"at [{self.words.unit}]": float(self.speed[row, s]) * self.words.factor,
-                "all firing [N m]": float(self.normal[s]),
+                f"{self.stated} [N m]": float(self.normal[s]),
             }
             for s, spring in enumerate(self.springs)
         ]  # fmt: skip
+
+    def by_cylinder(self) -> list[dict[str, object]]:
+        """What each cylinder out of work does most: the spring, its vibratory torque [N m], over that as stated."""
+        rows: list[dict[str, object]] = []
+        for row, called in enumerate(self.cylinders):
+            times = _times(self.vibratory_torque[row], self.normal)
+            s = int(np.nan_to_num(times).argmax())
+            rows.append(
+                {
+                    "cylinder": self._called(*called), "most in": self.springs[s],
+                    "vibratory torque [N m]": float(self.vibratory_torque[row, s]),
+                    f"at [{self.words.unit}]": float(self.speed[row, s]) * self.words.factor,
+                    f"times that of {self.stated}": float(times[s]),
+                    "undamped resonances": int(self.unsettled[row]) or None,
+                }
+            )  # fmt: skip
+        return rows
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What the largest torques leave out."""
+        found = []
+        for count, called in [(self.unsettled_as_stated, self.stated), *zip(self.unsettled, self.names, strict=True)]:
+            if count:
+                what = called if called == self.stated else f"{called} out of work"
+                said = f"With {what} no steady state exists at {count} of the speeds, undamped resonances: left out."
+                found.append(Finding(Gravity.DANGER, said))
+        return tuple(found)
 
     def _lines(self) -> Iterator[str]:
         row = self.cylinders.index(self.worst)
@@ -79,8 +114,11 @@ class Misfire(Result):
         for s, spring in enumerate(self.springs):
             yield (
                 f"  {spring}: vibratory torque up to {self.vibratory_torque[row, s]:.4g} N m at "
-                f"{self.words.speed(float(self.speed[row, s]))}, {self.normal[s]:.4g} N m with all cylinders firing"
+                f"{self.words.speed(float(self.speed[row, s]))}, {self.normal[s]:.4g} N m with {self.stated}"
             )
+        for one in self.by_cylinder():
+            times = one[f"times that of {self.stated}"]
+            yield f"  {one['cylinder']}: {times:.4g} times as much in {one['most in']}"
 
 
 def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *, cut_out: bool = False) -> Misfire:
@@ -127,18 +165,40 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
     found = [order_response(one, speeds) for one in lines]
     torque = np.stack([one.vibratory_torque for one in found])
     at = np.nan_to_num(torque).argmax(axis=1)
-    largest, usual = np.nanmax(torque, axis=1), np.nanmax(normal, axis=0)
-    worst = _worst(largest, usual)
+    largest, usual = (_largest(one, axis) for one, axis in ((torque, 1), (normal, 0)))
+    lost = np.isnan(torque).any(axis=2).sum(axis=1)
+    worst = _worst(largest, usual, lost)
     return Misfire(
         cylinders=tuple((one.owner, one.number) for one in found_here), springs=found[0].springs,
         vibratory_torque=largest, speed=found[0].speed[at], normal=usual, line=lines[worst], response=found[worst],
-        unit=found[worst].unit, cut_out=cut_out,
+        unit=found[worst].unit, cut_out=cut_out, unsettled=lost, stated=_stated(line),
+        unsettled_as_stated=int(np.isnan(normal).any(axis=1).sum()),
     )  # fmt: skip
+
+
+def _stated(line: Driveline) -> str:
+    """ "all firing", or the cylinders that are out of work already."""
+    stated = dict(line.as_stated.parts)
+    cases = silent_cases(line.as_stated.parts).items()
+    silent = [name for name, (one, key) in cases if getattr(stated[one.owner], key, None) == one.number]
+    return " and ".join(silent) or "all firing"
+
+
+def _largest(torque: Array, axis: int) -> Array:
+    """Over the speeds that have a steady state; NaN where none has."""
+    known = np.where(np.isnan(torque), -np.inf, torque).max(axis=axis)
+    return np.where(np.isfinite(known), known, np.nan)
 
 
 def _loaded(line: Driveline, load_case: str | None) -> Driveline:
     return line if load_case is None else line.with_load(load_case)
 
 
-def _worst(torque: Array, normal: Array) -> int:
-    return int((torque / np.maximum(normal, 1e-9 * normal.max(initial=1e-300))).max(axis=1).argmax())
+def _times(torque: Array, normal: Array) -> Array:
+    """Torques over those as stated, which may be nothing."""
+    return np.asarray(torque / np.maximum(np.nan_to_num(normal), 1e-9 * np.nan_to_num(normal).max(initial=1e-300)))
+
+
+def _worst(torque: Array, normal: Array, lost: Integers) -> int:
+    times = np.nan_to_num(_times(torque, normal)).max(axis=1)
+    return int(np.where(lost == lost.max(), times, -1.0).argmax())

@@ -22,10 +22,11 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Codes, Complex, Places
 from trunnion.driveline.arguments import numbers, speeds_of
 from trunnion.driveline.clutches import Clutch
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import settled_speeds, speed_unit
-from trunnion.driveline.shafts import Coupling, Shaft
+from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import disk_torques, line_harmonics
 from trunnion.equations.loads import load_slope

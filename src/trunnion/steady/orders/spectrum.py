@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Array, Complex, Integers
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import (
@@ -175,8 +176,11 @@ class _SpectrumProblem:
         self.assembly, self.topo, self.numbers = assembly, assembly.topology, numbers
         self.places = channels_of(self.topo)
         self.twisted = statically_twisted
-        pendulums = any(isinstance(element, CentrifugalPendulum) for element in assembly.line.elements)
-        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:])) and not pendulums
+        by_speed = any(
+            isinstance(one, CentrifugalPendulum) or isinstance(one, Coupling) and one.torques
+            for one in assembly.line.elements
+        )
+        self.alike = bool(np.all(numbers[:, 1:] == numbers[:1, 1:])) and not by_speed
         one = self.springs = self.coefficients(numbers[:1] if self.alike else numbers)
         # Largest of each number: an excitation counts where any case has it.
         few = numbers[[np.abs(numbers[:, 0]).argmax()]] if self.alike else numbers

@@ -1,0 +1,1 @@
+"""What measured orders say of the numbers of a line."""

@@ -1,0 +1,142 @@
+"""How badly a line fits measured orders: residuals over their standard deviations, constants of wheels set free.
+
+A wheel's pitch errors add one constant to an order of a pickup at all speeds, known to a standard deviation τ: that of
+the reference run's noise, or of the pitch errors as they are stated. Of each order and channel the constant that fits
+best is taken off, and counts by itself: (Y − P e^{ikα} − C)/σ, and C/τ. Both are linear in P.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Places
+from trunnion.equations.coefficients import Assembly
+from trunnion.floquet.tolerance.parameter_intervals import ParameterInterval, table_at
+from trunnion.measured.predicted import PredictedChannels, best_angle, predicted_channels, turned, usable
+from trunnion.measured.tracking.result import MeasuredOrders
+
+STEP = 1e-4
+"""Share of a parameter's range by which it is moved for a derivative, to either side."""
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """Residuals of a line at values of its free parameters.
+
+    channels : the measured ones. free : parameters. begin : rotation of the input [rad] at the first pulse, None where
+    it is free too, and then the last of the unknowns.
+    """
+
+    channels: PredictedChannels
+    free: tuple[ParameterInterval, ...]
+    begin: float | None
+    rows: Places
+
+    @property
+    def data(self) -> MeasuredOrders:
+        """What was measured."""
+        return self.channels.data
+
+    def thinned(self, count: int) -> Misfit:
+        """Over at most so many of its windows, spread evenly."""
+        if len(self.rows) <= count:
+            return self
+        return replace(self, rows=self.rows[np.linspace(0, len(self.rows) - 1, count).astype(np.intp)])
+
+    @property
+    def measured(self) -> Complex:
+        """Amplitudes (window, order, channel) at the places."""
+        return np.asarray(self.data.amplitude[self.rows][:, :, list(self.channels.columns)])
+
+    @property
+    def deviation(self) -> Array:
+        """Standard deviations (window, order, channel) of either part, infinite of what is not known."""
+        columns = list(self.channels.columns)
+        known = usable(self.data, self.channels.columns)[self.rows] & (
+            self.data.deviation[self.rows][:, :, columns] > 0
+        )
+        return np.asarray(np.where(known, self.data.deviation[self.rows][:, :, columns], np.inf))
+
+    @property
+    def constant(self) -> Array:
+        """Standard deviations (order, channel) of either part of what a wheel adds."""
+        return np.asarray(self.data.floor[:, list(self.channels.columns)] / np.sqrt(2))
+
+    @property
+    def count(self) -> int:
+        """Real numbers that are compared."""
+        return 2 * int(np.isfinite(self.deviation).sum())
+
+    def predicted(self, values: Array) -> Complex:
+        """Amplitudes (line, window, order, channel) at values (line, free)."""
+        speeds = self.data.speed[self.rows]
+        table = np.repeat(table_at(self.channels.assembly, self.free, values), len(speeds), axis=0)
+        table[:, 0] = np.tile(speeds, len(values))
+        made = self.channels.at(table)
+        return np.asarray(made.reshape(len(values), len(speeds), *made.shape[1:]))
+
+    def angle(self, predicted: Complex) -> float:
+        """Rotation of the input at the first pulse [rad] that fits best."""
+        if self.begin is not None:
+            return self.begin
+        # What a constant may take counts for little in the search.
+        weight = 1 / (self.deviation**2 + self.constant**2)
+        return best_angle(self.measured, predicted, weight, self.data.order)
+
+    def residuals(self, predicted: Complex, angle: float) -> Array:
+        """(residual,) of amplitudes (window, order, channel)."""
+        return self._weighed(self.measured - turned(predicted, self.data.order, angle))
+
+    def _weighed(self, off: Complex) -> Array:
+        """Differences (window, order, channel) over deviations, their constants taken off."""
+        weight = 1 / self.deviation
+        known = np.where(weight > 0, off, 0.0)
+        tau = self.constant
+        with np.errstate(divide="ignore"):
+            prior = np.where(tau > 0, 1 / tau, 0.0)
+        held = (weight**2).sum(axis=0) + prior**2
+        constant = np.where(tau > 0, (weight**2 * known).sum(axis=0) / np.where(held > 0, held, 1.0), 0.0)
+        own = (weight * (known - constant)).ravel()
+        beside = (prior * constant).ravel()
+        return np.concatenate([own.real, own.imag, beside.real, beside.imag])
+
+    def chi_square(self, predicted: Complex) -> float:
+        """Sum of squares at the best angle."""
+        found = self.residuals(predicted, self.angle(predicted))
+        return float(found @ found)
+
+    def linear(self, values: Array, angle: float) -> tuple[Array, Array]:
+        """Residuals (residual,) and their slopes (residual, unknown) over shares of the ranges, and over the angle."""
+        moved, ends = [values], []
+        for k, one in enumerate(self.free):
+            step = STEP * (one.high - one.low)
+            low, high = max(values[k] - step, one.low), min(values[k] + step, one.high)
+            for end in (low, high):
+                point = values.copy()
+                point[k] = end
+                moved.append(point)
+            ends.append((high - low) / (one.high - one.low))
+        every = self.predicted(np.array(moved))
+        orders = self.data.order
+        slopes = [
+            self._weighed(-turned(every[2 + 2 * k] - every[1 + 2 * k], orders, angle)) / width
+            for k, width in enumerate(ends)
+        ]
+        if self.begin is None:
+            slopes.append(self._weighed(-turned(1j * orders[:, None] * every[0], orders, angle)))
+        return self.residuals(every[0], angle), np.stack(slopes, axis=1)
+
+
+def misfit_of(
+    assembly: Assembly,
+    data: MeasuredOrders,
+    free: Sequence[ParameterInterval],
+    begin: float | None,
+    rows: Places | None = None,
+) -> Misfit:
+    """The misfit of a line whose numbers are free, over some ``rows`` (window,) of the data."""
+    every = np.arange(len(data.speed)) if rows is None else rows
+    return Misfit(predicted_channels(assembly, data), tuple(free), begin, every)

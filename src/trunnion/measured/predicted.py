@@ -1,0 +1,130 @@
+"""What a line would show at the channels of a measurement: orders of rotations, torques, accelerations and speeds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags
+from trunnion.driveline.refusals import nearest
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.steady_base import has_periodic_base
+from trunnion.errors import InputError
+from trunnion.measured.tracking.places import even_places
+from trunnion.measured.tracking.result import MeasuredOrders
+from trunnion.response.orders.response import steady_states_of
+from trunnion.steady.orders.amplitudes import OrderSpectrum
+from trunnion.steady.orders.forced_response import shaft_names
+from trunnion.steady.orders.spectrum import order_spectrum
+
+NEAR_ENOUGH = 1e-6
+"""Orders that are the same."""
+
+
+@dataclass(frozen=True)
+class PredictedChannels:
+    """Where the channels of a measurement stand in the responses of a line.
+
+    columns : of the measurement, those of places of the line, by their kind. even : whether a place turns evenly.
+    """
+
+    assembly: Assembly
+    data: MeasuredOrders
+    columns: tuple[int, ...]
+    places: tuple[int, ...]
+    even: tuple[bool, ...]
+
+    def at(self, table: Array) -> Complex:
+        """Amplitudes (case, order, channel) of rows of packed numbers (case, column), each at its own speed."""
+        if has_periodic_base(self.assembly):
+            found = order_spectrum(self.assembly, table[:, 0], motions=steady_states_of(self.assembly))
+        else:
+            found = order_spectrum(self.assembly, table[:, 0], table=table)
+        return self.of(found)
+
+    def of(self, found: OrderSpectrum) -> Complex:
+        """Amplitudes (case, order, channel) that a spectrum holds."""
+        rows = self._rows(found)
+        made = np.zeros((len(found.speed), len(self.data.order), len(self.columns)), dtype=complex)
+        turned = 1j * np.multiply.outer(found.speed, self.data.order)
+        point = found.amplitude[..., found.channels.point] + found.base
+        torque = found.amplitude[..., found.channels.torque]
+        for k, (column, place, even) in enumerate(zip(self.columns, self.places, self.even, strict=True)):
+            if even:
+                continue
+            kind = self.data.kinds[column]
+            values = (torque if kind == "torque" else point)[..., place]
+            there = rows >= 0
+            made[:, there, k] = values[:, rows[there]]
+            made[:, :, k] *= {"acceleration": turned**2, "speed": turned}.get(kind, 1.0)
+        return made
+
+    def _rows(self, found: OrderSpectrum) -> Array:
+        """Columns of the spectrum of the orders that were measured, −1 of those that nothing excites."""
+        apart = np.abs(found.order_numbers[None, :] - self.data.order[:, None]) + 1e9 * (found.frequency != 0)
+        if not apart.shape[1]:
+            return np.full(len(self.data.order), -1)
+        return np.where(apart.min(axis=1) < NEAR_ENOUGH, apart.argmin(axis=1), -1)
+
+
+def predicted_channels(assembly: Assembly, data: MeasuredOrders) -> PredictedChannels:
+    """The channels of a measurement that stand at places of a line.
+
+    Raises
+    ------
+    InputError : a place that the line does not have; no channel at any place that moves.
+    """
+    topo = assembly.topology
+    points, springs = [name for _, name in topo.points], list(shaft_names(assembly))
+    held = even_places(assembly)
+    columns, places, even = [], [], []
+    for column, (place, kind, name) in enumerate(zip(data.places, data.kinds, data.channels, strict=True)):
+        if not place or kind == "other":
+            continue
+        known = springs if kind == "torque" else points
+        if kind != "torque" and place in held:
+            columns.append(column)
+            places.append(-1)
+            even.append(True)
+            continue
+        if place not in known:
+            what = "is no spring of the line" if kind == "torque" else "is no disk of the line"
+            raise InputError(what, element=name, key="at", value=place, remedy=nearest(place, known))
+        columns.append(column)
+        places.append(known.index(place))
+        even.append(False)
+    if all(even):
+        raise InputError(
+            "shows no place of the line that moves", key="data", remedy='name places in its channels: at = "hub"'
+        )
+    return PredictedChannels(assembly, data, tuple(columns), tuple(places), tuple(even))
+
+
+def turned(values: Complex, orders: Array, angle: float) -> Complex:
+    """Amplitudes (…, order, channel) as they read where the input begins at ``angle`` [rad]."""
+    return np.asarray(values * np.exp(1j * orders * angle)[:, None])
+
+
+def best_angle(measured: Complex, predicted: Complex, weight: Array, orders: Array) -> float:
+    """The angle [rad] at which the measurement begins: where ``predicted`` (window, order, channel) fits best.
+
+    weight : of the square of each difference; 0 of what is not known.
+    """
+    # |m − p e^{ikα}|² depends on α by −2 Re Σ w m* p e^{ikα}: a sum of cosines, searched finely and then refined.
+    known = np.where(weight > 0, weight * np.nan_to_num(measured).conj() * predicted, 0.0).sum(axis=(0, 2))
+    grid = np.linspace(0.0, 2 * np.pi, 64 * max(4, int(np.ceil(orders.max()))), endpoint=False)
+    angle = float(grid[(np.exp(1j * np.multiply.outer(grid, orders)) @ known).real.argmax()])
+    for _ in range(20):
+        wave = known * np.exp(1j * orders * angle)
+        slope, bend = float((1j * orders * wave).real.sum()), float((-(orders**2) * wave).real.sum())
+        if bend >= 0:
+            break
+        angle -= slope / bend
+    return angle % (2 * np.pi)
+
+
+def usable(data: MeasuredOrders, columns: tuple[int, ...]) -> Flags:
+    """Which amplitudes (window, order, channel) are known."""
+    part = data.amplitude[:, :, list(columns)]
+    return np.asarray(np.isfinite(part) & np.isfinite(data.deviation[:, :, list(columns)]))

@@ -1,0 +1,69 @@
+"""200 random driven long trees against equations of motion of the tests' own, carried over a period in time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from oracles.long_tree_equations import LongTree, Motion
+from oracles.long_trees import random_tree
+
+import trunnion as tn
+from trunnion.equations.coefficients import assemble
+from trunnion.equations.topology import require_period
+from trunnion.steady.orders.spectrum import order_spectrum
+
+SPEED = 150.0
+QUICK = (108, 34)
+TREES = 200
+
+
+def seeds() -> list[Any]:
+    """Of every ten one is slow, the others a study."""
+    marks = {0: (pytest.mark.slow,)}
+    return [
+        s if s in QUICK else pytest.param(s, marks=marks.get(s % 10, (pytest.mark.slow, pytest.mark.study)))
+        for s in range(TREES)
+    ]
+
+
+@pytest.mark.parametrize("seed", seeds())
+def test_multipliers_and_responses(seed: int) -> None:
+    """The radius and every multiplier within both errors, none missed and none too many; deviations of all disks."""
+    line = random_tree(seed, driven=True)
+    assembly, own = assemble(line), LongTree(line)
+    assert own.turns == require_period(line, assembly.topology)
+    motion = own.motion(SPEED)
+    found, (true, error) = tn.stability(line, SPEED), multipliers(motion)
+    if np.abs(true).min() > 1e-6:  # less is rounding in the matrix
+        assert abs(np.linalg.slogdet(motion.propagator)[1] + motion.trace) < 1e-6
+    critical = int(np.abs(true).argmax())
+    assert abs(np.abs(true[critical]) - found.spectral_radius) <= found.error_estimate + error[critical]
+    assert found.error_estimate < 1e-6 and str(found.verdict) == ("stable" if abs(true[critical]) < 1 else "unstable")
+    matched(true, error, found.multipliers, found.multiplier_error)
+    spectrum = order_spectrum(assembly, np.array([SPEED]))
+    wave = spectrum.wave(0, spectrum.amplitude[0], spectrum.mean[0], motion.moment / SPEED)
+    ours = wave[:, spectrum.channels.deviation]
+    near = np.abs(1 - true).min()
+    off = (1e-10 + 10 * motion.error / near) * np.abs(motion.deviation).max()
+    assert np.abs(ours - motion.deviation).max() < off
+
+
+def multipliers(motion: Motion) -> tuple[Any, Any]:
+    """All of them, and to which the propagator's error lets them be known."""
+    value, right = np.linalg.eig(motion.propagator)
+    condition = np.linalg.norm(right, axis=0) * np.linalg.norm(np.linalg.inv(right), axis=1)
+    rounding = 1e-14 * float(np.linalg.norm(motion.propagator, 2))
+    bound = 2 * condition * (motion.error + rounding)
+    return value, np.where(bound < 1e-3, bound, np.sqrt(bound))
+
+
+def matched(true: Any, error: Any, found: Any, bound: Any) -> None:
+    """Every one is the partner of one, nearest first."""
+    from scipy.optimize import linear_sum_assignment
+
+    assert len(true) == len(found)
+    apart = np.abs(true[:, None] - found) / (error[:, None] + bound)
+    rows, columns = linear_sum_assignment(np.minimum(apart, 1e6))
+    assert apart[rows, columns].max() <= 1
