@@ -245,6 +245,7 @@ REFUSED = [
     (tn.PiecewiseShaft(breakpoints=["1 deg"], stiffnesses=[1e3, 2e3]), "PiecewiseShaft 1", "a Shaft of one stiffness"),
     (tn.ViscousDamper(ring_inertia=0.1, damping=4.0), "ring of ViscousDamper 1", "write its stiffness"),
     (tn.Disk(inertia=1.0, excitation=[{"order": 2, "amplitude": 3.0}]), "Disk 2.excitation", "take it away"),
+    (tn.Shaft(stiffness=1e4, loss_factor=0.1), "Shaft 2.loss_factor = 0.1", "write loss_factor_frequency"),
     (tn.Disk(inertia=1.0, quadratic_load=0.1), "Disk 2.quadratic_load", "leave it out"),
 ]  # fmt: skip
 
@@ -261,13 +262,21 @@ def test_what_no_file_holds(element: Any, where: str, remedy: str, to: str, tmp_
             tn.Shaft(stiffness=2e4),
             tn.Disk(inertia=1.0),
         ]
-        if not isinstance(element, tn.GearPair | tn.PiecewiseShaft)
+        if not isinstance(element, tn.GearPair | tn.PiecewiseShaft | tn.Shaft)
         else [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0), element, tn.Disk(inertia=1.0)]
     )
     with pytest.raises(InputError) as caught:
         exported(line, tmp_path, to)
     assert where in str(caught.value) and remedy in str(caught.value)
     assert list(tmp_path.iterdir()) == []  # nothing is written
+
+
+def test_a_loss_factor_at_a_frequency_is_a_damping(tmp_path: Path) -> None:
+    shaft = tn.Shaft(stiffness=1e4, loss_factor=0.1, loss_factor_frequency="50 Hz")
+    line = tn.Driveline([tn.ConstantSpeed(), shaft, tn.Disk(inertia=1.0)])
+    back = tn.import_line(exported(line, tmp_path, "csv"))
+    assert back.elements[1].damping == pytest.approx(0.1 * 1e4 / (2 * np.pi * 50), rel=1e-14)  # type: ignore[attr-defined]
+    same(tn.natural_frequencies(back).damping_ratio, tn.natural_frequencies(line).damping_ratio, 1e-10)
 
 
 def test_a_schedule_is_refused(tmp_path: Path) -> None:

@@ -5,21 +5,21 @@ from __future__ import annotations
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.features import FEATURES, UNEVEN
 from trunnion.driveline.joints import Joint
+from trunnion.driveline.shafts import SpringElement
 from trunnion.errors import InputError
 
 HELD = (
     "inertia", "stiffness", "viscous damper", "tuned damper", "tube inertia", "bending stiffness", "damping",
-    "fork offset", "joint plane", "angle of an ideal joint", "double Cardan joint", "ratio", "belt", "tyre", "vehicle",
-    "rolling resistance", "planetary set", "closed loop", "gear mesh", "mesh damping", "damping in contact only",
-    "load torque", "viscous load",
-    "unlike damping in series", "branch", "free start", "prescribed far end",
+    "loss factor", "fork offset", "joint plane", "angle of an ideal joint", "double Cardan joint", "ratio", "belt",
+    "tyre", "vehicle", "rolling resistance", "planetary set", "closed loop", "gear mesh", "mesh damping",
+    "damping in contact only", "load torque", "viscous load", "unlike damping in series", "branch", "free start",
+    "prescribed far end",
 )  # fmt: skip
 """Features of a line that a table of inertias, springs and gears holds, or that cannot matter there: damping in
 contact only goes with backlash and stages."""
 _LINEAR = "describe it by a Shaft of one stiffness and damping"
 _UNLOADED = "take it away: inertias, springs and gears hold no torque that varies"
 REMEDIES = {
-    "loss factor": "write loss_factor_frequency, at which it becomes a damping",
     "damping ratio": "write damping at the shafts instead",
     "backlash": "take the backlash away, for the line with its teeth in contact",
     "stages": _LINEAR,
@@ -56,6 +56,15 @@ def refuse_unheld(line: Driveline) -> None:
         )
         for name, element in line.parts
         if isinstance(element, Joint) and element.orders and _angle(element)
+    ]  # fmt: skip
+    wrong += [
+        InputError(
+            "is a loss at every frequency, and such a file holds a damping", element=name,
+            key="relative_damping" if element.loss_factor is None else "loss_factor", value=element.loss,
+            remedy="write loss_factor_frequency, at which it becomes one",
+        )
+        for name, element in line.parts
+        if isinstance(element, SpringElement) and element.loss is not None and element.loss_factor_frequency is None
     ]  # fmt: skip
     for one in FEATURES:
         if one.key in HELD or one.key in UNEVEN:
