@@ -34,7 +34,7 @@ REMEDIES = {
     "shafts tied to two others": "describe one way through it by a Ratio",
 }
 """What to do about a feature that is refused, where it is not to leave it out."""
-_EXCITED = ("excitation", "cylinders", "transmission error", "mesh-stiffness variation")
+_EXCITED = ("excitation", "cylinders")
 
 
 def _angle(joint: Joint) -> float:
