@@ -796,6 +796,16 @@ PYTHON = [
         "Shaft",
     ),
     (lambda: free().scenario("start"), "scenario = 'start': is not a scenario of this driveline", "write [[scenario]]"),
+    (
+        lambda: tn.transient(free(), 1.0, torque=[torque(speed=[20, 30], torque=[0, 1])], speed=9.0),
+        "run: ends where it begins: stopped at t = 0 s: the speed of",
+        "extend it",
+    ),
+    (
+        lambda: tn.transient(free(), 1.0, torque=[torque(formula="log(0)")], speed=9.0),
+        "run: ends where it begins: stopped at t = 0 s, where the formula 'log(0)'",
+        "look for roots",
+    ),
     (lambda: tn.transient(free(), speed=9.0), "duration: must be a positive time", "name of a scenario"),
     (lambda: tn.transient(free(), 1.0, torque=["x"], speed=9.0), "torque = 'x': is not a list of", "tn.AppliedTorque"),
     (

@@ -142,6 +142,47 @@ def test_a_formula_without_a_value_ends_the_run() -> None:
     assert not run.outcome.ok and run.end == pytest.approx(0.1, abs=1e-3)
 
 
+@pytest.mark.parametrize("text", ["1/0", "log(-1)", "sqrt(t-0.1)", "0^-1", "exp(800)", "log(speed-200)"])
+def test_a_formula_without_a_value_at_the_start_is_refused_by_name(text: str) -> None:
+    with pytest.raises(tn.InputError, match="ends where it begins: .* the formula .* of the torque on motor gives no"):
+        tn.transient(pair(), 0.2, torque=[tn.AppliedTorque(on="motor", formula=text)], speed=100.0)
+
+
+def test_a_run_that_ends_before_its_first_step_says_why() -> None:
+    beyond = tn.AppliedTorque(on="motor", speed=[150.0, 200.0], torque=[1.0, 2.0])
+    with pytest.raises(tn.InputError, match="the speed of motor leaves its table"):
+        tn.transient(pair(), 0.2, torque=[beyond], speed=100.0)
+    with pytest.raises(tn.InputError, match="nothing was computed"):
+        tn.transient(pair(), 0.2, torque=[tn.AppliedTorque(on="motor", formula="1")], speed=100.0, within=1e-12)
+
+
+def test_what_gives_no_number_on_the_way_is_named_and_the_run_kept() -> None:
+    late = tn.AppliedTorque(on="motor", formula="sqrt(0-speed)", since=0.1)
+    run = tn.transient(pair(), 0.2, torque=[late], speed=100.0)
+    assert run.outcome.kind == "no number" and run.end == pytest.approx(0.1)
+    assert "'sqrt(0-speed)' of the torque on motor" in run.outcome.sentence
+    assert run.speed[-1] == pytest.approx(100.0)
+    function = tn.TorqueFunction(on="motor", function=lambda time, speed, angle: math.nan if time > 0.1 else 1.0)
+    ended = tn.transient(pair(), 0.2, torque=[function], speed=100.0)
+    assert ended.outcome.kind == "no number" and "its function of the torque on motor" in ended.outcome.sentence
+
+
+@pytest.mark.parametrize(
+    ("text", "torque"),
+    [
+        ("-300-0.2*speed*abs(speed)^0.5", lambda t, s, a: -300 - 0.2 * s * abs(s) ** 0.5),
+        ("-300+0.1*abs(speed)^1.5", lambda t, s, a: -300 + 0.1 * abs(s) ** 1.5),
+        ("-300-10*sqrt(abs(angle-1))", lambda t, s, a: -300 - 10 * math.sqrt(abs(a - 1))),
+    ],
+)
+def test_roots_and_powers_of_what_bends_go_through_zero(text: str, torque: Torque) -> None:
+    run = tn.transient(pair(), 0.3, torque=[tn.AppliedTorque(on="motor", formula=text)], speed=20.0, tolerance=1e-11)
+    assert run.outcome.kind == "reached", run.outcome.sentence
+    known = integrated(torque, 20.0, [0.0, 0.3])
+    assert run.speed[-1, 0] < 0 < run.speed[0, 0]
+    assert np.concatenate([run.angle[-1], run.speed[-1]]) == pytest.approx(known, rel=1e-6, abs=1e-6)
+
+
 def test_a_short_circuit_of_two_masses_in_closed_form() -> None:
     """q̈ + ω²q = T/J of a decaying sine: its particular part and the free one that starts it from rest."""
     size, decay = 900.0, 0.15

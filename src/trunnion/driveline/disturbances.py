@@ -177,7 +177,7 @@ class Disturbance(Record):
             value = getattr(self, key)
             if value is None:
                 continue
-            if not (value > before or (key == "until" and self.rise is not None and value == before)):
+            if not (value > before or (key == "until" and (self.rise or self.fall) and value == before)):
                 raise InputError(f"must lie behind {known}", key=key, value=value, remedy="times count from t = 0")
             before, known = value, key
 

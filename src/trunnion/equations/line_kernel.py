@@ -75,7 +75,8 @@ FORMULA, FUNCTION = 4, 5
 INSTRUCTIONS, KINKS, SIDES = range(3)
 (CONSTANT, TIME_NOW, SPEED_NOW, ANGLE_NOW, PLUS, MINUS, TIMES, OVER_BY, POWER, NEGATIVE) = range(10)
 (SIN, COS, TAN, ARCTAN, EXP, LOG, SQRT, TANH) = range(10, 18)
-# These have a kink or jump, where what they switch by changes its sign: an argument, or the difference of two.
+# These have a kink or jump, where what they switch by changes its sign: an argument, or the difference of two. Their
+# number is 1 where they are as they are on whatever side, for a root or power is taken of them.
 ABS, MIN, MAX, STEP_AT = range(18, 22)
 DENOMINATOR = NUMERATOR + POWERS * POWERS
 PER_APPLIED = DENOMINATOR + POWERS
@@ -263,7 +264,7 @@ def formula(p, at, t, speed, angle, kink):
                 by = p[top]
             if met == kink:
                 switch = by
-            side = p[at + SIDES + met]
+            side = p[at + SIDES + met] if number == 0.0 else 0.0
             above = side > 0.0 or (side == 0.0 and by >= 0.0)
             if code == ABS:
                 p[top] = p[top] if above else -p[top]

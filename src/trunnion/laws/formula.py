@@ -32,7 +32,9 @@ FUNCTIONS = {
     "max": ("MAX", 2), "step": ("STEP_AT", 1),
 }  # fmt: skip
 """Instruction and number of arguments by name; log is the natural one."""
-KINKS = ("ABS", "MIN", "MAX", "STEP_AT")
+BENDS = ("ABS", "MIN", "MAX")
+KINKS = (*BENDS, "STEP_AT")
+ROOTS = ("SQRT", "LOG")
 _OPERATORS = {"add": "PLUS", "sub": "MINUS", "mul": "TIMES", "div": "OVER_BY", "pow": "POWER"}
 _GRAMMAR = r"""
     ?start: sum
@@ -48,7 +50,7 @@ _GRAMMAR = r"""
 
 
 class Instruction(NamedTuple):
-    """One step: its code's name in ``line_kernel``, and the number of a constant."""
+    """One step: its code's name in ``line_kernel``, and a constant's number, or 1 of a bend that keeps its sign."""
 
     code: str
     number: float = 0.0
@@ -159,7 +161,10 @@ class _Compiler:
             node = node.children[0]
         if not later:  # a power
             later, node = [("pow", node.children[1])], node.children[0]
+        begin = len(self.instructions)
         found = self.add(node, depth + 1)
+        if later[-1][0] == "pow":
+            self.keep_sign(begin)
         for operator, one in reversed(later):
             found |= self.add(one, depth + 1)
             self.instructions.append(Instruction(_OPERATORS[operator]))
@@ -189,12 +194,24 @@ class _Compiler:
         if len(arguments) != count:
             raise self.wrong(f"gives {name} {len(arguments)} arguments", f"{name} takes {count}")
         found: frozenset[str] = frozenset()
+        begin = len(self.instructions)
         for one in arguments:
             found |= self.add(one, depth + 1)
+        if code in ROOTS:
+            self.keep_sign(begin)
         if code == "STEP_AT" and "speed" in found:
             raise self.wrong("jumps where the speed does", "write friction, or tanh(speed/0.1) for step(speed)")
         self.instructions.append(Instruction(code))
         return found
+
+    def keep_sign(self, since: int) -> None:
+        """Let what bends among the instructions from ``since`` on be as it is wherever a step tries it.
+
+        On the side where a step began, |x| goes on as −x behind its zero; a root or a power of that is no number.
+        """
+        for k, one in enumerate(self.instructions[since:], since):
+            if one.code in BENDS:
+                self.instructions[k] = one._replace(number=1.0)
 
     def wrong(self, problem: str, remedy: str) -> InputError:
         return InputError(problem, key="formula", value=_short(self.text), remedy=remedy)

@@ -34,10 +34,11 @@ from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.passing.start import begun_line, ends_of, lasting
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.strongest_order import strongest_order
-from trunnion.motion.transients.prepare import Actions, follow
+from trunnion.motion.transients.prepare import Actions, follow, require_begun
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS
+from trunnion.steady.shooting.integration_outcomes import OUT_OF_TIME
 from trunnion.waiting import keeps_time, time_is_up
 
 DWELT = 3.0
@@ -111,6 +112,7 @@ def passing(
     report_progress = progress or (lambda share: None)
     made.progress = lambda way: report_progress(way / 2)
     run, kind = made.ending(tolerance)
+    require_begun(run.outcome, run.pieces)
     made.progress = lambda way: report_progress((1 + way) / 2)
     other = made.other_kind(kind, tolerance)
     report_progress(1.0)
@@ -181,6 +183,8 @@ class _Follower:
 
     def _on(self, run: Transient | None, place: Place, length: float, tolerance: float) -> Transient:
         found = follow(self.line, place, length, self.asked, tolerance, MOST_STEPS, self.last)
+        if run is None and found.outcome.kind != OUT_OF_TIME:
+            require_begun(found.outcome, found.pieces)
         made = Transient.of(self.line, found, self.asked, tolerance, place.time, "", self.line.assembly.line)
         return made if run is None else run.joined(made)
 

@@ -22,6 +22,7 @@ from trunnion.motion.transients.stepping import Found, Place, Stepper
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
+    from trunnion.results.outcome import Outcome
 
 Actions = tuple[tuple[AppliedTorque, ...], tuple[FrictionTorque, ...], tuple[LevelCrossing, ...]]
 """What acts and what is watched."""
@@ -129,6 +130,17 @@ def follow(
         unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
     )  # fmt: skip
     return stepper.run(place, duration, progress)
+
+
+def require_begun(outcome: Outcome, pieces: Sequence[object]) -> None:
+    """Refuse a run that ended before its first step: there is no motion to say anything of.
+
+    Raises
+    ------
+    InputError : so, in the words of its outcome.
+    """
+    if not pieces:
+        raise InputError(f"ends where it begins: {outcome.sentence}", element="run")
 
 
 def _require_times(torque: PlacedTorque, since: float, until: float) -> None:

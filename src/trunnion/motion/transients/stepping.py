@@ -201,7 +201,8 @@ class Stepper:
             if progress is not None:
                 progress((place.time - begin) / duration)
             if why := time_is_up():
-                words = f"{why.replace('the search', 'the run')} at t = {place.time:.6g} s; what was computed is kept"
+                kept = "what was computed is kept" if pieces else "nothing was computed"
+                words = f"{why.replace('the search', 'the run')} at t = {place.time:.6g} s; {kept}"
                 return Found(pieces, place, Outcome(False, "out of time", words), crossed)
             ahead = knots[knots > place.time]
             soon = place.time + chunk if place.time + chunk < end - LEAST * duration else end
@@ -228,6 +229,8 @@ class Stepper:
                 continue
             steps += trajectory.steps
             guess = min(trajectory.next_step, until - place.time)
+            if not trajectory.steps and trajectory.end not in (IntegrationEnd.REACHED, IntegrationEnd.STOPPED):
+                return Found(pieces, place, self._failed(place, trajectory, watched), crossed)
             pieces.append(Piece(self.line, trajectory, self.numbers.copy(), self.torques, self.frictions))
             if wrong := self._overloaded(place, trajectory):
                 return Found(pieces, self._after(place, trajectory), wrong, crossed)
@@ -246,14 +249,40 @@ class Stepper:
                             self.cells[k][i] = axis.piece(place.time)
                 continue
             if trajectory.end is not IntegrationEnd.STOPPED:
-                system = self.line.system
-                guards = (*(system.regimes.guards if system.regimes else ()), *(w.label for w in watched))
-                return Found(pieces, place, outcome_of(system, trajectory, self.tolerance, guards), crossed)
+                return Found(pieces, place, self._failed(place, trajectory, watched), crossed)
             hit = watched[int(trajectory.event_which[-1]) - own]
             if hit.act is None:
                 words = f"stopped at t = {place.time:.6g} s, where the {hit.label}"
                 return Found(pieces, place, Outcome(True, "crossed", words), crossed)
             place = hit.act(place)
+
+    def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[_Watched]) -> Outcome:
+        """The outcome of a run whose integration ended at ``place``, and what of its torques is no number there."""
+        if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
+            return wrong
+        system = self.line.system
+        guards = (*(system.regimes.guards if system.regimes else ()), *(w.label for w in watched))
+        return outcome_of(system, trajectory, self.tolerance, guards)
+
+    def _no_number(self, place: Place) -> Outcome | None:
+        """The outcome of a run in which a formula or a function gives no number at ``place``, or just behind it."""
+        self._write_course(place)
+        soon = LATER * max(abs(place.time), 1 / max(self.fastest, self.usual))
+        for one, cell in zip(self.torques, self.cells, strict=True):
+            if not (one.stated.by_program and one.acts(cell)):
+                continue
+            angle, speed = (one.sense * value for value in self._of_station(place, one.station))
+            found = [one.value(place.time + later, speed, angle + later * speed) for later in (0.0, soon)]
+            if np.isfinite(found).all():
+                continue
+            said = "its function" if one.stated.formula is None else f"the formula {one.stated.formula!r}"
+            words = (
+                f"stopped at t = {place.time:.6g} s, where {said} of the torque on {one.stated.on} gives no finite "
+                f"number (its speed is {about_speed(speed, self.unit)}, its angle {angle:.6g} rad); look for roots, "
+                "logarithms and quotients there"
+            )
+            return Outcome(False, "no number", words)
+        return None
 
     def _regime(self, place: Place) -> int:
         if place.regime != LOCATED:

@@ -20,7 +20,7 @@ from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
-from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others
+from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others, require_begun
 from trunnion.motion.transients.result import Transient
 from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
@@ -73,7 +73,8 @@ def transient(
     Raises
     ------
     InputError : no duration; a torque, friction or crossing where there is nothing for it; times beyond a table; some
-        drives with a share given a torque and others not; an excitation that varies with speed.
+        drives with a share given a torque and others not; an excitation that varies with speed; a run that ends where
+        it begins, as where a torque says nothing at its first speed.
 
     Examples
     --------
@@ -121,6 +122,7 @@ def transient(
     state = _start(prepared, _balanced(description, prepared, asked, begin), start, begin, angle)
     place = Place(0.0, state, angle=angle, speed=begin)
     found = follow(prepared, place, length, acting, tolerance, most_steps, progress=progress)
+    require_begun(found.outcome, found.pieces)
     return Transient.of(prepared, found, asked, tolerance, 0.0, name, description)
 
 
