@@ -6,7 +6,7 @@ Lyapunov exponents of the paper's equation by the standard definition.
 """
 
 import trunnion as tn
-from trunnion.studies.double_tripod.published import DoubleTripod
+from trunnion.papers.double_tripod.published import DoubleTripod
 
 found = tn.lyapunov_spectrum(DoubleTripod().system("input"), periods=400, starts=1)
 picture = found.plot()

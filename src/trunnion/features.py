@@ -295,6 +295,16 @@ ROWS: dict[str, Row] = {
         },
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
+    "settled temperatures": _row(
+        refused={
+            **_FAR_END,
+            "free start": "bent, it moves about its own periodic motion, which is found line by line",
+            "drive share": "belongs to free–free lines, of which the bent ones are refused",
+        },
+        said=_BY_PLACE,
+        inert={**_PASSIVE, **_STICKS},
+        set_aside=(DRAGGED,),
+    ),
     "multipliers": _row(
         refused={**_BASE, **_OTHER_SPEEDS},
         said={**_SERIES, **QUASI_STATIC},

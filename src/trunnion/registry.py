@@ -128,7 +128,7 @@ ANALYSES = (
     Analysis(
         "coupling_temperatures",
         "Where the temperature of elastic couplings settles by the heat of their damping, if anywhere.",
-        features="linear motion",
+        features="settled temperatures",
         pictures={"CouplingTemperatures.plot": "trunnion.pictures.coupling_temperatures:coupling_temperatures"},
         command="trunnion.cli.orders:coupling_temperatures",
     ),

@@ -1192,6 +1192,21 @@ PYTHON = [
         "disturbance = 'x': is not a list of Disturbance",
         "tn.Disturbance",
     ),
+    (
+        lambda: torque(breakdown_torque=1, breakdown_slip=0.2, synchronous_speed=-5),
+        "torque on pump.synchronous_speed = -5: must be positive",
+        "write its magnitude",
+    ),
+    (
+        lambda: tn.FrictionTorque(on="pump", torque=-5),
+        "friction on pump.torque = -5: must not be negative",
+        "write its magnitude",
+    ),
+    (
+        lambda: tn.LevelCrossing(of="pump", speed=1, ends="no"),
+        "crossing of pump.ends = 'no': is neither true nor false",
+        "without quotes",
+    ),
     (lambda: torque(power=9.0), "torque on pump.speed: must be two positive speeds beside power", "100 rpm"),
     (
         lambda: torque(power=9.0, speed=[1, 2], torque=[1, 2]),

@@ -12,7 +12,7 @@ import trunnion
 from trunnion.registry import PICTURES
 
 ROOT = Path(trunnion.__file__).parent
-NAMES_OF_THE_READER = {"catalogue", "reference_system", "gear_pair"}
+NAMES_OF_THE_READER = {"catalogue", "reference_system", "gear_pair", "component"}
 """Their keywords are the parameters of what is asked for."""
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Power, Several, Speed, Time, Torque, optional
-from trunnion.driveline.record import Record, as_tuple, one_of
+from trunnion.driveline.record import Record, Switch, as_tuple, one_of
 from trunnion.errors import InputError
 
 Between = Literal["lines", "cubic", "steps"]
@@ -95,7 +95,7 @@ class AppliedTorque(Record):
     between: Annotated[
         Between, BeforeValidator(one_of(BETWEEN, "is no way between points", 'write "lines"', near=True))
     ] = Field(default="lines", description="what the torque does between its points")
-    hold: bool = Field(default=False, description="whether the first and last value last beyond the points")
+    hold: Switch = Field(default=False, description="whether the first and last value last beyond the points")
     breakdown_torque: Maybe[Torque] = optional(default=None, description="of an asynchronous motor")
     breakdown_slip: Maybe[Dimensionless] = optional(default=None, description="at which it gives that")
     synchronous_speed: Maybe[Speed] = optional(default=None, description="of the motor's shaft")
@@ -172,7 +172,8 @@ class AppliedTorque(Record):
         assert slip is not None and torque is not None and speed is not None
         for key, value in (("breakdown_torque", torque), ("synchronous_speed", speed)):
             if not value > 0:
-                raise InputError("must be positive", key=key, value=value)
+                remedy = "write its magnitude: it drives its disk in the sense in which that turns"
+                raise InputError("must be positive", key=key, value=value, remedy=remedy)
         if not 0 < slip < 1:
             raise InputError("must lie between 0 and 1", key="breakdown_slip", value=slip, remedy="write 0.2, say")
         if len(self.factor) != len(self.time):
@@ -320,7 +321,10 @@ class FrictionTorque(Record):
     def _whole(self) -> FrictionTorque:
         for key in ("torque", "since", "rise"):
             if getattr(self, key) < 0:
-                raise InputError("must not be negative", key=key, value=getattr(self, key))
+                remedy = (
+                    "write its magnitude: friction resists either way" if key == "torque" else "times count from t = 0"
+                )
+                raise InputError("must not be negative", key=key, value=getattr(self, key), remedy=remedy)
         if self.static is not None and self.static < self.torque:
             remedy = f"write {self.torque:g} N*m or more, or leave it out"
             raise InputError("is less than in motion", key="static", value=self.static, remedy=remedy)

@@ -45,6 +45,16 @@ def _whole(value: object) -> object:
 WholeNumber = Annotated[int | None, BeforeValidator(_whole)]
 
 
+def _switch(value: object) -> object:
+    if not isinstance(value, bool):
+        raise InputError("is neither true nor false", value=value, remedy="write true or false, without quotes")
+    return value
+
+
+Switch = Annotated[bool, BeforeValidator(_switch)]
+"""True or false, and no text or number that may mean it."""
+
+
 class Record(BaseModel):
     """Base of all that is stated: checks itself when it is made, with an InputError for all that is wrong.
 

@@ -44,7 +44,7 @@ from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.parts import Dragged, Sprung
 from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Speed, TableList, Time, Torque, optional
-from trunnion.driveline.record import Name, Named, Record, listed, one_of
+from trunnion.driveline.record import Name, Named, Record, Switch, listed, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.errors import InputError
@@ -87,7 +87,7 @@ class LevelCrossing(Record):
         Literal["rising", "falling", "either"],
         BeforeValidator(one_of(("rising", "falling", "either"), "is not a direction", 'write "rising"', near=True)),
     ] = Field(default="either", description="in which the level is crossed")
-    ends: bool = Field(default=True, description="whether the run ends there")
+    ends: Switch = Field(default=True, description="whether the run ends there")
 
     @classmethod
     def called(cls, data: dict[str, Any]) -> str:

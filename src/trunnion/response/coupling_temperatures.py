@@ -22,6 +22,7 @@ from trunnion.driveline.operating_speed import settled_speeds, speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.quantities import TEMPERATURE, shown
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import refuse_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.response.orders.response import response_of_table
@@ -154,6 +155,7 @@ def coupling_temperatures(
     """
     assembly = assemble(line, load_case)
     couplings = _asked(assembly)
+    refuse_periodic_base(assembly, "put a ConstantSpeed in front, or take the joints straight")
     speed = settled_speeds(assembly.line, speeds_of(speeds, "np.linspace(tn.rpm(300), tn.rpm(3000), 61)"))
     problem = _ThermalBalance(assembly, couplings)
     found = problem.alone(speed) if len(couplings) == 1 else [problem.together(one) for one in speed]
