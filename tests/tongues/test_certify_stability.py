@@ -11,9 +11,11 @@ import pytest
 import trunnion as tn
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import line_matrices
-from trunnion.floquet.certificate.box_coefficients import NumberRange, require_linear
+from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.box_equations import BoxMatrix, box_matrix
+from trunnion.floquet.certificate.certify import proved_over
 from trunnion.floquet.certificate.judge import judge
+from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.certificate.waves import Wave, affine, ahead
 from trunnion.floquet.tolerance.spread import read_tolerances
 from trunnion.results.verdict import Verdict
@@ -345,6 +347,91 @@ BAD = [
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.1}, (1.0, 2.0), most_boxes=0), "most_boxes = 0: must"),
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.1}, (1.0, 2.0), within=0), "within = 0: must"),
 ]  # fmt: skip
+
+
+def along_a_curve() -> tn.Driveline:
+    """A fan whose torque is flat at 20, 30 and 40 rad/s and falls between, at 25 by 1.5 N m s/rad and more."""
+    points = ((5, 10), (24, 10), (26, 7), (28, 10), (32, 10), (34, 7), (36, 10), (75, 10))
+    curve = [{"speed": float(speed), "torque": float(torque)} for speed, torque in points]
+    return tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e3, damping=0.2), tn.Fan(inertia=1.0, curve=curve)])
+
+
+def through_the_limit() -> tn.Driveline:
+    """A motor whose controller acts from 24.8 to 25.2 rad/s alone."""
+    motor = tn.Motor(inertia=1.0, gain=5.0, set_speed=25.0, torque_limit=1.0)
+    return tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e3, damping=0.2), motor])
+
+
+def with_set_motor(torque: float) -> tn.Driveline:
+    """A motor whose slope falls with what it carries, either way, and a load that drives what swings."""
+    motor = tn.Motor(
+        inertia=0.4, breakdown_torque=100.0, breakdown_slip=0.2, synchronous_speed=150.0, drive_share=1.0
+    )  # fmt: skip
+    load = tn.Disk(inertia=1.0, load_torque=torque, viscous_load=-5.0)
+    return tn.Driveline([motor, tn.Shaft(stiffness=1e3, damping=2.0), load])
+
+
+def stages_without_load(torque: float = 0.0) -> tn.Driveline:
+    """A spring nine times as stiff beyond 10 N m, with which the joint's tongue lies at 95 rad/s."""
+    spring = tn.PiecewiseShaft.symmetric([(1e3, 0.01), (9e3, None)], damping=1.0)
+    load = tn.Disk(inertia=1.0, load_torque=torque)
+    return tn.Driveline([tn.ConstantSpeed(), spring, tn.HookeJoint(angle=0.5), load])
+
+
+def balanced_at_one_speed() -> tn.Driveline:
+    shaft = tn.Shaft(stiffness=1e3, damping=2.0)
+    return tn.Driveline([tn.Disk(inertia=1.0, load_torque=-100.0), shaft, tn.Disk(inertia=1.0, viscous_load=1.0)])
+
+
+BETWEEN = [
+    (along_a_curve, {}, (20.0, 40.0), along_a_curve, 25.0, "Fan 1 = "),
+    (
+        lambda: with_set_motor(750.0), {"Disk 1.load_torque": ("range", 655.0, 845.0)}, (150.0, 150 * (1 + 1e-15)),
+        lambda: with_set_motor(655.0), 150.0, "Disk 1.load_torque: moves other numbers",
+    ),
+    (
+        stages_without_load, {"Disk 1.load_torque": ("range", -50.0, 50.0)}, (94.0, 94.1),
+        lambda: stages_without_load(50.0), 94.05, "PiecewiseShaft 1 = 0: has stages",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("line", "shares", "speeds", "inside", "speed", "message"), BETWEEN)
+def test_what_turns_between_the_ends_of_a_box_is_not_proved(line, shares, speeds, inside, speed, message) -> None:
+    """Lines alike at the ends and in the middle of a box, and unstable between."""
+    assert tn.stability(inside(), speed).verdict is Verdict.UNSTABLE
+    with pytest.raises(tn.InputError, match=message):
+        tn.certify_stability(line(), shares, speeds)
+    assert shares or not proved_over(assemble(line()), speeds, 6)
+
+
+def test_a_controller_at_its_limit_is_not_taken_for_one_that_acts() -> None:
+    with pytest.raises(tn.InputError, match="Motor 1 = "):
+        tn.certify_stability(through_the_limit(), {}, (20.0, 40.0))
+    assert tn.certify_stability(through_the_limit(), {}, (24.9, 25.1)).verdict == "proved stable"
+
+
+def test_a_line_that_turns_steadily_at_one_speed_alone_has_no_range() -> None:
+    with pytest.raises(tn.InputError, match="torques do not balance"):
+        tn.certify_stability(balanced_at_one_speed(), {}, (100.0, 200.0))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.25, 0.5, 0.75, 1.0])
+@pytest.mark.parametrize("beside", [0.0, 9.0])
+def test_inertias_that_one_factor_moves_are_in_its_box_together(share: float, beside: float) -> None:
+    """There is one value of the parameter at which all entries are those of a line between the ends, by hand."""
+    fan = [tn.Fan(inertia=beside, quadratic_load=1e-4)] if beside else []
+    spring = tn.Shaft(stiffness=1.0, damping=0.01)
+    line = tn.Driveline([tn.ConstantSpeed(), spring, tn.Disk(inertia=1.0), *fan, spring, tn.Disk(inertia=1.0)])
+    assembly, factor = assemble(line), 0.5 + share
+    own = NumberRange("factor", assembly.packed.resolve("factor of Disk *.inertia"), 0.5, 1.5)
+    box, mine = box_matrix(assembly, (1.0, 1.0), [own]), 1 / np.array([factor + beside, factor])
+    p = np.linspace(-1, 1, 4001)[:, None]
+    there, rest = box.parts[:, box.last].real, box.rest[[0, 1], [2, 3]]
+    made = there[0, [0, 1], [2, 3]] + p * there[2, [0, 1], [2, 3]]
+    assert (np.abs(made - mine) <= rest + 3e-4).all(axis=1).any()
+    # Alike in proportion they go with one parameter, and nothing is left out.
+    assert (rest.max() < 1e-12) == (not beside)
 
 
 def rich_line() -> tn.Driveline:

@@ -1,14 +1,14 @@
 """The numbers that the equations of a line hold, over a box of speeds and tolerances.
 
 Parameter 1 is the speed, Ω = middle + p₁ half; the others are tolerances, from −1 at the low end of the box to 1 at the
-high one. Which numbers go with which tolerance, and that they do so linearly, follows from what the number is
-(``AFFINE``); two tolerances of one element may multiply. An inertia alone on its unknown is parametrised by its
-inverse, so that the equations are linear in it.
+high one. Which numbers go with which tolerance, and that they do so linearly, follows from what the number is and is
+checked (``requirements``); two tolerances of one element may multiply. An inertia alone on its unknown is parametrised
+by its inverse, so that the equations are linear in it: then so are all that its tolerance moves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -16,22 +16,14 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.elements import Element
-from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.parameters import Columns
-from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.stage_laws import has_stages
-from trunnion.errors import InputError
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine
 
 STATED = 1e-13
 """What numbers of a line may be wrong by, relative: how they follow from a description is not enclosed."""
-AFFINE = (
-    "stiffness", "damping", "mesh_stiffness", "mesh_damping", "loss_factor", "inertia", "fork_offset", "plane",
-    "load_torque", "viscous_load", "quadratic_load",
-)  # fmt: skip
-"""Numbers that the equations' own are linear in, one at a time."""
 ANGLE = "angle"
 STEEPEST = np.pi / 3
 """Largest angle that may scatter [rad]."""
@@ -161,37 +153,52 @@ def _put_twists(
     from trunnion.equations.coefficients import shaft_stiffness
 
     topo = assembly.topology
-    staged = _staged(assembly.line.elements[shafts[0]])
+    in_stage = staged(assembly.line.elements[shafts[0]])
     for i in shafts:
-        if (i, number) not in topo.behind or not (torque.size or staged):
+        if (i, number) not in topo.behind or not (torque.size or in_stage):
             continue
         behind = topo.behind[i, number]
-        if staged:
+        if in_stage:
             row = assembly.table(1, float(co.speed[0]))
             twist = float(assembly.coefficients(row).twist[0, e])
-            shift[behind] = shift[behind] + affine(twist, {}, shift[behind].parts.shape[0] - 1, shift[behind].last)
+            shift[behind] = shift[behind] + affine(
+                twist, {}, shift[behind].parts.shape[0] - 1, shift[behind].last, STATED * abs(twist)
+            )
         elif len(shafts) == 1:
             shift[behind] = shift[behind] + torque * stiffness.inverse()
         else:
             own = float(shaft_stiffness(assembly, assembly.table(1, float(co.speed[0])), i, number)[0])
-            shift[behind] = shift[behind] + torque * (1 / own)
+            twisted = torque * (1 / own)
+            shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size)
 
 
 def _inverses(
     assembly: Assembly, co: LineCoefficients, ranges: Sequence[NumberRange], many: int, last: int
 ) -> dict[int, Wave]:
-    """1/M of every unknown that turns all its inertia evenly and has one tolerance of them."""
+    """1/M of the unknowns that turn all their inertia evenly, where one tolerance moves them, and nothing else but
+    such inertias in the same proportion: the numbers between its ends then follow one parameter."""
     topo, found = assembly.topology, dict[int, Wave]()
-    for i, g in enumerate(g for g, c in enumerate(topo.coordinate) if c >= 0):
-        own = [s for s, one in enumerate(topo.stations) if one.group == g and co.inertia[:, s].any()]
-        if own != [topo.reference[g]]:
+    groups = [g for g, c in enumerate(topo.coordinate) if c >= 0]
+    own = [[s for s, one in enumerate(topo.stations) if one.group == g and co.inertia[:, s].any()] for g in groups]
+    even = {stations[0]: i for i, (g, stations) in enumerate(zip(groups, own, strict=True))
+            if stations == [topo.reference[g]]}  # fmt: skip
+    felt = [s for stations in own for s in stations]
+    moves = co.inertia[1::2] != co.inertia[2::2]
+    others = co.stiffness, co.damping, co.load, co.viscous, co.quadratic, co.shift
+    for j in range(len(ranges)):
+        low, high = 1 + 2 * j, 2 + 2 * j
+        moved = [s for s in felt if moves[j, s]]
+        if any(s not in even or moves[:, s].sum() > 1 for s in moved):
             continue
-        mass = co.inertia[:, own[0]]
-        moved = [j for j in range(len(ranges)) if mass[1 + 2 * j] != mass[2 + 2 * j]]
-        if len(moved) == 1:
-            ends = 1 / mass[1 + 2 * moved[0]], 1 / mass[2 + 2 * moved[0]]
+        if any((part[low] != part[high]).any() for part in others):
+            continue
+        share = co.inertia[low, moved] / co.inertia[high, moved]
+        if moved and np.ptp(share) > 1e-15 * share.max():
+            continue
+        for s in moved:
+            ends = 1 / co.inertia[low, s], 1 / co.inertia[high, s]
             middle, half = (ends[0] + ends[1]) / 2, (ends[1] - ends[0]) / 2
-            found[i] = affine(float(middle), {2 + moved[0]: float(half)}, many, last, STATED * float(max(ends)))
+            found[even[s]] = affine(float(middle), {2 + j: float(half)}, many, last, STATED * float(max(ends)))
     return found
 
 
@@ -216,107 +223,7 @@ def _tangent(assembly: Assembly, s: int, ranges: Sequence[NumberRange], many: in
     return None
 
 
-def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> None:
-    """Refuse tolerances in which the equations are not linear, and what changes its kind with the speed.
-
-    Raises
-    ------
-    InputError : names the parameter or the element, and the value.
-    """
-    line, topo, place = assembly.line, assembly.topology, list(assembly.packed.place)
-    for one in ranges:
-        for k, column in enumerate(one.columns.index.tolist()):
-            element, key = place[column]
-            owner = line.elements[element] if element >= 0 else None
-            hooke = key == ANGLE and isinstance(owner, HookeJoint)
-            if (key not in AFFINE and not hooke) or owner is None:
-                raise InputError(
-                    "cannot scatter in a certificate", key=one.label,
-                    remedy="stiffness, damping, inertia, fork_offset, plane, loads, and the angle of a HookeJoint can; "
-                    "tolerance_study takes every number",
-                )  # fmt: skip
-            ends = [float(one.columns.offset[k] + one.columns.slope[k] * v) for v in (one.low, one.high)]
-            if hooke and max(abs(end) for end in ends) >= STEEPEST:
-                worst = max(ends, key=abs)
-                raise InputError("may reach 60° at most in a certificate", key=one.label, value=worst)
-            if hooke and topo.free:
-                raise InputError(
-                    "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
-                    remedy="put a ConstantSpeed in front",
-                )  # fmt: skip
-            _require_single(assembly, one, element, key)
-            if key in ("damping", "mesh_damping") and ends[0] * ends[1] <= 0:
-                raise InputError(
-                    f"would go from {one.low:.6g} to {one.high:.6g}, and damping that reaches zero cannot be certified",
-                    key=one.label, remedy="keep it on one side of zero",
-                )  # fmt: skip
-    _require_even(assembly, speeds)
-    loaded = any(place[c][1] in AFFINE[-3:] for one in ranges for c in one.columns.index.tolist())
-    co = assembly.coefficients(assembly.table(1, speeds[1]))
-    by_speed = bool(co.viscous.any() or co.quadratic.any())
-    for compliance, torque in zip(topo.compliances, co.torque[0], strict=True):
-        element = line.elements[compliance.shafts[0]]
-        if _staged(element) and torque and (loaded or (by_speed and speeds[0] < speeds[1])):
-            raise InputError(
-                "has stages, and its load varies within the box: whether it stays in one stage is not followed",
-                element=line.names[compliance.shafts[0]], value=float(torque),
-                remedy="write a Shaft of its stiffness under load, or give one speed and no tolerance of loads",
-            )  # fmt: skip
-    for name, element in line.parts:
-        if isinstance(element, SlipClutch) and (loaded or by_speed) and co.torque.any():
-            raise InputError(
-                "may slip where the load varies within the box, which a certificate does not follow", element=name,
-                key="torque", value=element.torque, remedy="write a Ratio of 1 in its place",
-            )  # fmt: skip
-
-
-def _staged(element: Element) -> bool:
+def staged(element: Element) -> bool:
     """Whether stiffness or damping of a spring depend on what it carries: not of a mesh without play."""
     alike = len(getattr(element, "stiffnesses", ())) <= 1 and not getattr(element, "total_backlash", 0.0)
     return has_stages(element) and not (alike and not getattr(element, "impact_damping", 0.0))
-
-
-def _require_single(assembly: Assembly, one: NumberRange, element: int, key: str) -> None:
-    """Refuse what scatters in springs in series or with stages, of which only the whole enters the equations."""
-    for compliance in assembly.topology.compliances:
-        if element not in compliance.shafts or key in ("fork_offset", "plane", "inertia"):
-            continue
-        if len(compliance.shafts) > 1 and key in ("stiffness", "damping", "loss_factor"):
-            raise InputError(
-                "belongs to one of several springs in series, and what scatters in a certificate must be a spring of "
-                "its own", key=one.label, remedy="write them as one Shaft, or put a Disk between",
-            )  # fmt: skip
-        staged = _staged(assembly.line.elements[element]) and key != "mesh_damping"
-        if staged and (key != "mesh_stiffness" or assembly.coefficients(assembly.table(1, 1.0)).torque.any()):
-            raise InputError(
-                "belongs to a spring with stages, and cannot scatter in a certificate under load", key=one.label,
-                remedy="write a Shaft of its stiffness under load",
-            )  # fmt: skip
-
-
-def _require_even(assembly: Assembly, speeds: tuple[float, float]) -> None:
-    """Refuse what takes another stiffness, damping or load with every speed: curves of machines, pendulums."""
-    table = assembly.table(3)
-    table[:, 0] = speeds[0], sum(speeds) / 2, speeds[1]
-    co = assembly.coefficients(table, statically_twisted=False)
-    checks: list[tuple[Array, Callable[[int], int]]] = [
-        (co.stiffness, lambda e: assembly.topology.compliances[e].shafts[0]),
-        (co.damping, lambda e: assembly.topology.compliances[e].shafts[0]),
-        *((part, _rotor_at(assembly)) for part in (co.viscous, co.quadratic)),
-    ]
-    if any(law.nonuniform for law in co.joints):  # elsewhere a constant load moves nothing
-        checks.append((co.load, _rotor_at(assembly)))
-    for part, element in checks:
-        spread = np.ptp(part, axis=0)
-        worst = int(spread.argmax()) if spread.size else 0
-        if spread.size and spread[worst] > 1e-12 * np.abs(part).max():
-            raise InputError(
-                "goes with the speed along a curve of its own, which a certificate over a range of speeds does not "
-                "enclose", element=assembly.line.names[element(worst)], value=float(part[0, worst]),
-                remedy="state its tangent, a viscous_load or quadratic_load",
-            )  # fmt: skip
-
-
-def _rotor_at(assembly: Assembly) -> Callable[[int], int]:
-    at = dict(assembly.topology.disks)
-    return lambda station: at.get(station, assembly.topology.stations[station].element)

@@ -170,7 +170,7 @@ class _BoxLine:
             for m, amplitude, phase in zip(law.orders, law.amplitude, law.phase, strict=True):
                 a, at = float(np.ravel(amplitude)[0]), float(np.ravel(phase)[0])
                 z = circle(m) * complex(np.exp(1j * at))
-                z = Wave(z.parts, z.rest + 1e-14 * z.size)
+                z = Wave(z.parts, z.rest + 1e-13 * z.size)
                 sine, cosine = (z - z.conjugate()) * (-0.5j * a), (z + z.conjugate()) * (0.5 * a)
                 forward, eta = forward + sine, eta + cosine * m
                 slope, curvature = slope - sine * m**2, curvature - cosine * m**3

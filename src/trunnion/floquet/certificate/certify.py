@@ -23,8 +23,9 @@ from trunnion.equations.steady_base import has_joint_angles, refuse_dragged, req
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.certificate.box_coefficients import NumberRange, require_linear
+from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.judge import JudgedBox, judge
+from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.stability.stability import stability
 from trunnion.floquet.tolerance.parameter_intervals import table_at
 from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
@@ -155,7 +156,7 @@ def certify_stability(
     most_boxes = whole_number(most_boxes, "most_boxes", 1)
     assembly = assemble(line)
     require_provable(assembly)
-    require_steady_base(assembly, assembly.table(1, span[0]))
+    require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
     given = assembly.line.tolerances_by_path if tolerances is None else tolerances
     spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
     space = _Space(assembly, spreads, span)

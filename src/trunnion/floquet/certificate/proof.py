@@ -148,7 +148,7 @@ class _Bound:
         off = ~np.eye(size, dtype=bool)
         whole = (whole + whole.T) / 2
         whole[off] *= OUTWARD
-        whole[~off] += 1e-13 * np.abs(whole).sum(axis=1)
+        whole[~off] += 1e-12 * np.abs(whole).sum(axis=1)
         energy = near.T @ (p_all * OUTWARD) @ near * OUTWARD
         return cls(whole, each, (energy + energy.T) / 2, bool(e.sum(axis=1).max() < 0.5))
 
