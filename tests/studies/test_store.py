@@ -271,6 +271,7 @@ def test_values_are_those_of_the_analysis(quantities, tmp_path) -> None:
         assert verdict[k] == own.verdict
 
 
+@pytest.mark.slow
 def test_words_and_paths_into_results(tmp_path) -> None:
     """A name, one of several by its place and by its name, the largest of an array, and what may be None."""
     ranged = tn.Driveline([*line().elements], limits=[tn.Limit(of="Shaft 2", max_torque=5.0)])
