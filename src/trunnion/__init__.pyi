@@ -92,6 +92,8 @@ from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError
 from trunnion.errors import InputError as InputError
 from trunnion.errors import InputRemark as InputRemark
+from trunnion.exchange.exchange import export_line as export_line
+from trunnion.exchange.exchange import import_line as import_line
 from trunnion.floquet.certificate.certify import certify_stability as certify_stability
 from trunnion.floquet.charts.stability_chart import load_chart as load_chart
 from trunnion.floquet.charts.stability_chart import stability_chart as stability_chart

@@ -94,6 +94,11 @@ CASES = [
     (("new", "two-shaft", "folder"), ("'folder': is a folder",)),
     (("new", "two-shaft", "no/such/a.toml"), ("its folder does not exist",)),
     (("new", "tow-shaft"), ("new = 'tow-shaft': is not a starter", 'did you mean "two-shaft"?')),
+    (("export", "line.toml", "--to", "csv", "-o", "line.toml"), ("does not end in .csv",)),
+    (("export", "line.toml", "--to", "cvs", "-o", "l.csv"), ("is no target", 'did you mean "csv"?')),
+    (("export", "line.toml", "--to", "csv", "-o", "l.csv"), ("HookeJoint 1.angle", "write angle = 0")),
+    (("import", "line.toml"), ("cannot be imported", "ends in .csv, .py or .mo")),
+    (("import", "none.mo"), ("file not found",)),
     # the command itself
     (("analyse", "line.toml"), ("No such command 'analyse'",)),
     (("analyze",), ("Missing argument 'FILE'", "--help")),

@@ -2126,7 +2126,25 @@ PYTHON = [
     (lambda: line().at_schedule("axle", 0.0), "schedule = 'axle': is not a schedule", "there are none"),
     (lambda: tn.envelope(line(), points=1), "points = 1: must be a whole number, 2 or more", ""),
     (lambda: starter("tow-shaft"), "new = 'tow-shaft': is not a starter", 'did you mean "two-shaft"?'),
-]
+    (
+        lambda: tn.export_line(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), "l.csv", "cvs"),
+        "to = 'cvs': is no target", 'did you mean "csv"?',
+    ),
+    (
+        lambda: tn.export_line(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), "l.txt", "csv"),
+        "output = 'l.txt': does not end in .csv", "a file for csv does",
+    ),
+    (
+        lambda: tn.export_line(line(Disk(inertia=1), HookeJoint(angle=0.1), Disk(inertia=1)), "l.csv", "csv"),
+        "HookeJoint 1.angle = 0.1: bends", "write angle = 0",
+    ),
+    (
+        lambda: tn.export_line(line(ConstantSpeed(), Shaft(stiffness=1), Disk(inertia=1)), "l.py", "opentorsion"),
+        "ConstantSpeed 1: holds a rotation, which openTorsion does not", "a Disk with its inertia",
+    ),
+    (lambda: tn.import_line("l.mat"), "l.mat: cannot be imported", "export the line to csv"),
+    (lambda: tn.import_line("none.csv"), "none.csv: file not found", "check the path"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(("action", "start", "also"), PYTHON, ids=[row[1] for row in PYTHON])

@@ -22,6 +22,8 @@ LAYERS = (
     {"numerics/chain", "systems"},
     {"equations", "results"},
     {"features"},
+    # Lines as files of other programs.
+    {"exchange"},
     # What stands still, and what repeats: modes of the straight line, then the periodic motion that stability,
     # responses and motions are judged about. A free–free line finds its own by shooting or by balance.
     {"modes", "steady", "steady/shooting"},

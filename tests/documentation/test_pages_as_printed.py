@@ -9,7 +9,7 @@ from as_printed import ROOT, blocks_of, run, same
 
 LONG = ("first-hour-researcher.md", "how-do-i.md", "index.md")
 """They take more than a few seconds."""
-PAGES = ("first-hour-engineer.md", *LONG)
+PAGES = ("first-hour-engineer.md", "exchange.md", *LONG)
 
 
 @pytest.mark.filterwarnings("ignore::trunnion.InputRemark")

@@ -10,6 +10,7 @@ import typer
 
 import trunnion as tn
 from trunnion.cli.output import table, write_json
+from trunnion.cli.readers import read_line
 from trunnion.cli.typed import Json
 from trunnion.errors import InputError
 
@@ -106,6 +107,46 @@ def _write_new(target: Path, text: str, force: bool) -> None:
         raise InputError("exists already", key="output", value=str(target), remedy=remedy)
     with written_whole(target) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def export(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="Driveline file, or a name of the catalogue.")],
+    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion or modelica.")],
+    output: Annotated[
+        Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py or .mo file to write.")
+    ],
+    as_json: Json = False,
+) -> None:
+    """Write a line with straight joints for other programs: a table, a state space, openTorsion, Modelica."""
+    besides = tn.export_line(read_line(file), output, to)
+    if as_json:
+        write_json("export", {"written": str(output), "not_written": list(besides)})
+        return
+    typer.echo(f"wrote {output}")
+    if besides:
+        typer.echo(f"Not in it: {', '.join(besides)}.")
+
+
+def import_(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="File that trunnion export wrote: .csv, .py or .mo.")],
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Driveline file to write; default: print it.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Read a line from a table, a script for openTorsion or a Modelica model, as a driveline file."""
+    line = tn.import_line(file)
+    if output is not None:
+        if output.suffix != ".toml":
+            raise InputError("does not end in .toml", key="output", value=str(output), remedy="a driveline file does")
+        tn.dump(line, output)
+    if as_json:
+        written = {} if output is None else {"written": str(output)}
+        write_json("import", {**written, "toml": tn.dumps(line)})
+    elif output is None:
+        typer.echo(tn.dumps(line), nl=False)
+    else:
+        typer.echo(f"wrote {output}; look at it with: trunnion analyze {output}")
 
 
 def schema(as_json: Json = False) -> None:

@@ -139,11 +139,13 @@ COMMANDS: tuple[Callable[..., Any], ...] = (
     describe.catalogue,
     describe.components,
     describe.new,
+    describe.export,
+    describe.import_,
     describe.schema,
 )
 """In the order of the help; each goes by the name of its function."""
 for command in COMMANDS:
-    app.command(command.__name__.replace("_", "-"))(command)
+    app.command(command.__name__.rstrip("_").replace("_", "-"))(command)
 
 
 def main(args: list[str] | None = None) -> None:

@@ -1,0 +1,1 @@
+"""Lines as files of other programs: tables, a state space, openTorsion, Modelica."""
