@@ -86,6 +86,7 @@ def test_without_the_extra(study, monkeypatch) -> None:
     assert study("study.toml", "--dry-run").exit_code == 0
 
 
+@pytest.mark.slow
 def test_show_says_what_sampled_numbers_follow(study, here: Path) -> None:
     sampled = {"parameter": [{"path": "Shaft 1.damping", "tolerance": "20 %"}], "sampling": {"points": 64}}
     asked = stated(Path("s.zarr"), line="line.toml", arguments={"speed": 1.0}, **{**sampled})

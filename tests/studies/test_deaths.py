@@ -81,8 +81,10 @@ def deadly(monkeypatch: pytest.MonkeyPatch, *speeds: float) -> None:
     monkeypatch.setattr(StudyQuestion, "evaluated", evaluated)
 
 
-@pytest.mark.parametrize("quantities", [BATCH, CALLS])
-@pytest.mark.parametrize("chance", [0.0, 0.2])
+@pytest.mark.parametrize(
+    ("quantities", "chance"),
+    [(CALLS, 0.0), (BATCH, 0.2), *(pytest.param(*one, marks=pytest.mark.slow) for one in ((BATCH, 0.0), (CALLS, 0.2)))],
+)
 def test_points_that_kill_are_marked_and_no_others(quantities, chance, tmp_path, monkeypatch) -> None:
     whole = tn.study(stated(tmp_path / "b.zarr", quantities, parameter=grid(3), block=8), line=line(), workers=0)
     deadly(monkeypatch, SPEEDS[3], SPEEDS[4])
@@ -96,6 +98,7 @@ def test_points_that_kill_are_marked_and_no_others(quantities, chance, tmp_path,
     assert not list((tmp_path / "a.zarr").rglob("alone*"))
 
 
+@pytest.mark.slow
 def test_random_deaths_change_nothing(tmp_path) -> None:
     """Blocks of a batch stay together, though two of five attempts end with the death of the worker."""
     client = DyingClient(0.4)

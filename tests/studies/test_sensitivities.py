@@ -34,6 +34,7 @@ def ishigami(method: str, points: int) -> Study:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 def test_ishigami() -> None:
     found = sensitivities(ishigami("saltelli", 4096), "f")
     np.testing.assert_allclose(found.first, FIRST, atol=0.02)

@@ -52,13 +52,12 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return data_of(store)
 
 
-def moments(every: bool) -> list[Any]:
-    """Calls of the disk at which it fails: a few quick ones, and all."""
-    some = (1, 3, 17, 30, 36, 41, 47, 52, 60)
-    return [n if n in some else pytest.param(n, marks=pytest.mark.slow) for n in range(1, 75)] if every else list(some)
+def quick(some: set[Any], every: list[Any]) -> list[Any]:
+    """All of these as parameters of a test, those that are not among ``some`` marked slow."""
+    return [one if one in some else pytest.param(one, marks=pytest.mark.slow) for one in every]
 
 
-@pytest.mark.parametrize("at", moments(True))
+@pytest.mark.parametrize("at", quick({17, 36, 47}, list(range(1, 75))))
 def test_interrupted_at_any_write(at, tmp_path, undisturbed) -> None:
     store = tmp_path / "a.zarr"
     with pytest.MonkeyPatch.context() as patch:
@@ -72,9 +71,12 @@ def test_interrupted_at_any_write(at, tmp_path, undisturbed) -> None:
     assert not list(tmp_path.rglob(f"{writing.PREFIX}*")), "what was left is swept"
 
 
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS])
-@pytest.mark.parametrize("at", [2, 33, 40, 47, 58])
-def test_full_disk(number, at, tmp_path, undisturbed) -> None:
+DISKS = [(number, at) for number in (errno.ENOSPC, errno.EROFS) for at in (2, 33, 40, 47, 58)]
+
+
+@pytest.mark.parametrize("disk", quick({(errno.ENOSPC, 33), (errno.EROFS, 47)}, DISKS))
+def test_full_disk(disk, tmp_path, undisturbed) -> None:
+    number, at = disk
     store = tmp_path / "a.zarr"
     with pytest.MonkeyPatch.context() as patch:
         FailingDisk(patch, at, OSError(number, os.strerror(number)))
@@ -206,6 +208,7 @@ def damaged(path: Path, at: int) -> None:
     path.write_bytes(content)
 
 
+@pytest.mark.slow
 def test_damage_is_found_and_mended(tmp_path, undisturbed) -> None:
     store = tmp_path / "a.zarr"
     tn.study(small(store), line=line(), workers=0)
@@ -268,6 +271,7 @@ def test_values_are_those_of_the_analysis(quantities, tmp_path) -> None:
         assert verdict[k] == own.verdict
 
 
+@pytest.mark.slow
 def test_words_and_paths_into_results(tmp_path) -> None:
     """A name, one of several by its place and by its name, the largest of an array, and what may be None."""
     ranged = tn.Driveline([*line().elements], limits=[tn.Limit(of="Shaft 2", max_torque=5.0)])

@@ -20,7 +20,7 @@ MOST = 8
 OF_BATCH = 4096
 """Points of the batch that is timed."""
 OVERHEAD = 0.03
-"""Share of engine and store, measured at tasks of a second."""
+"""Share of engine and store: an estimate for tasks of a second."""
 
 
 @labelled

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import queue
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from threading import Thread
 from time import monotonic
 from typing import Any
 
@@ -33,10 +35,17 @@ AHEAD = 3
 """Tasks a worker that are sent."""
 MOST_BLOCKS = 256
 """Blocks of a task."""
+STARTED = 300.0
+"""Seconds that a process of this machine may take to start."""
 LATE = 45.0
-"""Seconds after which a process of this machine that has not come back is replaced."""
+"""Seconds after which a process of this machine that has not come back is replaced; twice as many each time, for it may
+be the machine that is slow."""
+REPLACED = 4
+"""Times in turn that processes are replaced though no block was done in between."""
 GONE = 180.0
 """Seconds without any worker after which nobody waits for one."""
+ANSWER = 120.0
+"""Seconds that the scheduler and the workers have to answer a question."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
 ATTEMPTS = 3
@@ -95,6 +104,7 @@ class StudyRun:
     own: bool = False
     last_seen: float = field(default_factory=monotonic)
     last_whole: float = field(default_factory=monotonic)
+    replaced: int = 0
 
     def __post_init__(self) -> None:
         self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
@@ -186,6 +196,7 @@ class StudyRun:
             self.progress.failed += failed
             mine = self.seconds_a_block
             self.seconds_a_block = seconds if not mine else 0.8 * mine + 0.2 * seconds
+        self.replaced = 0
         for shard in {block // part.blocks_a_shard for block, *_ in found}:
             self._compact(part, shard)
         self.report(self.progress)
@@ -251,7 +262,7 @@ class StudyRun:
 
     def _cancel(self, futures: list[Any]) -> None:
         try:
-            self.client.cancel(futures, force=True)
+            answered(self.client.cancel, futures, force=True)
         except Exception:  # the scheduler is not there to be told
             return
 
@@ -323,10 +334,13 @@ class StudyRun:
         """
         if self.client.status not in ("running", "newly-created"):
             raise ComputationError(LOST)
-        alive = self.client.nthreads()
+        try:
+            alive = answered(self.client.nthreads)
+        except Exception as error:
+            raise ComputationError(f"{LOST} ({type(error).__name__})") from None
         if len(alive) >= self.cores:
             self.last_whole = monotonic()
-        elif self.own and monotonic() - self.last_whole > LATE:
+        elif self.own and monotonic() - self.last_whole > LATE * 2**self.replaced:
             self._replace_lost(set(alive))
         if alive:
             self.last_seen = monotonic()
@@ -335,11 +349,20 @@ class StudyRun:
 
     def _replace_lost(self, alive: set[str]) -> None:
         """Start others for processes of this machine that died before their keeper knew that they had begun: Dask
-        forgets these."""
+        forgets these.
+
+        Raises
+        ------
+        ComputationError : those before did not come either.
+        """
+        if self.replaced >= REPLACED:
+            why = f"processes of this machine do not start, though they were replaced {REPLACED} times"
+            raise ComputationError(f"{why}; what is done is kept: run the study again with fewer workers")
+        self.replaced += 1
         cluster = self.client.cluster
         lost = [name for name, one in cluster.workers.items() if getattr(one, "worker_address", None) not in alive]
         if lost:
-            cluster.sync(cluster.scale_down, lost)
+            cluster.sync(cluster.scale_down, lost, callback_timeout=ANSWER)
         cluster.scale(self.cores)
         self.last_whole = monotonic()
 
@@ -352,9 +375,31 @@ def _of_worker(error: BaseException) -> Exception:
     return ComputationError(f"a worker failed: {type(error).__name__}: {error}; what is done is kept: resume")
 
 
+def answered(question: Callable[..., Any], *arguments: Any, **more: Any) -> Any:
+    """What Dask answers to a call that itself has no time limit.
+
+    Raises
+    ------
+    TimeoutError : nothing within ``ANSWER`` seconds.
+    """
+    reply: Future[Any] = Future()
+
+    def ask() -> None:
+        try:
+            reply.set_result(question(*arguments, **more))
+        except BaseException as error:
+            reply.set_exception(error)
+
+    Thread(target=ask, daemon=True, name="asks Dask").start()
+    return reply.result(ANSWER)
+
+
 def memory_of(client: Any) -> int:
-    """Bytes that all workers hold."""
-    workers = client.scheduler_info(n_workers=-1)["workers"].values()
+    """Bytes that all workers hold; 0 where the scheduler does not say, which is no reason to end a study."""
+    try:
+        workers = answered(client.scheduler_info, n_workers=-1)["workers"].values()
+    except (OSError, TimeoutError):
+        return 0
     return sum(int(one["metrics"].get("memory", 0)) for one in workers if one.get("metrics"))
 
 
@@ -369,13 +414,16 @@ def require_workers(client: Any, store: Store, scheduler: str) -> int:
 
     try:
         client.wait_for_workers(1, timeout=30)
-        versions = client.run(computed_by)
-        places = client.run(where_it_runs, str(store.path))
+        versions = answered(client.run, computed_by)
+        places = answered(client.run, where_it_runs, str(store.path))
     except ModuleNotFoundError as error:
         raise InputError(f"has a worker without {error.name}", key="scheduler", value=scheduler,
                          remedy="install this version of Trunnion with [scale] there") from None  # fmt: skip
     except TimeoutError:
-        raise InputError("has no workers", key="scheduler", value=scheduler, remedy="start some first") from None
+        raise InputError("has no workers that answer", key="scheduler", value=scheduler,
+                         remedy="start some first") from None  # fmt: skip
+    except OSError as error:
+        raise ComputationError(f"a worker ended before it had begun ({type(error).__name__}): run it again") from None
     ours = computed_by()
     for worker, theirs in versions.items():
         differ = [f"{key} {theirs.get(key)}, here {ours[key]}" for key in ours if theirs.get(key) != ours[key]]
@@ -390,7 +438,12 @@ def require_workers(client: Any, store: Store, scheduler: str) -> int:
 
 @contextmanager
 def workers_here(processes: int, memory: str | float | None = None, dashboard: int | None = 0) -> Iterator[Any]:
-    """A client of processes of this machine, of one thread each, that nobody else reaches; its page too."""
+    """A client of processes of this machine, of one thread each, that nobody else reaches; its page too.
+
+    Raises
+    ------
+    ComputationError : they do not start.
+    """
     dask, distributed = scale("dask"), scale("distributed")
     settings = {
         "distributed.scheduler.allowed-failures": 1,
@@ -407,11 +460,17 @@ def workers_here(processes: int, memory: str | float | None = None, dashboard: i
         dask.config.set(settings),
         _quiet(),
         distributed.LocalCluster(
-            n_workers=processes, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=page,
-            memory_limit=memory or "auto", silence_logs=50,
+            n_workers=0, threads_per_worker=1, processes=True, host="127.0.0.1", dashboard_address=page,
+            memory_limit=memory or "auto", silence_logs=50, death_timeout=STARTED,
         ) as cluster,
         distributed.Client(cluster, set_as_default=False) as client,
     ):  # fmt: skip
+        cluster.scale(processes)
+        try:
+            client.wait_for_workers(processes, timeout=STARTED)
+        except TimeoutError:
+            why = f"{processes} processes of this machine do not start within {STARTED:.0f} s"
+            raise ComputationError(f"{why}; ask for fewer workers, or 0 to compute here") from None
         yield client
 
 
