@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import tomllib
 import warnings
 from collections import Counter
@@ -336,14 +337,15 @@ def test_a_line_is_written_over_its_file_and_keeps_its_comments(tmp_path):
 
 def test_every_example_is_written_over_itself_as_it_was(tmp_path):
     examples = Path(__file__).parents[2] / "examples"
-    for file in sorted(examples.glob("*.toml")):
+    for one in (*examples.glob("*.toml"), *examples.glob("*.csv")):
+        shutil.copy(one, tmp_path)
+    for file in sorted(tmp_path.glob("*.toml")):
+        text = file.read_text()
         line = tn.load(file)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            tn.dump(line, tmp_path / file.name, comments_of=file)
-        assert tn.load(tmp_path / file.name) == line
-        gone, come = changed(file.read_text(), (tmp_path / file.name).read_text())
-        assert [one for one in gone if "#" in one] == [], file.name
+            tn.dump(line, file, comments_of=file)
+        assert file.read_text() == text
 
 
 def test_a_component_of_a_folder_is_written_out_elsewhere(tmp_path):

@@ -224,16 +224,37 @@ def _dumps_like(line: Driveline, file: Path, folder: Path) -> str:
     expand = partial(with_sheet, folder=file.parent)
     old = tomllib.loads(before)
     old["element"] = [expand(table) for table in old.get("element", [])]
-    data = quantities_kept(texts_kept(tomllib.loads(plain), old, line), old)
-    beside = file.parent.resolve() == folder.resolve()  # elsewhere the file of a component may not be found
+    data = quantities_kept(texts_kept(tomllib.loads(plain), old, line), old, texts=True)
+    beside = file.parent.resolve() == folder.resolve()  # elsewhere the file of a component or table may not be found
+    around = Surroundings(folder, False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputRemark)
+        for table, one, element in zip(data["element"], old["element"], line.as_stated.elements, strict=False):
+            _state_as(table, one, element, around if beside else None)
     found = rewritten(before, data, expand=expand if beside else None)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", InputRemark)
-        same = _loads(found.text, file.name, Surroundings(folder, False)) == line
+        same = _loads(found.text, file.name, around) == line
     lost = found.lost if same else f"comments of {file.name} could not be kept, its numbers are written another way"
     if lost:
         warnings.warn(InputRemark(f"{file.name}: {lost}"), stacklevel=3)
     return found.text if same else f"# {lost}\n{plain}"
+
+
+def _state_as(table: dict[str, Any], before: dict[str, Any], element: Element, around: Surroundings | None) -> None:
+    """Write the fields of an element as they were ``before`` wherever that makes the same element."""
+    for key in dict.fromkeys([*before, *table]):
+        if table.get(key) == before.get(key):
+            continue
+        tried = {one: value for one, value in table.items() if one != key}
+        if key in before:
+            tried[key] = before[key]
+        try:
+            if _element(tried, 1, Counter(), "", around) == element:
+                table.clear()
+                table.update(tried)
+        except InputError:
+            continue
 
 
 def _driveline(table: dict[str, Any], source: str, around: Surroundings | None) -> Driveline:

@@ -47,21 +47,26 @@ def _kept(text: str | float, old: Any, kind: QuantityKind) -> Any:
         return text
 
 
-def quantities_kept(new: Any, old: Any) -> Any:
-    """``new`` with the texts of ``old`` in place of plain numbers that say the same, as 250 for "250 N*m"."""
+def quantities_kept(new: Any, old: Any, texts: bool = False) -> Any:
+    """``new`` with the texts of ``old`` in place of plain numbers that say the same, as 250 for "250 N*m"; and in place
+    of other ``texts`` that do, as "0.1 GPa" for "100 MPa"."""
     if isinstance(new, dict) and isinstance(old, dict):
-        return {key: quantities_kept(value, old.get(key)) for key, value in new.items()}
+        return {key: quantities_kept(value, old.get(key), texts) for key, value in new.items()}
     if isinstance(new, list) and isinstance(old, list) and len(new) == len(old):
-        return [quantities_kept(one, other) for one, other in zip(new, old, strict=True)]
-    if isinstance(old, str) and isinstance(new, int | float) and not isinstance(new, bool) and any(_same(new, old)):
-        return old
-    return new
+        return [quantities_kept(one, other, texts) for one, other in zip(new, old, strict=True)]
+    if (
+        not isinstance(old, str)
+        or isinstance(new, bool)
+        or not isinstance(new, (int, float, str) if texts else (int, float))
+    ):
+        return new
+    return old if new != old and any(_same(new, old)) else new
 
 
-def _same(new: float, old: str) -> Iterator[bool]:
-    """For every kind of quantity that the text can be, whether it is the number."""
+def _same(new: str | float, old: str) -> Iterator[bool]:
+    """For every kind of quantity that both can be, whether they are the same one."""
     for kind in QUANTITY_KINDS:
         try:
-            yield abs(parse(old, kind) - new) <= ROUNDING * abs(new)
+            yield parse(old, kind) == parse(new, kind)
         except InputError:
             continue
