@@ -20,7 +20,7 @@ from tomlkit.exceptions import TOMLKitError
 
 _HEADER = re.compile(r"\s*\[")
 Table = dict[str, Any]
-Same = Mapping[tuple[str, ...], Sequence[int | None]]
+Same = Mapping[tuple[str | int, ...], Sequence[int | None]]
 
 
 @dataclass(frozen=True)
