@@ -412,7 +412,7 @@ class Session:
         """The content of a download. KeyError where there is none of that name."""
         view, line, toml = self.view_of(view_name), self.document.line, self.document.toml
         if (name, ending) == ("driveline", "toml"):
-            return toml.encode()
+            return self.document.file().text.encode()
         if (name, ending) == ("driveline", "html"):
             return await self._bytes(Job(toml, Call("tn.report", (LINE,)), "report"))
         steps = {step.name: step for step in view.steps(line)}

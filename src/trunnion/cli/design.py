@@ -22,6 +22,7 @@ from trunnion.cli.command_input import (
 from trunnion.cli.options import LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import (
+    file_of_line,
     is_number,
     line_of_file,
     place_of_line,
@@ -92,6 +93,7 @@ def optimise(
     seed: Annotated[int, NumberBounds(0)] = 0,
     write: Annotated[Path | None, OptionReader(place_of_line)],
     load_case: LoadCase = None,
+    file: Annotated[str, InputAttribute("file")],
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -105,14 +107,14 @@ def optimise(
     --checks/--no-checks  Whether limits and ratings of assess must be satisfied.
     --designs  Designs of the search from everywhere.
     --seed  Of the search.
-    --write PATH  Write the best design as a driveline file.
+    --write PATH  Write the best design as a driveline file, with the comments of the one given.
     """
     found = tn.optimise(
         line, dict(free), aim, speeds, checks=checks, load_case=load_case, designs=designs, seed=seed, unit=unit,
         progress=progress,
     )  # fmt: skip
     if write is not None:
-        tn.dump(found.line, write)
+        tn.dump(found.line, write, comments_of=file_of_line(file))
     return CommandOutput(found, written=[write] if write else [])
 
 

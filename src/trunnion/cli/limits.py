@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import trunnion as tn
-from trunnion.cli.command_input import CommandInput, NumberBounds, OptionReader
+from trunnion.cli.command_input import CommandInput, InputAttribute, NumberBounds, OptionReader
 from trunnion.cli.options import Line, Progress, Speed, SpeedRange, SpeedUnit
 from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
-from trunnion.cli.readers import place_of_line, read_box_range, read_speed
+from trunnion.cli.readers import file_of_line, place_of_line, read_box_range, read_speed
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 
@@ -142,6 +142,7 @@ def certify_stability(
     speeds: SpeedRange,
     boxes: int = 20_000,
     write: Annotated[Path | None, OptionReader(place_of_line)],
+    file: Annotated[str, InputAttribute("file")],
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -155,5 +156,5 @@ def certify_stability(
     found = tn.certify_stability(line, given, speeds, most_boxes=boxes, progress=progress)
     if write is None or found.unstable_line is None:
         return CommandOutput(found.in_unit(unit))
-    tn.dump(found.unstable_line, write)
+    tn.dump(found.unstable_line, write, comments_of=file_of_line(file))
     return CommandOutput(found.in_unit(unit), written=[write])

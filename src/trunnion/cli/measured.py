@@ -10,10 +10,10 @@ import typer
 
 import trunnion as tn
 from trunnion.cli import output
-from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
+from trunnion.cli.command_input import CommandInput, CommandSubject, InputAttribute, NumberBounds, OptionReader, Texts
 from trunnion.cli.options import Progress, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
-from trunnion.cli.readers import read_line
+from trunnion.cli.readers import file_of_line, read_line
 from trunnion.cli.typed import Command
 from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
@@ -178,6 +178,7 @@ def identify(
     tongue_at: Annotated[list[float] | None, OptionReader(_speeds)],
     write: Path | None = None,
     channel: str = "",
+    asked: Annotated[CommandInput, InputAttribute("itself")],
     progress: Progress,
     unit: SpeedUnit,
 ) -> CommandOutput:
@@ -204,7 +205,7 @@ def identify(
         data.column(channel)
     found = tn.identify(line, data, dict(free), tongue_at=tongue_at or (), progress=progress)
     if write is not None:
-        tn.dump(found.line, write)
+        tn.dump(found.line, write, comments_of=file_of_line(asked.texts["line"]))
 
     def more() -> None:
         output.table(found.table(), "Parameters")

@@ -246,6 +246,11 @@ def read_set(texts: Sequence[str] | None) -> dict[str, float]:
     return values
 
 
+def file_of_line(given: str) -> Path | None:
+    """The file that a line was read from; None for one of the catalogue."""
+    return Path(given) if Path(given).is_file() else None
+
+
 def place_of_line(asked: CommandInput, text: str, key: str) -> Path:
     """Where a line is to be written."""
     best = Path(text)

@@ -24,6 +24,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator
+from copy import deepcopy
 from dataclasses import dataclass
 from functools import partial
 from importlib.resources import files
@@ -100,6 +101,14 @@ def component(name: str, /, **changes: Any) -> Element:
     ('Coupling', 'example/rubber-16')
     """
     return find(name).element(**changes)
+
+
+def with_sheet(table: dict[str, Any], folder: Path | None = None) -> dict[str, Any]:
+    """What an element states, with the numbers of its sheet in place of the name of a component, if it has one."""
+    if "component" not in table:
+        return table
+    stated = {key: value for key, value in table.items() if key != "component"}
+    return deepcopy(find(table["component"], folder).table) | stated
 
 
 def components() -> tuple[Component, ...]:

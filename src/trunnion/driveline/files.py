@@ -18,6 +18,7 @@ Reading, writing and reading again gives an equal driveline: units are written w
 from __future__ import annotations
 
 import os
+import tomllib
 import warnings
 from collections import Counter
 from collections.abc import Callable
@@ -27,7 +28,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from trunnion.driveline.chain import refuse_too_many
-from trunnion.driveline.component_files import find
+from trunnion.driveline.component_files import find, with_sheet
 from trunnion.driveline.curve_points import read_curve
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.duty import Duty, SpeedPassage
@@ -183,13 +184,15 @@ def element_text(element: Element) -> str:
     return "\n".join(_element_blocks(element))
 
 
-def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
+def dump(line: Driveline, path: str | os.PathLike[str], *, comments_of: str | os.PathLike[str] | None = None) -> None:
     """Write `line` to a TOML file; the file appears whole or stays as it was.
 
     Parameters
     ----------
     line : any driveline; quantities are written with their units.
     path : of the file; one that is there is replaced.
+    comments_of : a driveline file that ``line`` came from; its comments, order and layout stay where nothing changed,
+        and what cannot be kept is said in a warning. By default there are none.
 
     Examples
     --------
@@ -203,12 +206,55 @@ def dump(line: Driveline, path: str | os.PathLike[str]) -> None:
     """
     if Path(path).is_dir():
         raise InputError("is a folder", key=str(path), remedy="name a file in it")
+    text = dumps(line) if comments_of is None else _dumps_like(line, Path(comments_of), Path(path).parent)
     try:
         with written_whole(path) as temporary:
-            temporary.write_text(dumps(line), encoding="utf-8", newline="\n")
+            temporary.write_text(text, encoding="utf-8", newline="\n")
     except InputError as error:
         remedy = "check that the folder exists and that you may write there"
         raise InputError(error.problem, key=str(path), remedy=remedy) from None
+
+
+def _dumps_like(line: Driveline, file: Path, folder: Path) -> str:
+    """``line`` in the text of a file that it came from, to be read in ``folder``."""
+    from trunnion.driveline.rewriting import rewritten
+    from trunnion.driveline.texts_kept import quantities_kept, texts_kept
+
+    before, plain = read_text(file), dumps(line)
+    expand = partial(with_sheet, folder=file.parent)
+    old = tomllib.loads(before)
+    old["element"] = [expand(table) for table in old.get("element", [])]
+    data = quantities_kept(texts_kept(tomllib.loads(plain), old, line), old, texts=True)
+    beside = file.parent.resolve() == folder.resolve()  # elsewhere the file of a component or table may not be found
+    around = Surroundings(folder, False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputRemark)
+        for table, one, element in zip(data["element"], old["element"], line.as_stated.elements, strict=False):
+            _state_as(table, one, element, around if beside else None)
+    found = rewritten(before, data, expand=expand if beside else None)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", InputRemark)
+        same = _loads(found.text, file.name, around) == line
+    lost = found.lost if same else f"comments of {file.name} could not be kept, its numbers are written another way"
+    if lost:
+        warnings.warn(InputRemark(f"{file.name}: {lost}"), stacklevel=3)
+    return found.text if same else f"# {lost}\n{plain}"
+
+
+def _state_as(table: dict[str, Any], before: dict[str, Any], element: Element, around: Surroundings | None) -> None:
+    """Write the fields of an element as they were ``before`` wherever that makes the same element."""
+    for key in dict.fromkeys([*before, *table]):
+        if table.get(key) == before.get(key):
+            continue
+        tried = {one: value for one, value in table.items() if one != key}
+        if key in before:
+            tried[key] = before[key]
+        try:
+            if _element(tried, 1, Counter(), "", around) == element:
+                table.clear()
+                table.update(tried)
+        except InputError:
+            continue
 
 
 def _driveline(table: dict[str, Any], source: str, around: Surroundings | None) -> Driveline:

@@ -92,6 +92,11 @@ TIME = QuantityKind("time", "s", "0.3 s", (("h", 3600.0, 3600.0), ("s", 1.0, 0.0
 TEMPERATURE = QuantityKind("temperature", "K", "60 degC")
 THERMAL_RESISTANCE = QuantityKind("thermal resistance", "K/W", "0.15 K/W")
 RATIO = QuantityKind("ratio", "1", "0.02")
+QUANTITY_KINDS = (
+    *(ANGLE, SPEED, FREQUENCY, STIFFNESS, DAMPING, QUADRATIC, MESH_STIFFNESS, MESH_DAMPING, IMPACT_DAMPING),
+    *(INERTIA, TORQUE, LENGTH, PRESSURE, DENSITY, MASS, AREA, FORCE),
+    *(VELOCITY, POWER, ACCELERATION, TIME, TEMPERATURE, THERMAL_RESISTANCE, RATIO),
+)
 FREEZING = 273.15
 """0 °C in kelvin; the only unit whose zero is not that of the SI unit."""
 CELSIUS = "degC"

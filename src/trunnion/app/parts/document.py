@@ -32,19 +32,17 @@ from trunnion.app.parts.form import (
     joints_of,
     names_of,
 )
-from trunnion.driveline.component_files import find
+from trunnion.driveline.component_files import find, with_sheet
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
-from trunnion.driveline.kinds import KINDS
-from trunnion.driveline.quantities import QuantityKind, eye_unit, parse
+from trunnion.driveline.rewriting import Rewritten, rewritten
 from trunnion.driveline.rules import RULES
+from trunnion.driveline.texts_kept import quantities_kept, texts_kept
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.errors import InputError, InputRemark
 
 MOST_STEPS = 200
 """Steps that can be undone."""
-ROUNDING = 1e-15
-"""What a number may lose when it is written short."""
 LARGEST_FILE = 1_000_000
 """Characters of a file that is taken from the browser."""
 _WORDS = (
@@ -59,6 +57,15 @@ class _DocumentState:
 
     data: dict[str, Any]
     keys: Mapping[Path, list[int]]
+    file: _OpenedFile
+
+
+@dataclass(frozen=True)
+class _OpenedFile:
+    """The text that was opened, and the keys of its listed tables."""
+
+    text: str
+    keys: Mapping[Path, list[int]]
 
 
 class Document:
@@ -68,9 +75,11 @@ class Document:
         self.line: Driveline = loads(text)
         data = _with_sheets(tomllib.loads(text))
         self._fresh = count(1)
-        self._history = [_DocumentState(data, self._new_keys(data))]
+        keys = self._new_keys(data)
+        self._history = [_DocumentState(data, keys, _OpenedFile(text, keys))]
         self._now = 0
         self.toml = text
+        self._accepted = self._history[0]
         self.problems: tuple[InputError, ...] = ()
         self._mover = ""
 
@@ -86,6 +95,17 @@ class Document:
             section = _section(group.path)
             made.append(replace(group, key=keys[section][int(group.path[-1])]) if section else group)
         return tuple(made)
+
+    def file(self) -> Rewritten:
+        """The file to save: the one opened with what was changed, comments and layout kept; the last valid line."""
+        state = self._accepted
+        same = {
+            section: [opened.index(key) if key in opened else None for key in keys]
+            for section, keys in state.keys.items()
+            if (opened := state.file.keys[section])
+        }
+        data = quantities_kept(state.data, tomllib.loads(state.file.text))
+        return rewritten(state.file.text, data, same, with_sheet)
 
     def place(self, path: Path, key: int) -> Path | None:
         """Where a field or a table is now whose ``path`` was read when its table had the ``key``; None: it is gone."""
@@ -130,9 +150,9 @@ class Document:
         if self.problems:
             remedy = "mend it in the table of Driveline, or undo it"
             raise InputError("holds what is refused, so no number can be moved", element="driveline", remedy=remedy)
-        data = _texts_kept(tomllib.loads(dumps(line)), self.data, line)
+        data = texts_kept(tomllib.loads(dumps(line)), self.data, line)
         if by and by == self._mover:
-            self._history[self._now] = _DocumentState(data, self._history[self._now].keys)
+            self._history[self._now] = replace(self._history[self._now], data=data)
             self._judge()
             return
         self._take(data)
@@ -177,7 +197,8 @@ class Document:
 
     def begin_empty(self) -> None:
         """No element at all; until there are enough of them for a line, the last one stays in the views."""
-        self._take({"format": self.data.get("format", 1)}, {section: [] for section in LISTS})
+        none: dict[Path, list[int]] = {section: [] for section in LISTS}
+        self._take({"format": self.data.get("format", 1)}, none, _OpenedFile("", none))
 
     def switch_off(self) -> None:
         """Switch off a rule that is not off yet; until its reason is given the line stays as it was."""
@@ -222,7 +243,8 @@ class Document:
             warnings.simplefilter("ignore", InputRemark)
             loads(text)
         data = _with_sheets(tomllib.loads(text))
-        self._take(data, self._new_keys(data))
+        keys = self._new_keys(data)
+        self._take(data, keys, _OpenedFile(text, keys))
 
     def undo(self) -> bool:
         """Take the last change back."""
@@ -273,14 +295,22 @@ class Document:
         """A key for a table that was put at the end of its list."""
         self._changed_keys[section].append(next(self._fresh))
 
-    def _take(self, data: dict[str, Any], keys: Mapping[Path, list[int]] | None = None) -> None:
-        if data == self.data:
+    def _take(
+        self,
+        data: dict[str, Any],
+        keys: Mapping[Path, list[int]] | None = None,
+        file: _OpenedFile | None = None,
+    ) -> None:
+        if data == self.data and (file is None or file.text == self._history[self._now].file.text):
             return
         if keys is None or any(len(_listed(data, section)) != len(own) for section, own in keys.items()):
-            own = self._history[self._now].keys
-            alike = all(len(_listed(data, section)) == len(one) for section, one in own.items())
-            keys = own if alike else self._new_keys(data)
-        self._history = [*self._history[: self._now + 1][-MOST_STEPS:], _DocumentState(data, keys)]
+            own, opened = self._history[self._now].keys, self._history[self._now].file
+            alike = {section: len(_listed(data, section)) == len(one) for section, one in own.items()}
+            keys = own if all(alike.values()) else self._new_keys(data)
+            if keys is not own:  # which of the tables is which is no longer known
+                file = _OpenedFile(opened.text, {section: [] for section in LISTS})
+        made = _DocumentState(data, keys, file or self._history[self._now].file)
+        self._history = [*self._history[: self._now + 1][-MOST_STEPS:], made]
         self._now = len(self._history) - 1
         self._mover = ""
         self._judge()
@@ -294,19 +324,13 @@ class Document:
             except InputError as error:
                 self.problems = error.problems
             else:
-                self.problems = ()
+                self.problems, self._accepted = (), self._history[self._now]
                 self.toml = text  # as typed: what is stated stays so, be it a default
 
 
 def _with_sheets(data: dict[str, Any]) -> dict[str, Any]:
     """The same with the numbers of its sheet in place of every component that is named."""
-    for table in data.get("element", []):
-        if "component" in table:
-            stated = {key: value for key, value in table.items() if key != "component"}
-            table_of_sheet = deepcopy(find(table["component"]).table)
-            table.clear()
-            table.update(table_of_sheet | stated)
-    return data
+    return data | {"element": [with_sheet(table) for table in data["element"]]} if "element" in data else data
 
 
 def _section(path: Path) -> tuple[str, ...] | None:
@@ -383,39 +407,6 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Planetary": {"teeth_sun": 30, "teeth_ring": 72, "input": "sun", "held": "ring"},
 }
 """What a new element starts with."""
-
-
-def _texts_kept(data: dict[str, Any], before: dict[str, Any], line: Driveline) -> dict[str, Any]:
-    """``data`` of ``line`` with the numbers of elements as ``before`` wrote them where they stay, and short where they
-    change. A field that was stated stays so with its default value too, which ``data`` leaves out."""
-    for key, value in before.items():
-        if key not in data and key in Driveline.model_fields and getattr(line, key) == value:
-            data[key] = value
-    tables = zip(data.get("element", []), before.get("element", []), line.as_stated.elements, strict=False)
-    for place, (new, old, element) in enumerate(tables):
-        model = KINDS.get(str(new.get("type", "")))
-        if model is None or old.get("type") != new.get("type"):
-            continue
-        added = {k: getattr(element, k) for k in old if k not in new and k in model.model_fields}
-        stated = new | {k: v for k, v in added.items() if isinstance(v, str | int | float)}
-        new = data["element"][place] = {k: stated[k] for k in dict.fromkeys([*old, *new]) if k in stated}
-        for key, text in new.items():
-            kind = model.quantity_of(key) if key in model.model_fields else None
-            if kind is not None and isinstance(text, str | int | float):
-                new[key] = _kept(text, old.get(key), kind)
-    return data
-
-
-def _kept(text: str | float, old: Any, kind: QuantityKind) -> Any:
-    try:
-        value = parse(text, kind)
-        if isinstance(old, str | int | float) and not isinstance(old, bool) and parse(old, kind) == value:
-            return old
-        unit, size = eye_unit(value, kind)
-        short = f"{value / size:.8g} {unit}"
-        return short if abs(parse(short, kind) - value) <= ROUNDING * abs(value) else text
-    except InputError:
-        return text
 
 
 def _read(text: str) -> Any:
