@@ -108,6 +108,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("slow") and item.path.name in STUDIES:
             item.add_marker("study")
+        if item.get_closest_marker("study"):
+            item.add_marker("slow")  # so that "not slow" leaves it out
     # Two workers take whole files in this order; a long one taken last would be waited for by the other worker.
     items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
 
