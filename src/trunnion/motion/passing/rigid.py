@@ -7,17 +7,34 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
+from trunnion.equations.applied_torques import PlacedTorque, placed_frictions, placed_torques, time_knots
 from trunnion.equations.line_system import LineSystem
+from trunnion.errors import InputError
 from trunnion.motion.transients.prepare import Actions
 
 LONGEST = 1e4
 """Times the inertia over the largest torque at the first speed, after which it is not waited for any longer."""
 
 
+def _finite(torque: PlacedTorque, time: float, speed: float, angle: float) -> float:
+    """Its value [N m]; without one the integrator below would not end."""
+    value = torque.value(time, speed, angle)
+    if not np.isfinite(value):
+        where = f"at t = {time:.4g} s, a speed of {speed:.4g} rad/s and an angle of {angle:.4g} rad"
+        problem = f"its formula or function gives no finite number {where}"
+        remedy = "look for roots, logarithms and quotients there"
+        raise InputError(problem, element=str(torque.stated.on), key="torque", value=value, remedy=remedy)
+    return value
+
+
 def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> float:
     """Time [s] from ``first`` to ``last`` [rad/s] of the input under the torques ``asked``, the line being rigid and
-    without angled joints; infinite where it never comes there."""
+    without angled joints; infinite where it never comes there.
+
+    Raises
+    ------
+    InputError : a formula or function that gives no finite number on the way.
+    """
     assembly, topo = line.assembly, line.assembly.topology
     co = line.untwisted(assembly.table(1, line.speed))
     ratio, inertia = topo.mean_speeds, float(co.inertia[0] @ topo.mean_speeds**2)
@@ -30,7 +47,7 @@ def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> f
         total = -float(load @ np.abs(ratio))
         for one in torques:
             size = abs(ratio[one.station])
-            total += size * one.value(t, size * speed, size * angle)
+            total += size * _finite(one, t, size * speed, size * angle)
         for rubs in frictions:
             total -= abs(ratio[rubs.station]) * rubs.stated.torque * rubs.share(t)[0] * np.sign(speed or 1.0)
         return [speed, total / inertia]
