@@ -250,3 +250,37 @@ def test_intervals_hold_on_a_few_benches() -> None:
 @pytest.mark.slow
 def test_intervals_hold_on_a_thousand_benches() -> None:
     agrees(*covered(range(1000)), 0.93, 0.97)
+
+
+def test_the_input_and_a_disk_swapped_are_noticed() -> None:
+    """The input, driven evenly, cannot move: the pickup that shows the motion stands elsewhere."""
+    line = random_line(np.random.default_rng(4))
+    run = tn.measure(line, (70.0, 300.0), 8.0, {"input": 36, "hub": 36}, jitter=1e-6, pitch_error=0.0)
+    first, hub = run.pulses
+    for places, swapped in ((("input", "hub"), False), (("hub", "input"), True)):
+        trains = [
+            tn.PulseTrain(train.times, 36, name=name, at=at, pitch_error=0.0)
+            for train, name, at in zip((first, hub), ("first", "second"), places, strict=True)
+        ]
+        data = tn.track_orders(tn.Measurement(trains), [1, 2], line=line, reference="first")
+        words = " ".join(map(str, tn.compare_measured(line, data).findings))
+        assert ("are they swapped?" in words) is swapped
+
+
+def test_what_can_be_known_is_of_the_line_as_it_stands() -> None:
+    """The Cramér–Rao bound at the line written out from order_response; elsewhere in the bounds it may be far less."""
+    line = random_line(np.random.default_rng(13))
+    run = tn.measure(line, (70.0, 300.0), 8.0, {"input": 36, "hub": 36}, jitter=2e-6, pitch_error=0.0)
+    data = tn.track_orders(run, [1, 2], line=line, reference="input")
+    damping = part(line, "tube").damping
+    known = tn.identifiability(line, data, {"tube.damping": (damping / 8, 8 * damping)}, begin=0.0)
+
+    def hub(value: float) -> np.ndarray:
+        answer = tn.order_response(line.replace("tube", damping=value), data.speed, [1, 2])
+        return answer.rotation[:, :, answer.inertias.index("hub")]
+
+    slope = (hub(1.001 * damping) - hub(0.999 * damping)) / (0.002 * damping)
+    deviation = data.deviation[:, :, data.column("hub")]
+    bound = 1 / np.sqrt(np.nansum(np.abs(slope / deviation) ** 2))
+    assert known.deviation[0] == pytest.approx(bound, rel=0.02)
+    assert float(known.share[0]) < 0.7 * bound / (8 * damping - damping / 8)

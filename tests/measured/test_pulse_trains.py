@@ -94,3 +94,25 @@ def test_noise_on_the_level_makes_no_second_edge() -> None:
     assert len(found) in (99, 100) and np.abs(np.diff(found) - 0.02).max() < 5e-4
     plain = np.flatnonzero((volt[1:] > 0) & (volt[:-1] <= 0))
     assert len(plain) > 2 * len(found)  # what a bare comparison would count
+
+
+@pytest.mark.parametrize("missing", [6, 40, 120, 500])
+def test_a_gap_of_many_pulses_is_counted_by_both_sides(missing: int) -> None:
+    """The gaps right beside it are off by 3 % of pitch errors: their mean would count 40 by chance."""
+    for seed in range(12):
+        rng = np.random.default_rng(100 * missing + seed)
+        true = edges(rng, 60, 60)
+        first = int(rng.integers(400, len(true) - missing - 400))
+        kept = np.delete(np.arange(len(true)), np.arange(first, first + missing))
+        train = tn.PulseTrain(true[kept], 60)
+        assert train.missing == missing and np.array_equal(train.number, kept) and not train.doubtful
+
+
+def test_a_gap_that_nobody_can_count_is_said() -> None:
+    """Another speed behind a gap: how the shaft got there is not known."""
+    slow, fast = np.arange(600) / 600.0, 2.5 + np.arange(600) / 1100.0
+    train = tn.PulseTrain(np.concatenate([slow, fast]), 60, name="hub")
+    assert train.doubtful == (pytest.approx(slow[-1]),)
+    assert "hub: how many pulses are missing after 0.9983 s" in " ".join(
+        str(one) for one in tn.Measurement([train]).findings
+    )

@@ -177,3 +177,16 @@ def test_a_run_whose_shaft_vibrates_is_no_reference() -> None:
     assert "vibrated at orders of the wheel" in str(found.findings[0])
     quiet = tn.pitch_errors(tn.Measurement([pulses(60, {}, name="out", jitter=1e-7)]))
     assert not quiet.findings and np.abs(quiet.error).max() < 6 * quiet.deviation[0]
+
+
+def test_windows_without_pulses_leave_the_others_known() -> None:
+    """A pickup that begins later: windows beside those it misses keep their intervals, and these hold."""
+    late = pulses(60, ORDERS, jitter=1e-6, seed=1, begin=4.0, name="hub")
+    whole = pulses(60, {}, jitter=1e-6, seed=2, name="input")
+    found = tn.track_orders(tn.Measurement([whole, late]), list(ORDERS), reference="input")
+    c = found.column("hub")
+    there = np.isfinite(found.amplitude[:, :, c])
+    assert np.array_equal(there, np.isfinite(found.deviation[:, :, c])) and 0 < (~there).sum() < there.size / 2
+    with np.errstate(invalid="ignore"):
+        worst = max(float(np.nanmax(np.abs(one))) for one in errors(found, "hub", ORDERS).values())
+    assert worst < 6.0 and "nan" not in str(found)

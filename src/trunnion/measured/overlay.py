@@ -176,7 +176,11 @@ def wrong_way(found: MeasuredComparison, bare: Complex, weight: Array, moves: li
         if len(moves) > 1 and off(other) < WRONG_WAY * own:
             name = found.channels[k]
             yield Finding(Gravity.CAUTION, f"{name} fits better with its sign changed: is it reversed?")
-    for i, j in ((i, j) for i in moves for j in moves if i < j and found.kinds[i] == found.kinds[j]):
+    # A pickup of a place that cannot move, the input say, is exchanged as easily.
+    every = range(len(found.channels))
+    for i, j in ((i, j) for i in every for j in every if i < j and found.kinds[i] == found.kinds[j]):
+        if i not in moves and j not in moves:
+            continue
         other = bare.copy()
         other[:, :, [i, j]] = bare[:, :, [j, i]]
         if off(other) < WRONG_WAY * own:

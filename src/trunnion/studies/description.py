@@ -147,7 +147,9 @@ class StudyDescription(Record):
     """A study as its file states it; see the module."""
 
     what: ClassVar[str] = "study"
-    example: ClassVar[str] = 'line = "truck.toml", analysis = "stability" and quantities = ["growth_rate"]'
+    example: ClassVar[str] = (
+        'line = "truck.toml", analysis = "stability", quantities = ["growth_rate"] and store = "truck.zarr"'
+    )
 
     line: str
     analysis: str

@@ -37,13 +37,14 @@ POINTS = 8
 class Knowable(Result):
     """How well numbers of a line can be known from a measurement, as far as the response is linear in them.
 
-    At the point within the bounds where each is known best: what is not known there is known nowhere.
+    Deviations are those of the line as it stands, or, where the data tell nothing of it there, of the point within the
+    bounds that they tell most of; a number counts as unknowable where it is known at none of these points.
     """
 
     parameters: tuple[str, ...] = coordinate("parameter")
     units: tuple[str, ...] = variable("parameter", "", "SI unit", name="parameter_unit")
     deviation: Array = variable("parameter", "", "standard deviation by Fisher's information, in SI units")
-    share: Array = variable("parameter", "1", "the same over the range of the bounds")
+    share: Array = variable("parameter", "1", "the least at any point looked at, over the range of the bounds")
     correlation: Array = variable("parameter other", "1", "of the line as it stands")
     pickups: tuple[str, ...] = coordinate("pickup", words="places that are not measured")
     gain: Array = variable("pickup parameter", "1", "factor by which a pickup there would shrink the deviation")
@@ -61,7 +62,7 @@ class Knowable(Result):
             if self.unknowable[k]:
                 yield f"  {name}: not from these data"
             else:
-                yield f"  {name}: ± {shown_value(self.deviation[k], self.units[k])}"
+                yield f"  {name}: ± {shown_value(1.96 * self.deviation[k], self.units[k])} (95 %)"
 
 
 def shown_value(value: float, unit: str, digits: int = 4) -> str:
@@ -123,8 +124,8 @@ def knowable(misfit: Misfit, seed: int = 0) -> Knowable:
     places, gain = _next_pickups(misfit, shares[int(own)], scale)
     unit = speed_unit(assembly.line)
     return Knowable(
-        parameters=tuple(one.label for one in free), units=tuple(one.unit for one in free), deviation=best * width,
-        share=best, correlation=correlation, pickups=places, gain=gain,
+        parameters=tuple(one.label for one in free), units=tuple(one.unit for one in free),
+        deviation=spread[own] * width, share=best, correlation=correlation, pickups=places, gain=gain,
         findings=tuple(_findings(misfit, best, correlation, places, gain)), unit=unit,
     )  # fmt: skip
 

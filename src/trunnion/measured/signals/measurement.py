@@ -64,6 +64,7 @@ class PulseTrain(Portable):
     number: Integers = field(init=False, repr=False)
     missing: int = field(init=False, default=0)
     double: int = field(init=False, default=0)
+    doubtful: tuple[float, ...] = field(init=False, default=())
 
     def __post_init__(self) -> None:
         teeth = whole_number(self.pulses_per_turn, f"{self.name}.pulses_per_turn", 1)
@@ -81,16 +82,18 @@ class PulseTrain(Portable):
                 value=self.pitch_error, remedy='write 0.02 or "2 %"',
             )  # fmt: skip
         if self.count is None:
-            kept, number, missing, double = mended(times)
-            times = times[kept]
+            found = mended(times, teeth)
+            number, missing, double, doubtful = found.number, found.missing, found.double, found.doubtful
+            times = times[found.kept]
         else:
-            number, missing, double = np.asarray(self.count, dtype=np.int64), 0, 0
+            number, missing, double, doubtful = np.asarray(self.count, dtype=np.int64), 0, 0, ()
         if len(times) < 2 or number[-1] - number[0] < 2 * teeth:
             raise InputError(
                 f"holds less than two turns of {teeth} pulses", element=self.name, key="times", value=len(times),
                 remedy="record longer, or correct pulses_per_turn",
             )  # fmt: skip
-        for key, value in {"times": times, "number": number, "missing": missing, "double": double}.items():
+        mends = {"missing": missing, "double": double, "doubtful": doubtful}
+        for key, value in {"times": times, "number": number, **mends}.items():
             object.__setattr__(self, key, value)
         object.__setattr__(self, "count", number)
 
@@ -112,7 +115,7 @@ class PulseTrain(Portable):
     def within(self, first: float, last: float) -> PulseTrain:
         """The edges between two times [s]; their teeth keep their numbers."""
         kept = (self.times >= first) & (self.times <= last)
-        mends = {"missing": self.missing, "double": self.double}
+        mends = {"missing": self.missing, "double": self.double, "doubtful": self.doubtful}
         found = replace(self, times=self.times[kept], count=self.number[kept])
         for key, value in mends.items():
             object.__setattr__(found, key, value)
@@ -297,6 +300,13 @@ def _mends(one: PulseTrain) -> Iterator[Finding]:
     every = one.missing / max(one.turns, 1.0)
     each_turn = one.missing > 1 and abs(every - round(every)) < 0.1 and round(every) > 0
     index = "; as many every turn: a wheel with a mark" if each_turn else ""
+    if one.doubtful:
+        places = ", ".join(figures(time, 4) for time in one.doubtful[:4]) + (" …" if len(one.doubtful) > 4 else "")
+        yield Finding(
+            Gravity.CAUTION,
+            f"{one.name}: how many pulses are missing after {places} s cannot be told surely, and angles behind may be "
+            "off by whole teeth; take what lies between such gaps.",
+        )
     yield Finding(gravity, f"{one.name}: {words} of {one.number[-1] - one.number[0] + 1} pulses mended{index}.")
 
 

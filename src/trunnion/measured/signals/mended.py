@@ -1,9 +1,14 @@
 """Missing and double pulses of a train: found by their gaps, numbered, and counted.
 
 Nothing is invented for a pulse that is missing: the edges that are there keep their times, and their numbers jump.
+
+The gaps beside a long one are uneven by pitch errors and vibration, so that their mean counts forty missing pulses no
+better than by chance. Where several are missing in a row, both sides are fitted by one polynomial with a step instead.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.ndimage import median_filter
@@ -15,12 +20,32 @@ NEIGHBOURS = 15
 SHORT, LONG = 0.55, 1.55
 """Shares of the usual gap below which an edge is double and above which one is missing."""
 MOST_PASSES = 20
+SEVERAL = 5
+"""Steps of a gap from which it is counted by what both sides show."""
+LEAST_SIDE = 6
+"""Edges that a side needs."""
+LEAST_SPREAD, FROM_WHOLE = 0.1, 0.3
+"""Standard deviation of a count, and its distance from a whole number or from another way to count: doubtful beyond."""
 
 
-def mended(times: Array) -> tuple[Flags, Integers, int, int]:
+@dataclass(frozen=True)
+class MendedEdges:
     """Which edges (edge,) are kept, numbers of these (kept,), how many were missing and how many double.
 
-    times : rising [s] (edge,).
+    doubtful : times [s] at which gaps begin whose missing pulses cannot be counted surely.
+    """
+
+    kept: Flags
+    number: Integers
+    missing: int
+    double: int
+    doubtful: tuple[float, ...]
+
+
+def mended(times: Array, teeth: int) -> MendedEdges:
+    """The edges of a wheel by their gaps.
+
+    times : rising [s] (edge,). teeth : of the wheel.
     """
     kept = np.ones(len(times), dtype=bool)
     for _ in range(MOST_PASSES):
@@ -33,8 +58,49 @@ def mended(times: Array) -> tuple[Flags, Integers, int, int]:
     if len(gap) >= 3:
         long = gap > LONG * _usual(gap)
         steps[long] = np.maximum(np.rint(gap[long] / _between(gap, long)), 1).astype(np.int64)
+    doubtful = _recounted(times[kept], steps, teeth)
     number = np.concatenate([[0], np.cumsum(steps)]).astype(np.int64)
-    return kept, number, int((steps - 1).sum()), int((~kept).sum())
+    return MendedEdges(kept, number, int((steps - 1).sum()), int((~kept).sum()), doubtful)
+
+
+def _recounted(times: Array, steps: Integers, teeth: int) -> tuple[float, ...]:
+    """Put right the steps (gap,) of gaps in which several pulses are missing; where the count is doubtful."""
+    doubtful = []
+    several = np.flatnonzero(steps >= SEVERAL)
+    ends = [-1, *several.tolist(), len(steps)]
+    for k, gap in enumerate(several.tolist()):
+        # A side ends at the next such gap, whose own count would else come in.
+        side = 2 * teeth + 2 * int(steps[gap])
+        first, last = max(ends[k] + 1, gap + 1 - side), min(ends[k + 2] + 1, gap + 1 + side)
+        if min(gap + 1 - first, last - gap - 1) < LEAST_SIDE:
+            doubtful.append(float(times[gap]))
+            continue
+        before = np.concatenate([np.cumsum(steps[first:gap][::-1])[::-1] * -1.0, [0.0]])
+        after = np.concatenate([[0.0], np.cumsum(steps[gap + 1 : last - 1])])
+        (plain, _), (count, spread) = (
+            _step_between(times[first : gap + 1], times[gap + 1 : last], before, after, degree) for degree in (2, 3)
+        )
+        steps[gap] = max(round(count), 1)
+        if spread > LEAST_SPREAD or max(abs(count - round(count)), abs(count - plain)) > FROM_WHOLE:
+            doubtful.append(float(times[gap]))
+    return tuple(doubtful)
+
+
+def _step_between(before: Array, after: Array, number: Array, beyond: Array, degree: int) -> tuple[float, float]:
+    """By how many numbers the first edge ``after`` a gap is beyond the last ``before`` it, and its standard deviation.
+
+    Numbers (edge,) count from those two; rotation is a polynomial of time over both sides.
+    """
+    times = np.concatenate([before, after])
+    place = 2 * (times - (before[-1] + after[0]) / 2) / (times[-1] - times[0])
+    step = np.repeat([0.0, -1.0], [len(before), len(after)])
+    columns = np.column_stack([*(place**k for k in range(degree + 1)), step])
+    q, r = np.linalg.qr(columns)
+    known = np.concatenate([number, beyond])
+    found = np.linalg.solve(r, q.T @ known)
+    left = known - columns @ found
+    spread = np.linalg.norm(left) / np.sqrt(len(known) - degree - 2) * np.linalg.norm(np.linalg.inv(r)[-1])
+    return float(found[-1]), float(spread)
 
 
 def _usual(gap: Array) -> Array:

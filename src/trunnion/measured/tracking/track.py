@@ -471,11 +471,23 @@ def bent(amplitude: Complex) -> Array:
     """
     if len(amplitude) < 5:
         return np.zeros(amplitude.shape)
-    fourth = np.abs(np.diff(amplitude, 4, axis=0)) / (8 * 280)
+    fourth = _nearest_known(np.abs(np.diff(amplitude, 4, axis=0)) / (8 * 280))
     # What one order misses goes to the others of the window too.
     whole = np.broadcast_to(np.sqrt((fourth**2).sum(axis=1, keepdims=True)), fourth.shape)
     # The sharpest bend may lie between two windows.
     return np.asarray(maximum_filter1d(np.pad(whole, ((2, 2), (0, 0)), mode="edge"), 3, axis=0, mode="nearest"))
+
+
+def _nearest_known(rows: Array) -> Array:
+    """Rows (row, order) with those that are not known, beside windows without pulses, replaced by the nearest known."""
+    known = np.flatnonzero(np.isfinite(rows).all(axis=1))
+    if not len(known):
+        return np.zeros(rows.shape)
+    at = np.arange(len(rows))
+    right = np.minimum(np.searchsorted(known, at), len(known) - 1)
+    left = np.maximum(right - 1, 0)
+    nearer = np.where(np.abs(known[left] - at) < np.abs(known[right] - at), left, right)
+    return np.asarray(rows[known[nearer]])
 
 
 def own_orders(orders: Array, ratio: float) -> Array:
