@@ -92,7 +92,7 @@ def judged(printed: str, computed: str, remark: str) -> str:
     theirs, ours = NUMBER.fullmatch(printed.strip()), NUMBER.fullmatch(computed.strip())
     if not theirs or not ours:
         return ""
-    from published.numbers import last_place
+    from published.printed_numbers import last_place
 
     text = printed.strip().replace("−", "-")
     off = abs(float(computed.replace("−", "-")) - float(text))

@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from trunnion.driveline import files
+from trunnion.driveline import toml_file
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.files import loads
@@ -183,6 +183,6 @@ def test_large_files_of_one_part_are_gone_through_once(part):
     for size in (200_000, 800_000):
         text = "x" + part * (size // len(part))
         begin = time.process_time()
-        files._DEEP_KEY.search(files._without_texts(text))
+        toml_file._DEEP_KEY.search(toml_file._without_texts(text))
         times.append(time.process_time() - begin)
     assert times[1] < 10 * max(times[0], 0.05)

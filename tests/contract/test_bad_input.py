@@ -2227,7 +2227,7 @@ FILES = [
         '"Shaft"',
     ),
     (HEAD + '[[element]]\ntype = "shaft"\n', "bad.toml: element 1.type = 'shaft': unknown", '"Shaft"'),
-    (HEAD + "[[element]]\ntype = 3\n", "bad.toml: element 1.type = 3: unknown element type", "HookeJoint"),
+    (HEAD + "[[element]]\ntype = 3\n", "bad.toml: element 1.type = 3: unknown", "known: ConstantSpeed, Shaft"),
     (
         HEAD + '[[element]]\ntype = "Xyz"\nname = "rear"\n',
         "bad.toml: rear (element 1).type = 'Xyz': unknown element type",

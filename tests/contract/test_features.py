@@ -122,7 +122,7 @@ def test_cell(analysis: str, key: str) -> None:
         assert words and words[0] in after.text, f"not said: {words}"
 
 
-ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "pictures")
+ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "pictures", "studies")
 """Where what takes a driveline to answer something stands."""
 
 

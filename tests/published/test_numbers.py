@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from published.cases import BATCHES, SOURCES
 from published.cases.chaos import spectrum
-from published.numbers import Batch, Verdict, last_place
+from published.printed_numbers import Batch, Verdict, last_place
 
 STORED = Path(__file__).parents[2] / "docs/data/printed_numbers.json"
 HOLDS = {Verdict.AGREES, Verdict.ROUNDING, Verdict.PRECISION}

@@ -248,6 +248,8 @@ class TorqueFunction(AppliedTorque):
         that is known beforehand is exact as ``since`` or ``until``.
     on : name of the disk.
     since, until : [s] between which it acts; by default always.
+    torque, time, speed, angle, table, between, hold : of an ``AppliedTorque``; not beside a function.
+    formula, power, factor, synchronous_speed, breakdown_torque, breakdown_slip : likewise.
 
     Raises
     ------

@@ -155,6 +155,8 @@ USUAL: dict[str, dict[str, float]] = {
     "W": {"W": 1.0, "kW": 1e3},
     "s": {"s": 1.0, "ms": 1e-3, "min": 60.0, "h": 3600.0},
     "1": {"percent": 0.01},
+    "K": {"K": 1.0},
+    "K/W": {"K/W": 1.0},
 }
 """Units that most files are written in: by SI unit of their kind, their size in it, as pint gives it."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import field
 from pathlib import Path
 from typing import Any
 
@@ -44,8 +43,7 @@ class Study(Result):
     values: Mapping[str, Any] = internal("quantities by path, as kept", axes="point")
     reasons: tuple[tuple[str, int], ...] = internal("why points failed, and how many")
     ended: str = internal("what ended the run before all was done, as a clause", default="")
-    failures: Mapping[int, str] = field(default_factory=dict)
-    """Why points failed, by their number."""
+    failures: Mapping[int, str] = internal("why points failed, by their number", default_factory=dict)
 
     @property
     def missing(self) -> int:

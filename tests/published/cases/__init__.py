@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from published.cases import chains, chaos, damping, forced, joints, mathieu, papers
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 
 KINDS = {
     "Free vibration": chains,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 
 import trunnion as tn
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from published.numbers import Batch, Source, Verdict
+from published.printed_numbers import Batch, Source, Verdict
 
 import trunnion as tn
 from trunnion.systems.reference import lorenz, rossler, ueda

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 
 import numpy as np
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 
 import trunnion as tn
 from trunnion.design.fatigue.cycles import rainflow_cycles

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from published.cases.chains import POUND_INCH, marine_turbine
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 
 import trunnion as tn
 

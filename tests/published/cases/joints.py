@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 
 import trunnion as tn
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from published.numbers import Batch, Source
+from published.printed_numbers import Batch, Source
 from scipy.optimize import bisect
 
 import trunnion as tn

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from published.numbers import Batch, Source, Verdict
+from published.printed_numbers import Batch, Source, Verdict
 
 import trunnion as tn
 from trunnion.driveline.quantities import DEGREE

@@ -26,7 +26,6 @@ from trunnion.features import left_out
 from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.judge import JudgedBox, judge
 from trunnion.floquet.certificate.requirements import require_linear
-from trunnion.floquet.stability.stability import stability
 from trunnion.floquet.tolerance.parameter_intervals import table_at
 from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
 from trunnion.results.drawing import Axes, drawing
@@ -238,6 +237,8 @@ class _Space:
             table = table_at(self.assembly, self.spreads, values[None, 1:])
             line = self.assembly.packed.line_at(table[0])
         try:
+            from trunnion.floquet.stability.stability import stability  # brings the compiler with it
+
             verdict = stability(line, float(values[0])).verdict
         except ComputationError:  # too stiff to be followed: no counterexample
             return None
