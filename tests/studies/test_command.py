@@ -31,6 +31,7 @@ def test_from_file_to_exports(study, here: Path) -> None:
     made = study("study.toml", "--workers", "0")
     assert made.exit_code == 0 and "stability at 40 points (5 × 8): 40 done, 0 failed" in made.stdout
     assert "40 points, 40 done, 0 failed, 0 missing" in study("status", "s.zarr").stdout
+    assert "in s.zarr: 40 points, 40 done" in study("status", "study.toml").stdout, "the file names its store"
     assert json.loads(study("show", "s.zarr", "--json").stdout)["done"] == 40
     assert study("resume", "s.zarr", "--verify").exit_code == 0
     assert study("export", "s.zarr", "-o", "s.nc", "-o", "s.csv", "-o", "s.parquet").exit_code == 0

@@ -32,7 +32,7 @@ def study(
         str, typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what of a STORE.")
     ],
     store: Annotated[
-        str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say.")
+        str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say, or its file.")
     ] = None,
     outputs: Annotated[
         list[Path] | None,
@@ -76,7 +76,7 @@ def study(
         if store is None:
             raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
         given = {"workers": workers, "scheduler": scheduler, "memory": memory, "verify": verify}
-        _of_store(what, store, outputs or [], given, within, as_json)
+        _of_store(what, _store_of(store), outputs or [], given, within, as_json)
         return
     if store is not None:
         raise InputError("is nothing that is asked of a store", key="study", value=what,
@@ -94,6 +94,16 @@ def study(
         found = run_study(what, workers=workers, scheduler=scheduler, memory=memory, verify=verify, progress=report,
                       tables_anywhere=TABLES_ANYWHERE.get())  # fmt: skip
     _say(found, as_json)
+
+
+def _store_of(place: str) -> str:
+    """The store at ``place``, or the one that a study's file there names."""
+    if not Path(place).is_file():
+        return place
+    from trunnion.studies.description import read_study
+
+    stated, folder = read_study(place)
+    return str(folder / stated.store)
 
 
 def _of_store(

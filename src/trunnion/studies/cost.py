@@ -7,9 +7,11 @@ from time import process_time
 
 import numpy as np
 
+from trunnion.results.counts import counted
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.result import Result
 from trunnion.studies.description import StudyPlan
+from trunnion.studies.design import in_axes
 from trunnion.studies.quantities import LETTERS
 from trunnion.studies.store import part_of
 
@@ -50,11 +52,12 @@ class StudyCost(Result):
         return self.seconds * (1 + OVERHEAD) / self.workers
 
     def _lines(self) -> Iterator[str]:
-        shape = " × ".join(map(str, self.shape))
-        yield f"{self.points} points ({shape}) in {self.blocks} blocks, {self.shards} shards"
+        where = f"{counted(self.blocks, 'block')}, {counted(self.shards, 'shard')}"
+        yield f"{counted(self.points, 'point')}{in_axes(self.shape)} in {where}"
         how = "by the compiled batch" if self.batched else f"{in_time(self.least)} to {in_time(self.most)}, one by one"
         yield f"  {in_time(self.seconds_a_point)} a point ({how}; {self.timed} timed)"
-        yield f"  {in_time(self.seconds)} of processor time, about {in_time(self.elapsed)} on {self.workers} workers"
+        on = counted(self.workers, "worker")
+        yield f"  {in_time(self.seconds)} of processor time, about {in_time(self.elapsed)} on {on}"
         yield f"  at most {in_bytes(self.bytes)} in the store"
 
 

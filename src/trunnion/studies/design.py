@@ -30,6 +30,11 @@ LARGEST = 1 << 30
 """Points of a Sobol sequence, whose 30 bits then are used up."""
 
 
+def in_axes(shape: Sequence[int]) -> str:
+    """ " (50 × 20)", nothing for a single axis: how points stand to one another."""
+    return f" ({' × '.join(map(str, shape))})" if len(shape) > 1 else ""
+
+
 @dataclass(frozen=True, eq=False)
 class StudyAxis:
     """A parameter that takes each of some values: those of a grid, or stated ones."""

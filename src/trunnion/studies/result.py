@@ -11,12 +11,13 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.errors import InputError
+from trunnion.results.counts import counted
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.units import in_words
 from trunnion.results.variables import Attribute, Coordinate, Variable
-from trunnion.studies.design import StudyAxis, StudyDesign
+from trunnion.studies.design import StudyAxis, StudyDesign, in_axes
 from trunnion.studies.points import DONE, FAILED, MISSING
 from trunnion.studies.quantities import StudyQuantity
 from trunnion.studies.shards import array_names
@@ -127,8 +128,8 @@ class Study(Result):
         yield from super().declared()
 
     def _lines(self) -> Iterator[str]:
-        shape = " × ".join(map(str, self.design.shape))
-        yield f"{self.analysis} at {self.points} points ({shape}): {self.done} done, {self.failed} failed"
+        where = f"{counted(self.points, 'point')}{in_axes(self.design.shape)}"
+        yield f"{self.analysis} at {where}: {self.done} done, {self.failed} failed"
         if self.missing:
             yield f"  {self.outcome}"
         for path, unit, low, high in self._ranges():
@@ -158,6 +159,8 @@ class Study(Result):
                 return "not finite anywhere"
             low, middle, high = np.quantile(known, [0.0, 0.5, 1.0])
             unit = one.unit or "1"
+            if in_words(low, unit, 4) == in_words(high, unit, 4):
+                return f"{in_words(low, unit, 4)} at all of them"
             return (
                 f"{in_words(low, unit, 4)} to {in_words(high, unit, 4)}, half of them below {in_words(middle, unit, 4)}"
             )

@@ -139,7 +139,7 @@ class Store:
             return self
         theirs, ours = self.question.content, question.content
         differ = [key for key in theirs if theirs[key] != ours[key]]
-        raise InputError(f"holds another study: {' and '.join(differ)} differ", key="store", value=str(self.path),
+        raise InputError(f"holds another study: it differs in its {' and '.join(differ)}", key="store", value=str(self.path),
                          remedy=KEEP_NAME)  # fmt: skip
 
     def require_version(self) -> None:
