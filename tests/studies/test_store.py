@@ -181,9 +181,9 @@ def test_two_clients(tmp_path, undisturbed) -> None:
 def test_another_study_is_refused(tmp_path) -> None:
     store = tmp_path / "a.zarr"
     tn.study(small(store), line=line(), workers=0)
-    with pytest.raises(tn.InputError, match="holds another study: line differ"):
+    with pytest.raises(tn.InputError, match="holds another study: it differs in its line;"):
         tn.study(small(store), line=line(name="other"), workers=0)
-    with pytest.raises(tn.InputError, match="holds another study: quantities differ"):
+    with pytest.raises(tn.InputError, match="holds another study: it differs in its quantities;"):
         tn.study(small(store, quantities=CALLS), line=line(), workers=0)
     (tmp_path / "b.zarr").mkdir()
     (tmp_path / "b.zarr" / "mine.txt").write_text("mine")

@@ -139,8 +139,8 @@ class Store:
             return self
         theirs, ours = self.question.content, question.content
         differ = [key for key in theirs if theirs[key] != ours[key]]
-        raise InputError(f"holds another study: it differs in its {' and '.join(differ)}", key="store", value=str(self.path),
-                         remedy=KEEP_NAME)  # fmt: skip
+        problem = f"holds another study: it differs in its {' and '.join(differ)}"
+        raise InputError(problem, key="store", value=str(self.path), remedy=KEEP_NAME)
 
     def require_version(self) -> None:
         """Refuse to add to what another version computed.
