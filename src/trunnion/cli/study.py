@@ -210,7 +210,8 @@ def _reported(within: float | None) -> Iterator[Callable[[StudyProgress], None]]
 
 def progress_line(state: Any) -> str:
     """One line about how far a study is."""
-    from trunnion.studies.cost import in_bytes, in_time
+    from trunnion.numerics.memory import size_text
+    from trunnion.studies.cost import in_time
 
     parts = [f"study: {100 * state.share:.1f} %", f"{state.rate:.3g} points/s"]
     if state.left < float("inf"):
@@ -218,5 +219,5 @@ def progress_line(state: Any) -> str:
     if state.failed:
         parts.append(f"{state.failed} failed")
     if held := state.bytes:
-        parts.append(f"workers hold {in_bytes(held)}")
+        parts.append(f"workers hold {size_text(held)}")
     return ", ".join(parts)

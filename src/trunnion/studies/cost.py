@@ -7,6 +7,7 @@ from time import process_time
 
 import numpy as np
 
+from trunnion.numerics.memory import size_text
 from trunnion.results.counts import counted
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.result import Result
@@ -58,7 +59,7 @@ class StudyCost(Result):
         yield f"  {in_time(self.seconds_a_point)} a point ({how}; {self.timed} timed)"
         on = counted(self.workers, "worker")
         yield f"  {in_time(self.seconds)} of processor time, about {in_time(self.elapsed)} on {on}"
-        yield f"  at most {in_bytes(self.bytes)} in the store"
+        yield f"  at most {size_text(self.bytes)} in the store"
 
 
 def cost_of(plan: StudyPlan, workers: int) -> StudyCost:
@@ -99,11 +100,3 @@ def in_time(seconds: float) -> str:
         if seconds >= size:
             return f"{seconds / size:.3g} {unit}"
     return f"{seconds * 1e6:.3g} µs"
-
-
-def in_bytes(count: float) -> str:
-    """Bytes in a unit that suits them."""
-    for unit, size in (("TB", 1e12), ("GB", 1e9), ("MB", 1e6), ("kB", 1e3)):
-        if count >= size:
-            return f"{count / size:.3g} {unit}"
-    return f"{count:.0f} bytes"
