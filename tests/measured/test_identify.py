@@ -36,6 +36,7 @@ def test_a_line_is_found_again() -> None:
     half = (found.high - found.low) / 2 / 1.96
     assert np.all(np.abs(half / found.deviation - 1) < 0.05)
     assert [str(one).partition(":")[0] for one in found.changes] == ["joint, angle", "tube, stiffness", "tube, damping"]
+    assert found.changes[0].after.endswith(" deg"), "an updated file keeps the units that it was written in"
     again = tn.loads(tn.dumps(found.line))
     assert np.allclose(truth(again), found.value, rtol=1e-4) and not found.twins
 

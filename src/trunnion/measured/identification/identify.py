@@ -16,6 +16,7 @@ from trunnion.driveline.arguments import speeds_of, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import pack
+from trunnion.driveline.quantities import KINDS, eye_unit, parse
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
@@ -119,7 +120,8 @@ def identify(
     covariance = covariance_of(slope)[: len(values), : len(values)] * scale
     width = np.array([one.high - one.low for one in space.free])
     spread = np.sqrt(np.diag(covariance))
-    stated = np.array([_rounded(float(one), float(own)) for one, own in zip(values, spread * width, strict=True)])
+    known = zip(values, spread * width, space.free, strict=True)
+    stated = np.array([_rounded(float(value), float(own), one.unit) for value, own, one in known])
     found = assembly.packed.line_at(table_at(assembly, space.free, stated[None])[0])
     advance(0.85)
     distance = _distance(found, misfit, values, covariance, tongue_at) if len(tongue_at) else None
@@ -191,11 +193,15 @@ def _profiled(
     )
 
 
-def _rounded(value: float, deviation: float) -> float:
-    """A value without digits that nobody knows: to a hundredth of its standard deviation."""
-    if not (np.isfinite(deviation) and deviation > 0):
+def _rounded(value: float, deviation: float, unit: str) -> float:
+    """A value [unit] without digits that nobody knows: to a hundredth of its standard deviation, in the unit that a
+    file states it in."""
+    kind = next((kind for kind in KINDS if kind.unit == unit), None)
+    if kind is None or not (np.isfinite(deviation) and deviation > 0):
         return value
-    return round(value, int(2 - np.floor(np.log10(deviation))))
+    symbol, size = eye_unit(value, kind)
+    digits = round(value / size, int(2 - np.floor(np.log10(deviation / size))))
+    return digits if size == 1.0 else parse(f"{digits:.15g} {symbol}", kind)
 
 
 def _by_channel(misfit: Misfit, residual: Array) -> Array:
