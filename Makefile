@@ -57,5 +57,5 @@ $(VENV)/.installed-dev: $(VENV)/.installed
 	@touch $@
 
 $(VENV)/.installed-docs: $(VENV)/.installed-dev
-	$(PIP) -e ".[dev,docs]"
+	$(PIP) -e ".[dev,docs]" || $(subst -c constraints.txt,,$(PIP)) -e ".[dev,docs]" # where the index lacks one of the versions
 	@touch $@
