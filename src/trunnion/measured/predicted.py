@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.refusals import nearest
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.measured.tracking.places import even_places
@@ -37,16 +37,11 @@ class PredictedChannels:
 
     def at(self, table: Array) -> Complex:
         """Amplitudes (case, order, channel) of rows of packed numbers (case, column), each at its own speed."""
-        if not has_periodic_base(self.assembly):
-            return self.of(order_spectrum(self.assembly, table[:, 0], table=table))
-        # Each line moves about a periodic motion of its own.
-        made = np.zeros((len(table), len(self.data.order), len(self.columns)), dtype=complex)
-        lines, which = np.unique(table[:, 1:], axis=0, return_inverse=True)
-        for k in range(len(lines)):
-            rows = np.flatnonzero(which.ravel() == k)
-            own = assemble(self.assembly.packed.line_at(table[rows[0]]))
-            made[rows] = self.of(order_spectrum(own, table[rows, 0], motions=steady_states_of(own)))
-        return made
+        if has_periodic_base(self.assembly):
+            found = order_spectrum(self.assembly, table[:, 0], motions=steady_states_of(self.assembly))
+        else:
+            found = order_spectrum(self.assembly, table[:, 0], table=table)
+        return self.of(found)
 
     def of(self, found: OrderSpectrum) -> Complex:
         """Amplitudes (case, order, channel) that a spectrum holds."""

@@ -18,6 +18,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import pack
 from trunnion.driveline.quantities import KINDS, eye_unit, parse
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.tolerance.parameter_intervals import table_at
@@ -76,7 +77,8 @@ def identify(
 
     Raises
     ------
-    InputError : a parameter or bound that cannot be; places that the line does not have.
+    InputError : a parameter or bound that cannot be; places that the line does not have; a free–free line with joint
+        angles.
 
     Examples
     --------
@@ -91,6 +93,11 @@ def identify(
     (True, 12)
     """
     assembly = assemble(line)
+    if has_periodic_base(assembly):
+        raise InputError(
+            "is free–free and has joint angles: its orders are not solved for many lines together", element="driveline",
+            remedy="drive its input at a constant speed, as the reference pickup saw it",
+        )  # fmt: skip
     whole_number(seed, "seed", 0)
     advance = progress or (lambda share: None)
     space = Space(assembly, free)
