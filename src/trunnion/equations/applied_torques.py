@@ -115,8 +115,19 @@ class PlacedTorque:
         since, until = self.stated.since, self.stated.until
         return (since is None or pieces[0] >= 0) and (until is None or pieces[0] < len(self.axes[0].knots) - 1)
 
+    @cached_property
+    def _cells(self) -> dict[tuple[int, ...], TorquePiece]:
+        """Pieces that were asked for."""
+        return {}
+
     def cell(self, pieces: Sequence[int]) -> TorquePiece:
         """The polynomials of a piece of every axis; of what is a formula or a function, where it does not act."""
+        known = tuple(pieces)
+        if known not in self._cells:
+            self._cells[known] = self._cell(known)
+        return self._cells[known]
+
+    def _cell(self, pieces: Sequence[int]) -> TorquePiece:
         if self.stated.by_program:
             return TorquePiece(0.0, 0.0, np.zeros((POWERS, POWERS)), _one())
         if self.stated.is_motor:
