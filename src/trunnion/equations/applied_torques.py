@@ -116,6 +116,11 @@ class PlacedTorque:
         return (since is None or pieces[0] >= 0) and (until is None or pieces[0] < len(self.axes[0].knots) - 1)
 
     @cached_property
+    def _rows(self) -> dict[tuple[int, ...], Array]:
+        """Rows of pieces that were asked for."""
+        return {}
+
+    @cached_property
     def _cells(self) -> dict[tuple[int, ...], TorquePiece]:
         """Pieces that were asked for."""
         return {}
@@ -198,11 +203,10 @@ class PlacedTorque:
             if self.called is not None:
                 return self.called.value(time, speed, angle)
             return float(line_kernel().formula(self.program, 0, time, speed, angle, -1)[0])
-        cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
-        u = given[self.first] - cell.first
-        v = given[self.second] - cell.second
-        powers = np.arange(POWERS)
-        return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
+        pieces = tuple(axis.piece(given[axis.variable]) for axis in self.axes)
+        if pieces not in self._rows:
+            self._rows[pieces] = self.row(pieces)
+        return float(line_kernel().applied(self._rows[pieces], 0, time, angle, speed)[0])
 
     @property
     def first(self) -> str:

@@ -19,6 +19,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.motion.passing.map_cells import KINDS, UNKNOWN, MapRequest, Request, computed_cells, map_request
 from trunnion.motion.passing.map_store import MapStore
 from trunnion.motion.passing.trials import FACTOR
+from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.outcome import Outcome
@@ -128,13 +129,12 @@ class CaptureMap(Result):
     def _nature(self) -> str:
         """How the boundary lies, as far as cells tell."""
         words = []
-        for axis, changes in zip(self.axes, self.changes, strict=True):
+        for axis, changes, lines in zip(self.axes, self.changes, ("rows", "columns"), strict=True):
             folds = int((changes > 1).sum())
-            lines = "rows" if axis is self.axes[0] else "columns"
             what = "at most once" if not folds else f"more than once in {folds} of {len(changes)} {lines}"
             words.append(f"{what} along {axis.quantity}")
         mixed = int(((self.share > 0) & (self.share < 1)).sum())
-        phases = f"; the phase decides in {mixed} cells" if len(self.phases) > 1 else ""
+        phases = f"; the phase decides in {counted(mixed, 'cell')}" if len(self.phases) > 1 else ""
         return f"it is crossed {words[0]} and {words[1]}{phases}; strips narrower than a cell are not seen"
 
     def plot(self, axes: Axes | None = None) -> Axes:
@@ -202,7 +202,7 @@ def capture_map(
     asked = map_request(line, speeds, x, y, (torque, friction, scenario), drive, phases, tolerance)
     whole_number(processes, "processes", 1)
     kept = None if store is None else MapStore(store, asked)
-    counts = np.full((asked.cells, len(KINDS)), UNKNOWN, dtype=np.int32) if kept is None else kept.counts()
+    counts = np.full((asked.cells, len(KINDS)), UNKNOWN, dtype=np.int64) if kept is None else kept.counts()
     report_progress, done = progress or (lambda share: None), int((counts[:, 0] != UNKNOWN).sum())
     report_progress(done / asked.cells)
     try:

@@ -43,16 +43,17 @@ class CaptureMapCost(Result):
         return self.seconds / self.processes
 
     def _lines(self) -> Iterator[str]:
-        yield f"{self.cells:,} cells, {self.run_ups:,} run-ups at two tolerances each".replace(",", " ")
+        cells, run_ups = (f"{count:,}".replace(",", " ") for count in (self.cells, self.run_ups))
+        yield f"{cells} cells, {run_ups} run-ups at two tolerances each"
         error = f"± {time_text(self.error)}" if np.isfinite(self.error) else "of unknown error"
         yield (
             f"  {time_text(self.seconds)} {error} of processor time by {counted(self.timed, 'cell')} that "
             f"{'was' if self.timed == 1 else 'were'} timed, {time_text(self.elapsed)} in "
-            f"{counted(self.processes, 'process')}"
+            f"{self.processes} {'process' if self.processes == 1 else 'processes'}"
         )
         yield (
-            f"  {size_text(self.memory)} of memory, {size_text(self.disk)} in {counted(self.files, 'file')} of a store, "
-            "from which it goes on where it was stopped"
+            f"  {size_text(self.memory)} of memory, {size_text(self.disk)} in {counted(self.files, 'file')} of a "
+            "store, from which it goes on where it was stopped"
         )
 
 
@@ -111,5 +112,5 @@ def capture_map_cost(
     return CaptureMapCost(
         cells=asked.cells, run_ups=asked.cells * len(asked.trials.phases), seconds=asked.cells * float(np.mean(taken)),
         error=2 * asked.cells * spread, timed=len(taken), processes=processes, memory=BYTES_A_CELL * asked.cells,
-        disk=(4 * len(KINDS)) * asked.cells + 128 * -(-asked.cells // PIECE), files=1 + -(-asked.cells // PIECE),
+        disk=(8 * len(KINDS)) * asked.cells + 128 * -(-asked.cells // PIECE), files=1 + -(-asked.cells // PIECE),
     )  # fmt: skip

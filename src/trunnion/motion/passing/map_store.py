@@ -1,8 +1,8 @@
 """A folder with the cells of a map of captures, written in pieces while they are computed, and read again to go on.
 
-``map.json`` says of which map they are. A piece holds ``PIECE`` cells that follow each other in the map's order, as counts
-by kind, −1 of those that were not computed. Each is written to a temporary name and renamed, so that a piece is there as
-a whole or not at all; what a killed process loses is the piece it was at.
+``map.json`` says of which map they are. A piece holds ``PIECE`` cells that follow each other in the map's order, as
+counts by kind, −1 of those that were not computed. Each is written to a temporary name and renamed, so that a piece is
+there as a whole or not at all; what a killed process loses is the piece it was at.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class MapStore:
         ------
         InputError : a piece that is damaged.
         """
-        found = np.full((self.cells, len(KINDS)), UNKNOWN, dtype=np.int32)
+        found = np.full((self.cells, len(KINDS)), UNKNOWN, dtype=np.int64)
         for file in sorted(self.folder.glob("piece-*.npy")):
             number = re.fullmatch(r"piece-(\d+)\.npy", file.name)
             if number is None or int(number[1]) >= len(self.left):
@@ -77,7 +77,7 @@ class MapStore:
                 held = np.load(file, allow_pickle=False)
             except (OSError, ValueError, EOFError):
                 held = None
-            if held is None or held.shape != (len(cells), len(KINDS)) or held.dtype != np.int32:
+            if held is None or held.shape != (len(cells), len(KINDS)) or held.dtype != np.int64:
                 raise InputError(
                     "is damaged", key="store", value=str(file), remedy="remove this file; it is made again"
                 )

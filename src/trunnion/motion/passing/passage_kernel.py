@@ -39,8 +39,9 @@ from trunnion_kernels.line_kernel import (
 # nothing, where the step becomes too small or a number is none.
 REACHED, CROSSED, FULL, BEYOND, FAILED = range(5)
 # Of clock: the time, the step tried next, then the time and the angle of the mean rotation at the last look, the time
-# of the next, how far apart they are, and the highest mean speed between two.
-TIME, STEP, LOOKED, ANGLE, NEXT, APART, HIGHEST = range(7)
+# of the next, how far apart they are, and the highest mean speed between two; the last such mean speed (NaN at the
+# start) and the middle of its time, and the least that mean speeds gained from one to the next, per time.
+TIME, STEP, LOOKED, ANGLE, NEXT, APART, HIGHEST, BEFORE, MIDDLE, GAINED = range(10)
 # Per torque: the variable of its pieces, its station, the sense of that, how many knots it has, where they begin, the
 # row of its piece below the first, and the piece it is in.
 VARIABLE, STATION, SENSE, KNOTS, FIRST_KNOT, FIRST_ROW, PIECE = range(7)
@@ -155,6 +156,8 @@ def stretch(rate, p, y, n, share, turning, weight, tolerance, end, last, far, mo
             speed = mean_speed(t, y, p, n, share)
             if speed >= last:
                 clock[TIME] = t - step * (speed - last) / (speed - before) if speed > before else t
+                if t - clock[MIDDLE] > clock[APART]:
+                    clock[GAINED] = min(clock[GAINED], (speed - clock[BEFORE]) / (t - clock[MIDDLE]))
                 return CROSSED
             before = speed
         changed, off = False, 0.0
@@ -179,7 +182,11 @@ def stretch(rate, p, y, n, share, turning, weight, tolerance, end, last, far, mo
             before = mean_speed(t, y, p, n, share)
         if t >= clock[NEXT]:
             angle = mean_angle(t, y, p, n, share)
-            clock[HIGHEST] = max(clock[HIGHEST], (angle - clock[ANGLE]) / (t - clock[LOOKED]))
+            mean, middle = (angle - clock[ANGLE]) / (t - clock[LOOKED]), (t + clock[LOOKED]) / 2
+            clock[HIGHEST] = max(clock[HIGHEST], mean)
+            if not np.isnan(clock[BEFORE]):
+                clock[GAINED] = min(clock[GAINED], (mean - clock[BEFORE]) / (middle - clock[MIDDLE]))
+            clock[BEFORE], clock[MIDDLE] = mean, middle
             clock[LOOKED], clock[ANGLE] = t, angle
             clock[NEXT] = t + clock[APART]
     clock[TIME], clock[STEP] = t, h

@@ -52,6 +52,8 @@ STRETCHES = 3
 """The last ones that must all be so."""
 LONGEST = 60.0
 """Rigid times, and as many stretches, after which it is not decided."""
+PLAINLY = 0.3
+"""Share of the rigid line's mean acceleration that a line which passes plainly gains at least, from look to look."""
 LOOSER = 30.0
 """How much looser the tolerance of a second run is, whose ending must be the same."""
 
@@ -126,8 +128,9 @@ def passing_kinds(
     found = []
     for phase in phases:
         made.phase = float(phase)
-        kind = made.kind(tolerance)
-        found.append(kind if _alike(kind, made.other_kind(kind, tolerance)) else "undecided")
+        kind, plainly = made.kind(tolerance)
+        sure = plainly or _alike(kind, made.other_kind(kind, tolerance))
+        found.append(kind if sure else "undecided")
     return found
 
 
@@ -157,16 +160,23 @@ class _Follower:
         assert way.run is not None
         return way.run, kind
 
-    def kind(self, tolerance: float) -> str:
-        """How it ends, without the motion: by compiled stretches where nothing switches."""
+    def kind(self, tolerance: float) -> tuple[str, bool]:
+        """How it ends, without the motion, by compiled stretches where nothing switches; and whether it passes so
+        plainly that no other tolerance could end otherwise.
+
+        Beside the edge of capture the motion comes near the one that neither passes nor is caught, gains nothing there,
+        and leaves it by e in a time that is not shorter than some periods of the mode. From a distance of its error
+        that takes over a dozen of these, which looks of a few turns see.
+        """
         if tolerance not in self.steppers:
             self.steppers[tolerance] = stepper_of(self.line, self.asked, tolerance)
         stepper = self.steppers[tolerance]
         if is_quick(stepper):
             way = QuickPassage(stepper, self.start(), self.phase, self.first, self.last, tolerance)
             if way.fits and (kind := self._judged(way)):
-                return kind
-        return self.ending(tolerance)[1]
+                usual = (self.last - self.first) / self.rigid
+                return kind, kind == "passed" and way.gained > PLAINLY * usual
+        return self.ending(tolerance)[1], False
 
     def start(self) -> Array:
         """The state that it begins with."""
@@ -203,7 +213,7 @@ class _Follower:
 
     def other_kind(self, kind: str, tolerance: float) -> str:
         """How it ends at a looser tolerance; as it did where there is no time for that."""
-        return kind if time_is_up() else self.kind(min(LOOSER * tolerance, 1e-3))
+        return kind if time_is_up() else self.kind(min(LOOSER * tolerance, 1e-3))[0]
 
     def _settled(self, stretches: list[tuple[float, float, float]]) -> bool:
         """Whether the last stretches gain too little ever to come to the last speed."""

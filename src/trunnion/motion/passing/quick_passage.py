@@ -60,7 +60,8 @@ class QuickPassage:
         core, kernel = line_kernel(), passage_kernel()
         self.numbers, self.state = stepper.numbers.copy(), np.array(state, dtype=float)
         self.numbers[[core.THETA, core.OMEGA, core.ALPHA, core.SINCE]] = angle, speed, 0.0, 0.0
-        self.clock = np.zeros(7)
+        self.clock = np.zeros(10)
+        self.clock[[kernel.BEFORE, kernel.GAINED]] = np.nan, np.inf
         codes = {"time": kernel.BY_TIME, "speed": kernel.BY_SPEED}
         torque, knots, rows, known = [], list[float](), list[Array](), list[bool]()
         for one, program in zip(stepper.torques, stepper.programs, strict=True):
@@ -94,6 +95,11 @@ class QuickPassage:
         return bool(passage_kernel().into_piece(self.numbers, k, self.torque, self.knots, self.rows, self.known, value))
 
     @property
+    def gained(self) -> float:
+        """The least that its mean speed gained from one look to the next, per time [rad/s²]."""
+        return float(self.clock[passage_kernel().GAINED])
+
+    @property
     def time(self) -> float:
         """Where it stands [s]."""
         return float(self.clock[0])
@@ -105,7 +111,7 @@ class QuickPassage:
         n, since = stepper.topo.size, self.time
         begun = kernel.mean_angle(since, self.state, self.numbers, n, stepper.share)
         apart = length / LOOKS
-        clock[2:] = since, begun, since + apart, apart, -np.inf
+        clock[2:7] = since, begun, since + apart, apart, -np.inf
         while True:
             code = kernel.stretch(
                 stepper.equations.rate, self.numbers, self.state, n, stepper.share, stepper.turning,
