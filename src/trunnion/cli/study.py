@@ -100,9 +100,9 @@ def _store_of(place: str) -> str:
     """The store at ``place``, or the one that a study's file there names."""
     if not Path(place).is_file():
         return place
-    from trunnion.studies.description import read_study
+    from trunnion.studies.description import read_description
 
-    stated, folder = read_study(place)
+    stated, folder = read_description(place)
     return str(folder / stated.store)
 
 
@@ -136,14 +136,14 @@ def _of_store(
 
 def _say_sensitivities(found: Study) -> None:
     """What the numbers of a sampled study follow."""
-    from trunnion.studies.sensitivities import sensitivities
+    from trunnion.studies.sensitivities import study_sensitivities
 
     if found.design.sampling is None or found.design.axes:
         return
     for one in found.quantities:
         if one.kind == "number":
             try:
-                output.say(str(sensitivities(found, one.path)))
+                output.say(str(study_sensitivities(found, one.path)))
             except ComputationError as error:
                 output.say(f"no sensitivities of {one.path}: {error}")
 

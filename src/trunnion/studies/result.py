@@ -170,8 +170,39 @@ class Study(Result):
         return ", ".join([*said, *(["…"] if len(order) > 6 else [])])
 
 
+def read_study(store: str | os.PathLike[str]) -> Study:
+    """Read what a study has kept: the points that were asked for last, also while the store grows.
+
+    Parameters
+    ----------
+    store : the folder that ``study`` wrote ("truck.zarr").
+
+    Returns
+    -------
+    Study: the points with their quantities; ``missing`` counts those that are not there yet.
+
+    Raises
+    ------
+    InputError : there is no store.
+    ComputationError : a file of it is damaged.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> store = str(Path(mkdtemp()) / "angles.zarr")
+    >>> angle = {"path": "HookeJoint 1.angle", "low": "0 deg", "high": "30 deg", "points": 4}
+    >>> asked = {"line": "two-shaft-cardan", "analysis": "stability", "quantities": "verdict", "store": store}
+    >>> found = tn.study({**asked, "arguments": {"speed": 1.6}, "parameter": [angle]}, workers=0)
+    >>> tn.read_study(store)
+    <Study: stability at 4 points: 4 done, 0 failed>
+    """
+    return read(store)
+
+
 def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = None, ended: str = "") -> Study:
-    """Read the points of a design, by default of the last part of a store, also while it grows.
+    """Read the points of a design, by default of the last part of a store.
 
     Raises
     ------
