@@ -17,6 +17,7 @@ from scipy.stats import sobol_indices
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import one_number
 from trunnion.errors import ComputationError, InputError
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.result import Result
 from trunnion.studies.points import DONE
@@ -44,6 +45,10 @@ class SobolIndices(Result):
     points: int = attribute("that it rests on")
     confidence: float = attribute("of the intervals")
     variance: float = internal("of the quantity")
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Shares by parameter, with intervals; see ``pictures.studies.shares``."""
+        return drawing(self, "plot")(self, axes)
 
     def _lines(self) -> Iterator[str]:
         yield f"variance of {self.quantity} by parameter, from {self.points} points"
