@@ -426,8 +426,8 @@ def _parallel(result: Study, shown: ShownQuantity) -> Picture:
         parted = np.concatenate([height, np.full((len(height), 1), np.nan)], axis=1).ravel()
         items.append(Line(np.tile(np.append(at, np.nan), len(height)), parted, role, name))
     items += [Line([place, place], [0.0, 1.0], "base") for place in at.tolist()]
-    for end, side, height in ((0, "below", 0.0), (1, "above", 1.0)):
-        items.append(Texts(at, np.full(len(at), height), [pair[end] for pair in ends], "boxed words", side))
+    for end, side, where in ((0, "below", 0.0), (1, "above", 1.0)):
+        items.append(Texts(at, np.full(len(at), where), [pair[end] for pair in ends], "boxed words", side))
     if shown.words:
         heights = np.linspace(0, 1, len(shown.words)) if len(shown.words) > 1 else [0.5]
         items.append(Texts(np.full(len(shown.words), at[-1]), heights,
@@ -459,7 +459,7 @@ def _share(values: Array, low: float, high: float) -> Array:
 
 
 def _broken(name: str) -> str:
-    return fill(name, 18, break_long_words=False)
+    return fill(name, 19, break_long_words=False)
 
 
 def _signed(value: float) -> str:
