@@ -109,8 +109,9 @@ def boundary_nature(values: Array, passed: Array, band: Array) -> BoundaryNature
     ends = (float(band[0]), float(band[-1])) if len(band) else (float(values[0]), float(values[-1]))
     apart = float(steps.max()) - 1 if len(steps) else np.nan
     return BoundaryNature(
-        len(values), float(values[0]), float(values[-1]), ends, apart, changes, edges, narrowest, exponent, error
-    )
+        tried=len(values), low=float(values[0]), high=float(values[-1]), band=ends, apart=apart, changes=changes,
+        edges=edges, narrowest=narrowest, exponent=exponent, error=error,
+    )  # fmt: skip
 
 
 def uncertainty_exponent(passed: Array) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -20,7 +20,7 @@ from trunnion.motion.passing.least_found import LeastFound, search, summary
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import ACCELERATION, trials_of
 from trunnion.results.counts import few
-from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
+from trunnion.results.fields import computed, coordinate, internal, labelled, members, variable
 from trunnion.results.speeds import show_acceleration
 from trunnion.waiting import keeps_time
 
@@ -57,16 +57,11 @@ class LeastAcceleration(LeastFound):
     trials: tuple[AccelerationTrial, ...] = members(
         AccelerationTrial, "acceleration", "every acceleration that was tried, rising", only="share undecided worst"
     )
-    phases: Array = coordinate("phase", "rad", "of the input when it begins")
-    drive: str = attribute("disk that drives")
-    first: float = attribute("speed at the start [rad/s]")
-    last: float = attribute("speed asked for [rad/s]")
-    accuracy: float = attribute("of the least acceleration, relative")
-    tolerance: float = attribute("error allowed per step")
-    band: Array = internal("accelerations, even in the logarithm, for the nature of the boundary")
-    stopped: str = internal("what ended the search early")
-    unit: str = internal("of speeds in print")
     WHAT: ClassVar[tuple[str, str]] = ("acceleration", "accelerations")
+
+    @property
+    def _tried(self) -> tuple[Any, ...]:
+        return self.trials
 
     def _said(self, value: float) -> str:
         return show_acceleration(value, self.unit)
@@ -164,8 +159,10 @@ def least_acceleration(
             tolerance=tolerance, band=band, stopped=stopped, unit=speed_unit(description),
         )  # fmt: skip
 
-    told = progress or (lambda share: None)
-    return search(trials, ACCELERATION, accelerations, "accelerations", points, accuracy, around, found, told)
+    return search(
+        trials, path=ACCELERATION, ends=accelerations, key="accelerations", points=points, accuracy=accuracy,
+        around=around, found=found, progress=progress,
+    )  # fmt: skip
 
 
 def _drive(line: Driveline, torque: Sequence[AppliedTorque], scenario: Scenario | str | None, drive: str | None) -> str:

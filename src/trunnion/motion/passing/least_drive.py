@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from numpy.typing import ArrayLike
 
@@ -16,7 +16,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.motion.passing.least_found import LeastFound, search, summary
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import FACTOR, trials_of
-from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
+from trunnion.results.fields import computed, coordinate, internal, labelled, members, variable
 from trunnion.waiting import keeps_time
 
 
@@ -52,16 +52,11 @@ class LeastDrive(LeastFound):
     trials: tuple[DriveTrial, ...] = members(
         DriveTrial, "factor", "every factor that was tried, rising", only="share undecided worst"
     )
-    phases: Array = coordinate("phase", "rad", "of the input when it begins")
-    drive: str = attribute("disk whose torque is scaled")
-    first: float = attribute("speed at the start [rad/s]")
-    last: float = attribute("speed asked for [rad/s]")
-    accuracy: float = attribute("of the least factor, relative")
-    tolerance: float = attribute("error allowed per step")
-    band: Array = internal("factors, even in the logarithm, for the nature of the boundary")
-    stopped: str = internal("what ended the search early")
-    unit: str = internal("of speeds in print")
     WHAT: ClassVar[tuple[str, str]] = ("factor", "factors")
+
+    @property
+    def _tried(self) -> tuple[Any, ...]:
+        return self.trials
 
     def _said(self, value: float) -> str:
         return f"{value:.4g} of the torque of {self.drive}"
@@ -149,4 +144,7 @@ def least_drive(
             tolerance=tolerance, band=band, stopped=stopped, unit=speed_unit(trials.line),
         )  # fmt: skip
 
-    return search(trials, FACTOR, factors, "factors", points, accuracy, around, found, progress or (lambda share: None))
+    return search(
+        trials, path=FACTOR, ends=factors, key="factors", points=points, accuracy=accuracy, around=around, found=found,
+        progress=progress,
+    )  # fmt: skip

@@ -19,6 +19,7 @@ from trunnion.errors import InputError
 from trunnion.motion.passing.boundary_nature import BoundaryNature, boundary_nature
 from trunnion.motion.passing.trials import Trials, passes
 from trunnion.results.counts import counted
+from trunnion.results.fields import attribute, coordinate, internal, labelled
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.speeds import rounded_speed
@@ -30,19 +31,26 @@ WIDE = 8.0
 """Accuracies that the even band about the boundary reaches to either side."""
 
 
+@labelled
 class LeastFound(Result):
     """Trials by rising value, of which the subclass says what it is."""
 
-    trials: tuple[Any, ...]
-    phases: Array
-    band: Array
-    first: float
-    last: float
-    accuracy: float
-    stopped: str
-    unit: str
+    phases: Array = coordinate("phase", "rad", "of the input when it begins")
+    drive: str = attribute("disk that drives")
+    first: float = attribute("speed at the start [rad/s]")
+    last: float = attribute("speed asked for [rad/s]")
+    accuracy: float = attribute("of the least value, relative")
+    tolerance: float = attribute("error allowed per step")
+    band: Array = internal("values, even in the logarithm, for the nature of the boundary")
+    stopped: str = internal("what ended the search early")
+    unit: str = internal("of speeds in print")
     WHAT: ClassVar[tuple[str, str]]
     """One, and several."""
+
+    @property
+    def _tried(self) -> tuple[Any, ...]:
+        """The trials, by rising value."""
+        raise NotImplementedError
 
     def _said(self, value: float) -> str:
         """A value in words."""
@@ -51,12 +59,12 @@ class LeastFound(Result):
     @cached_property
     def values(self) -> Array:
         """What was tried (trial,)."""
-        return np.array([one.value for one in self.trials])
+        return np.array([one.value for one in self._tried])
 
     @property
     def passes(self) -> Flags:
         """Whether each passed from every starting phase (trial,)."""
-        return np.array([one.passes for one in self.trials], dtype=bool)
+        return np.array([one.passes for one in self._tried], dtype=bool)
 
     @property
     def _place(self) -> int:
@@ -65,23 +73,23 @@ class LeastFound(Result):
 
     def _least(self) -> float:
         place = self._place
-        return float(self.trials[place].value) if place < len(self.trials) else np.nan
+        return float(self._tried[place].value) if place < len(self._tried) else np.nan
 
     def _below(self) -> float:
-        return float(self.trials[self._place - 1].value) if self._place else np.nan
+        return float(self._tried[self._place - 1].value) if self._place else np.nan
 
     @property
     def passing_below(self) -> Array:
         """Values below ``below`` that pass all the same: passing is not monotone there."""
-        return np.array([one.value for one in self.trials[: self._place] if one.passes])
+        return np.array([one.value for one in self._tried[: self._place] if one.passes])
 
     @cached_property
     def nature(self) -> BoundaryNature | None:
         """What the outcomes tell of the boundary; None where nothing was tried."""
-        if not self.trials:
+        if not self._tried:
             return None
         known = {"passed": 1.0, "dwelt": 1.0, "undecided": np.nan}
-        passed = np.array([[known.get(kind, 0.0) for kind in one.kinds] for one in self.trials])
+        passed = np.array([[known.get(kind, 0.0) for kind in one.kinds] for one in self._tried])
         return boundary_nature(self.values, passed, self.band)
 
     @property
@@ -89,7 +97,7 @@ class LeastFound(Result):
         """Whether it was found, and a sentence."""
         one, several = self.WHAT
         if self.stopped:
-            return Outcome(False, "ended early", f"{self.stopped} after {len(self.trials)} {several}")
+            return Outcome(False, "ended early", f"{self.stopped} after {len(self._tried)} {several}")
         if np.isnan(self._least()):
             return Outcome(False, "not found", f"no {one} that was tried is enough")
         return Outcome(True, "found", f"{self._said(self._least())} is enough")
@@ -106,7 +114,7 @@ class LeastFound(Result):
         yield Attribute("says", "; ".join(self._lines()))
 
     def _lines(self) -> Iterator[str]:
-        trials, place, several = self.trials, self._place, self.WHAT[1]
+        trials, place, several = self._tried, self._place, self.WHAT[1]
         asked = rounded_speed(self.last, self.unit)
         count = counted(len(self.phases), "starting phase")
         if not trials:
@@ -144,8 +152,8 @@ Found = Callable[[Sequence[tuple[float, list[str]]], Array, str], Any]
 
 
 def search(
-    trials: Trials, path: str, ends: tuple[float, float], key: str, points: int, accuracy: float, around: int,
-    found: Found, report_progress: Callable[[float], None],
+    trials: Trials, *, path: str, ends: tuple[float, float], key: str, points: int, accuracy: float, around: int,
+    found: Found, progress: Callable[[float], None] | None,
 ) -> Any:  # fmt: skip
     """Try values of ``path`` between two ``ends``: evenly in the logarithm, then between the least and what fails below
     it, then ``around`` the boundary.
@@ -162,6 +170,7 @@ def search(
             raise InputError("are too many", key=name, value=one, remedy=f"at most {MOST_POINTS}; 17, say")
     if not 1e-12 < one_number(accuracy, "accuracy", "0.01, say") < 1:
         raise InputError("must lie between 1e-12 and 1", key="accuracy", value=accuracy, remedy="0.01, say")
+    report_progress = progress or (lambda share: None)
     expected = count + _halvings(low, high, count, accuracy) + more
     made: list[tuple[float, list[str]]] = []
     band = np.zeros(0)

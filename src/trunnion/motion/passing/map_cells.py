@@ -26,7 +26,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.waiting import time_is_up
 
 Request: TypeAlias = tuple[str, float, float, int]
-Asked: TypeAlias = tuple[Sequence[AppliedTorque], Sequence[FrictionTorque], Scenario | str | None]
+Acting: TypeAlias = tuple[Sequence[AppliedTorque], Sequence[FrictionTorque], Scenario | str | None]
 KINDS = ("passed", "captured", "short of torque", "undecided")
 """What is counted of the starting phases of a cell."""
 UNKNOWN = -1
@@ -62,7 +62,7 @@ class MapRequest:
 
 
 def map_request(
-    line: Driveline | Assembly, speeds: Sequence[float | str], x: Request, y: Request, asked: Asked, drive: str | None,
+    line: Driveline | Assembly, speeds: Sequence[float | str], x: Request, y: Request, asked: Acting, drive: str | None,
     phases: int | ArrayLike, tolerance: float,
 ) -> MapRequest:  # fmt: skip
     """A map that is asked for.

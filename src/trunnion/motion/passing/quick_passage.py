@@ -6,19 +6,13 @@ kept, at the same error control.
 
 from __future__ import annotations
 
-from functools import cache
-from pathlib import Path
-from types import ModuleType
-
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.applied_torque import TorqueFunction
-from trunnion.equations import line_regimes
 from trunnion.equations.applied_torques import PlacedTorque
-from trunnion.equations.line_regimes import line_kernel
+from trunnion.equations.line_regimes import line_kernel, passage_kernel
 from trunnion.motion.transients.stepping import FURTHEST, Stepper
-from trunnion.numerics.compiled import kernel_file
 from trunnion.numerics.integration import integration
 from trunnion.waiting import time_is_up
 
@@ -26,16 +20,6 @@ CHUNK = 20_000
 """Steps of a call, about a tenth of a second."""
 LOOKS = 32
 """Mean speeds in a stretch."""
-
-
-@cache
-def passage_kernel() -> ModuleType:
-    """The compiled stretches of a passage."""
-    used = (
-        Path(integration.__file__).with_name("integration_kernel.py"),
-        Path(line_regimes.__file__).with_name("line_kernel.py"),
-    )
-    return kernel_file(str(Path(__file__).with_name("passage_kernel.py")), *map(str, used))
 
 
 def is_quick(stepper: Stepper) -> bool:
@@ -107,25 +91,25 @@ class QuickPassage:
     def on(self, length: float) -> tuple[str, float, float]:
         """Go on for ``length`` [s]: "reached", "crossed" where the line has the last speed, "out of time", or "other"
         for what this cannot follow; mean speed and highest mean speed of a look [rad/s]."""
-        kernel, stepper, clock = passage_kernel(), self.stepper, self.clock
+        core, stepper, clock = passage_kernel(), self.stepper, self.clock
         n, since = stepper.topo.size, self.time
-        begun = kernel.mean_angle(since, self.state, self.numbers, n, stepper.share)
+        begun = core.mean_angle(since, self.state, self.numbers, n, stepper.share)
         apart = length / LOOKS
         clock[2:7] = since, begun, since + apart, apart, -np.inf
         while True:
-            code = kernel.stretch(
+            code = core.stretch(
                 stepper.equations.rate, self.numbers, self.state, n, stepper.share, stepper.turning,
                 stepper.equations.weight, self.tolerance, since + length, self.last, FURTHEST, CHUNK, self.torque,
                 self.knots, self.rows, self.known, clock,
             )  # fmt: skip
-            if code != kernel.FULL:
+            if code != core.FULL:
                 break
             if time_is_up():
                 return "out of time", np.nan, np.nan
-        if code == kernel.CROSSED:
+        if code == core.CROSSED:
             return "crossed", np.nan, np.nan
-        if code != kernel.REACHED:
+        if code != core.REACHED:
             return "other", np.nan, np.nan
-        turned = kernel.mean_angle(self.time, self.state, self.numbers, n, stepper.share) - begun
+        turned = core.mean_angle(self.time, self.state, self.numbers, n, stepper.share) - begun
         mean = turned / (self.time - since)
         return "reached", float(mean), float(max(clock[6], mean))
