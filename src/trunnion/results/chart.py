@@ -39,7 +39,10 @@ Resample = Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]
 FORMAT = "trunnion stability chart 4"
 
 
-WAYS = 'how it was built in the end: "patches", "smaller patches", "whole periods" or "pixel by pixel"'
+WAYS = (
+    'how it was built in the end: "patches", "smaller patches", "whole periods", "pixel by pixel" or '
+    '"periodic steady states", about the line\'s own motion'
+)
 BYTES_A_PIXEL = 64
 """Radius, error, multiplier and verdict of a pixel, and what is stored beside them while it is filled."""
 
