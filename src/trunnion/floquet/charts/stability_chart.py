@@ -150,7 +150,7 @@ def _about_steady_states(
 
     chart = SteadyStateChart.of(assembly, _request(across), _request(up), base)
     found = chart.pixels(across.values, up.values, lambda share: report_progress(0.95 * share))
-    check = chart.check(found.every, across.values, up.values)
+    check = chart.check(found, across.values, up.values)
     report_progress(1.0)
     left = (finding.sentence for finding in left_out("stability_chart", assembly.line))
     return StabilityChart(
@@ -161,6 +161,7 @@ def _about_steady_states(
         remarks=(*said, *found.remarks(chart, across.values, up.values), *left), line=assembly.line,
         function=chart.function, evaluate_point=chart.point, resample=chart.resampled,
         spot_check=check if check.points else None, way=ABOUT_STEADY_STATES, unit=speed_unit(assembly.line),
+        folds=tuple((y, one.low, one.high) for y, one in found.folds),
     )  # fmt: skip
 
 

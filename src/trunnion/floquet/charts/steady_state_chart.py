@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import refuse_dragged, require_steady_base, require_tree
@@ -38,6 +38,7 @@ from trunnion.steady.free.periodic_steady_states import (
     breaks,
     slopes_along,
 )
+from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
 from trunnion.waiting import keep_time
 
 SPOTS = 4
@@ -113,7 +114,7 @@ class SteadyStateChart:
         keep_time()
         balance = self.unexcited.balance.along(lambda value: self.table(value, np.full(len(value), y)))
         curve = SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])), self._by_speed)
-        curve.broken = breaks(curve, x)
+        curve.broken = breaks(curve, x, between=False)
         motions = slopes_along(curve, x)
         found = multipliers_about(motions)
         critical = np.where(found.critical.imag < 0, found.critical.conj(), found.critical)
@@ -124,55 +125,71 @@ class SteadyStateChart:
             values = np.linalg.eigvals(left).astype(complex)
             aside = np.ones((len(known), every.shape[1] - values.shape[1]))
             every[known] = np.concatenate([aside, values], axis=1)
-        return SteadyStateRow(Pixels(found.radius, found.error, critical, found.verdict), every, curve.broken)
+        pixels = Pixels(found.radius, found.error, critical, found.verdict)
+        return SteadyStateRow(pixels, every, curve.broken, curve.at_all(x).states[:, 0])
 
     def pixels(self, x: Array, y: Array, tell: Callable[[float], None] = lambda share: None) -> SteadyStatePixels:
         """All points (y, x)."""
         every = Pixels.failed((len(y), len(x)))
         several, none = np.zeros(every.radius.shape, dtype=bool), np.zeros(every.radius.shape, dtype=bool)
         folds: list[tuple[float, Break]] = []
+        start = np.full((*every.radius.shape, 2 * len(self.unexcited.balance.turn)), np.nan)
         for r, value in enumerate(y.tolist()):
             row = self.row(x, value)
             every.put((r,), row.pixels)
+            start[r] = row.start
             for one in row.broken:
                 inside = (x > one.low) & (x < one.high)
                 several[r] |= inside & (one.why == SEVERAL)
                 none[r] |= inside & (one.why != SEVERAL)
                 folds.append((value, one))
             tell((r + 1) / len(y))
-        return SteadyStatePixels(every, several, none, tuple(folds))
+        return SteadyStatePixels(every, several, none, tuple(folds), start)
 
-    def check(self, pixels: Pixels, x: Array, y: Array) -> SpotCheck:
-        """Some points compared with multipliers about motions found by shooting.
+    def check(self, found: SteadyStatePixels, x: Array, y: Array) -> SpotCheck:
+        """Some points compared with multipliers about the motions that shooting from the same start closes.
 
         Raises
         ------
         ComputationError : they differ by more than the errors of both.
         """
-        from trunnion.steady.free.periodic_steady_state import periodic_steady_state
-
+        pixels = found.every
         known = np.argwhere(np.isfinite(pixels.radius))
-        if not len(known) or not self.unexcited.balance.free:
-            return SpotCheck(0, 0.0, 0.0)
         rng = np.random.default_rng(pixels.radius.size)
         ratio = difference = 0.0
         looked = 0
-        for r, c in known[rng.choice(len(known), min(SPOTS, len(known)), replace=False)]:
-            row = self.table(x[[c]], y[[r]])
-            try:
-                orbit = periodic_steady_state(self.unexcited.unexcited.packed.line_at(row[0]), float(row[0, 0])).orbit
-            except ComputationError:
+        for r, c in known[rng.choice(len(known), min(SPOTS, len(known)), replace=False)] if len(known) else known:
+            keep_time()
+            shot = self._shot(self.table(x[[c]], y[[r]])[0], found.start[r, c])
+            if not shot.outcome.ok:
                 continue
             looked += 1
-            off = abs(orbit.spectral_radius - float(pixels.radius[r, c]))
+            turn = self.period / float(self.table(x[[c]], y[[r]])[0, 0])
+            radius, error = shot.spectral_radius, shot.error_estimate
+            own, share = float(pixels.radius[r, c]), turn / shot.period
+            off = abs(radius**share - own)
             difference = max(difference, off)
-            ratio = max(ratio, off / (float(pixels.error[r, c]) + orbit.error_estimate + ROUGHLY))
+            allowed = float(pixels.error[r, c]) + share * error * max(own, radius) + ROUGHLY
+            ratio = max(ratio, off / allowed)
         if ratio > 1:
             raise ComputationError(
-                f"motions found by shooting move the spectral radius of the chart by {difference:.1e}, {ratio:.2g} "
-                "times the error estimated: several motions may exist there; ask stability() for single points"
+                f"motions closed by shooting move the spectral radius of the chart by {difference:.1e}, {ratio:.2g} "
+                "times the error estimated; ask stability() for single points"
             )
         return SpotCheck(looked, ratio, difference)
+
+    def _shot(self, row: Array, start: Array) -> PeriodicOrbit:
+        """The motion at one row of packed numbers, integrated from ``start``."""
+        from trunnion.equations.coefficients import assemble
+        from trunnion.equations.line_system import line_system
+        from trunnion.steady.shooting.free_orbit import kept_speed_orbit
+        from trunnion.steady.shooting.periodic_orbit import periodic_orbit
+
+        line = self.unexcited.unexcited.packed.line_at(row)
+        prepared = line_system(assemble(line), float(row[0]), linearised=True)
+        if self.unexcited.balance.free:
+            return kept_speed_orbit(prepared, start, settle=False)
+        return periodic_orbit(prepared.system, start=start, settle=False)
 
     def point(self, x: float, y: float) -> ChartPoint:
         """Anywhere in the box: the row followed from the chart's own points."""
@@ -197,21 +214,25 @@ class SteadyStateChart:
 
 @dataclass(frozen=True)
 class SteadyStateRow:
-    """pixels (point,), every multiplier (point, 2n), those set aside as 1; broken: where the motions break off."""
+    """pixels (point,), every multiplier (point, 2n), those set aside as 1; broken: where the motions break off; start
+    (point, 2n): the motion's state at no rotation of the input."""
 
     pixels: Pixels
-    every: Array
+    every: Complex
     broken: tuple[Break, ...]
+    start: Array
 
 
 @dataclass(frozen=True)
 class SteadyStatePixels:
-    """``every`` point (y, x); where several motions were found and where none; the folds by value of y."""
+    """``every`` point (y, x); where several motions were found and where none; the folds by value of y; start (y, x,
+    2n): states at no rotation of the input."""
 
     every: Pixels
     several: Flags
     none: Flags
     folds: tuple[tuple[float, Break], ...]
+    start: Array
 
     def remarks(self, chart: SteadyStateChart, x: Array, y: Array) -> list[str]:
         """What a reader must know of points that are not judged."""

@@ -37,6 +37,8 @@ ALIKE = 1e-6
 """Difference [rad] of two motions that are the same."""
 LEAP = 0.1
 """Share of its swing by which a motion may change in one step: by more it fell into another one."""
+FAR_LEAP = 4.0
+"""The same where the motion leads back as well: swings past a resonance have the other sense."""
 AWAY = np.array([0.9, 1.1, 0.75, 1.3])
 """Shares of a speed at which one begins to follow a motion to it that is not found otherwise."""
 BESIDE = 1e-6
@@ -385,15 +387,19 @@ class SteadyStatesBySpeed(SteadyStateCurve):
         return CLOSE * abs(value)
 
 
-def breaks(solved: SteadyStateCurve, speeds: Array) -> tuple[Break, ...]:
-    """Those between the lowest and the highest of ``speeds`` (speed,) [rad/s], looked for between all of them."""
+def breaks(solved: SteadyStateCurve, speeds: Array, *, between: bool = True) -> tuple[Break, ...]:
+    """Those between the lowest and the highest of ``speeds`` (speed,) [rad/s], looked for between all of them.
+
+    ``between`` : False where what happens between two neighbours matters to neither: they belong together where each
+    leads to the other in one step, be it a large one.
+    """
     speeds = np.unique(speeds)
     solved.at_all(speeds)
     usable = [speed for speed in speeds.tolist() if solved.known[speed].settled]
     low, high = float(speeds[0]), float(speeds[-1])
     if not usable:
         return (Break(low, high, NONE),)
-    walk = _BranchWalk(solved, low, high)
+    walk = _BranchWalk(solved, low, high, between)
     found = _merged([*walk.outside(usable[0], low), *walk.between(usable), *walk.outside(usable[-1], high)])
     return tuple(walk.with_outer_motions(one, usable) for one in found)
 
@@ -416,6 +422,7 @@ class _BranchWalk:
     solved: SteadyStateCurve
     low: float
     high: float
+    closely: bool = True
 
     def outside(self, speed: float, end: float) -> Iterator[Break]:
         """What lies between the outermost motion found and the end of the range."""
@@ -426,7 +433,12 @@ class _BranchWalk:
     def between(self, speeds: list[float]) -> Iterator[Break]:
         """What lies between neighbours of which neither leads to the other."""
         pairs = list(pairwise(speeds))
-        for (a, b), same in zip(pairs, self._lead_over(pairs), strict=True):
+        together = self._lead_over(pairs, LEAP)
+        if not self.closely:
+            back = self._lead_over([(b, a) for a, b in pairs], FAR_LEAP)
+            over = self._lead_over(pairs, FAR_LEAP)
+            together = [one or (up and down) for one, up, down in zip(together, over, back, strict=True)]
+        for (a, b), same in zip(pairs, together, strict=True):
             up = b if same else self._continued(a, b)
             down = a if up == b else self._continued(b, a)
             if up != b and down != a:
@@ -443,11 +455,12 @@ class _BranchWalk:
                 self.solved.known[fold] = motion
         return found
 
-    def _lead_over(self, pairs: list[tuple[float, float]]) -> list[bool]:
-        """Of pairs of speeds whether the motion at the first leads to that at the second in one small step."""
+    def _lead_over(self, pairs: list[tuple[float, float]], leap: float) -> list[bool]:
+        """Of pairs of speeds whether the motion at the first leads to that at the second in one step, of no more than
+        the share ``leap`` of its swing."""
         known, found = self.solved.known, [False] * len(pairs)
         orders = [max(known[a].h, known[b].h) for a, b in pairs]
-        near = [apart(known[a].rows, known[b].rows) <= LEAP * known[a].swing for a, b in pairs]
+        near = [apart(known[a].rows, known[b].rows) <= leap * known[a].swing for a, b in pairs]
         for h in sorted(set(orders)):
             which = [i for i, one in enumerate(orders) if one == h and near[i]]
             if not which:
