@@ -167,6 +167,8 @@ from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
+from trunnion.studies.result import read_study as read_study
+from trunnion.studies.sensitivities import study_sensitivities as study_sensitivities
 from trunnion.studies.study import study as study
 from trunnion.studies.study import study_cost as study_cost
 from trunnion.systems.events import Event as Event

@@ -402,6 +402,14 @@ ANALYSES = (
         command="trunnion.cli.measured:identify",
     ),
     Analysis(
+        "study",
+        "One analysis at very many points of a line, on all cores or a cluster, every answer kept.",
+        pictures={
+            "Study.plot": "trunnion.pictures.studies:study",
+            "SobolIndices.plot": "trunnion.pictures.studies:shares",
+        },
+    ),
+    Analysis(
         "certify_chaos",
         "Regular, chaotic, unbounded or undecided, with reasons and one figure.",
         features="long motion",
