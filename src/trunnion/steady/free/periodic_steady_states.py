@@ -224,9 +224,14 @@ class SteadyStateCurve:
 
     def __init__(self, balance: FreeBalance, ends: tuple[float, float], by_speed: bool) -> None:
         """``ends`` : lowest and highest value; ``by_speed``: whether any torque depends on the speed."""
-        self.balance, self.ends, self.by_speed = balance, ends, by_speed
+        self.balance, self.ends, self._depends_on_speed = balance, ends, by_speed
         self.known: dict[float, KnownSteadyState] = {}
         self.broken: tuple[Break, ...] = ()
+
+    @property
+    def by_speed(self) -> bool:
+        """Whether any torque depends on the speed."""
+        return self._depends_on_speed
 
     def at_all(self, speeds: Array) -> SteadyStates:
         """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
@@ -375,8 +380,8 @@ class SteadyStatesBySpeed(SteadyStateCurve):
             self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
         )
 
-    @cached_property
-    def by_speed(self) -> bool:  # type: ignore[override]
+    @property
+    def by_speed(self) -> bool:
         """Whether any torque depends on the speed."""
         return loaded_by_speed(self.unexcited)
 
