@@ -111,7 +111,7 @@ def _write_new(target: Path, text: str, force: bool) -> None:
 
 def export(
     file: Annotated[str, typer.Argument(metavar="FILE", help="Driveline file, or a name of the catalogue.")],
-    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion or modelica.")],
+    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion, modelica or c.")],
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py or .mo file to write.")
     ],
