@@ -77,12 +77,20 @@ a { color: #00558a; }
 class Page:
     """Panel objects of the page; the session says what stands in them."""
 
-    def __init__(self, views: Mapping[str, str], choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
-        """``views``: names of the views by their titles."""
+    def __init__(
+        self, views: Mapping[str, str], first: str, choose: Callable[[str], None], cancel: Callable[[], None]
+    ) -> None:
+        """``views``: names of the views by their titles; ``first``: the one to begin with, chosen from the start, so
+        that what is pressed while the page loads is never taken back."""
         pn.config.raw_css = [_STYLE]
         self.programmatic = ProgrammaticChange()
         self.navigation = pn.widgets.RadioButtonGroup(
-            label="View", options=dict(views), button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
+            label="View",
+            options=dict(views),
+            value=first,
+            button_type="default",
+            margin=(4, 0),
+            stylesheets=[_NAVIGATION],
         )
         self.navigation.param.watch(lambda event: choose(event.new) if not self.programmatic else None, "value")
         self.said = pane(margin=(4, 0), css_classes=["refusal"])
@@ -104,31 +112,34 @@ class Page:
         for name in ("navigation", "status", "main", "aside"):
             self.template.add_panel(name, getattr(self, name))
 
-    def fill(self, sliders: Any, keep: Sequence[Any], difference: Any) -> None:
+    def fill(self, sliders: Any, strip: Any, difference: Any) -> None:
         """What stands beside the pictures."""
-        first, *others = keep
-        variants = (heading("Two variants side by side"), first, pn.Row(*others, margin=0), difference)
-        self.aside.extend([heading("Move a number"), sliders, *variants])
+        self.aside.extend([heading("Move a number"), sliders, heading("Variants"), strip, difference])
 
-    def show(self, view: View, variants: Sequence[str]) -> None:
-        """Put a view, with a picture for each variant, on the page."""
-        key = (view.name, *variants)
+    def show(self, view: View, names: Mapping[str, str], is_upon: bool) -> None:
+        """Put a view on the page, with a picture for each variant, by its ``names``, or the pictures on the same axes
+        where the view has any that can be."""
+        is_upon = is_upon and len(names) > 1 and view.lay_upon(names)
+        if not is_upon:
+            view.lay_upon({})
+        variants = ["now"] if is_upon else list(names)
+        key = (view.name, is_upon, *names.items())
         if key == self._shown:
             return
         self._shown = key
         with self.programmatic:
             self.navigation.value = view.name
         one = len(variants) == 1
-        titles = {"kept": "the kept variant", "now": "now"}
         pictures = []
         for variant in variants:
             side = view.of(variant)
             side.narrow(not one)
-            above = [side.stamp] if one else [heading(titles[variant]), side.stamp]
+            above = [side.stamp] if one else [heading(names[variant]), side.stamp]
             pictures.append(column(*above, side.panel, min_width=300 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
         about = [pane(markup("<p style='margin:0'>{}</p>", view.about))] if view.about else []
-        self.main.objects = [*about, view.controls, whole, view.downloads]
+        said = [view.upon] if is_upon else []
+        self.main.objects = [*about, view.controls, *said, whole, view.downloads]
 
     def message(self, text: str) -> None:
         """Say what went wrong, or nothing more."""
