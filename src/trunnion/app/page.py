@@ -64,7 +64,8 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 .stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: #1a1a1a;
   background: #fff3d6; border: 1px solid #b58900; animation: late 0.3s step-end; }
 @keyframes late { from { visibility: hidden; } }
-.refusal, .refusal * { color: #8d0016; }
+.refusal, .refusal * { color: #8d0016; overflow-wrap: anywhere; }
+h2, p, li, td, th { overflow-wrap: anywhere; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
 .verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
 .sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }

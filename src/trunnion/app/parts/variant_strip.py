@@ -15,6 +15,9 @@ MOST_KEPT = MOST_VARIANTS
 """Variants that are kept at most: an address holds all of them."""
 MOST_SHOWN = 3
 """Variants that are computed and shown beside the present line."""
+WRAPPED = ".bk-btn { white-space: normal; overflow-wrap: anywhere; text-align: left; }"
+"""Of a button that has a name in its words, however long."""
+LABEL = "label, span { overflow-wrap: anywhere; white-space: normal; }"
 BESIDE, UPON = "beside each other", "on the same axes"
 
 
@@ -92,18 +95,18 @@ class VariantStrip:
         self.how.visible = bool(variants)
 
     def _row(self, one: KeptVariant) -> Any:
-        def button(text: str, about: str, width: int, act: Callable[[], None]) -> Any:
-            made = pn.widgets.Button(label=text, description=about, width=width, margin=(2, 3))
+        def button(text: str, about: str, act: Callable[[], None]) -> Any:
+            made = pn.widgets.Button(label=text, description=about, margin=(2, 3), stylesheets=[WRAPPED])
             made.on_click(lambda event: act())
             return made
 
-        shown = pn.widgets.Checkbox(label=f"show {one.name}", value=one.is_shown, margin=(4, 5))
+        shown = pn.widgets.Checkbox(label=f"show {one.name}", value=one.is_shown, margin=(4, 5), stylesheets=[LABEL])
         shown.param.watch(lambda event: self.actions.show_variant(one.key, event.new), "value")
         acts = [
             button(
-                f"Swap {one.name}", "make it the present line, and keep that one", 0, lambda: self.actions.swap(one.key)
+                f"Swap {one.name}", "make it the present line, and keep that one", lambda: self.actions.swap(one.key)
             ),
-            button(f"Drop {one.name}", "keep it no more", 0, lambda: self.actions.drop(one.key)),
+            button(f"Drop {one.name}", "keep it no more", lambda: self.actions.drop(one.key)),
         ]
         return column(shown, self._said[one.key], wrapped(*acts))
 

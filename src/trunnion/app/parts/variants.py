@@ -16,6 +16,8 @@ from trunnion.driveline.quantities import KINDS, RATIO, eye_unit
 from trunnion.errors import InputError
 
 STEPS = 200
+LONG_LABEL = ".bk-slider-title { white-space: normal; overflow-wrap: anywhere; }"
+"""The path of a parameter is as long as the name of its element."""
 MOST_ROWS = 30
 """Differences that are listed."""
 
@@ -56,7 +58,9 @@ class Sliders:
         self.asked: dict[str, str] = {}
         self.programmatic = ProgrammaticChange()
         self.which = pn.widgets.Select(label="Parameter to move", options=[], sizing_mode="stretch_width")
-        self.slider = pn.widgets.FloatSlider(label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
+        self.slider = pn.widgets.FloatSlider(
+            label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width", stylesheets=[LONG_LABEL]
+        )
         self.value = pn.widgets.FloatInput(label="Value as a number", width=105)
         self.low = pn.widgets.FloatInput(label="Slider from", width=72)
         self.high = pn.widgets.FloatInput(label="to", width=72)
