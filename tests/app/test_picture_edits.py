@@ -30,6 +30,7 @@ def test_what_is_inserted_goes_by_the_part_it_stands_beside() -> None:
     assert document.data == Document(starter("two-shaft")).data
 
 
+@pytest.mark.slow
 def test_a_click_on_a_part_brings_its_fields(look: Look) -> None:
     look.page.set_default_timeout(60_000)
     look.at("?view=live")
@@ -56,6 +57,7 @@ def test_a_click_on_a_part_brings_its_fields(look: Look) -> None:
     assert field.input_value() == before
 
 
+@pytest.mark.slow
 def test_by_keyboard_a_part_is_chosen_given_a_neighbour_and_taken_away(look: Look) -> None:
     look.page.set_default_timeout(60_000)
     look.at("?view=live&live.part=Disk+1")

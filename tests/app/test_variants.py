@@ -23,6 +23,11 @@ from trunnion.pictures.overlaid import largest, overlaid
 from trunnion.pictures.picture import Axis, Key, Level, Line, Panel, Picture, Points
 
 
+def own_panel(made: Session) -> object:
+    """Of the present line in the visible view."""
+    return made.view.of(NOW).panel
+
+
 def test_variants_are_named_shown_on_the_same_axes_and_told_apart(monkeypatch: pytest.MonkeyPatch) -> None:
     async def work(made: Session, pool: Held) -> None:
         made.show_view("orders")
@@ -37,6 +42,8 @@ def test_variants_are_named_shown_on_the_same_axes_and_told_apart(monkeypatch: p
         made.drop(made.variants[1].key)
         made.arrange_variants(UPON)
         await settled(made)
+        assert made.view.upon in made.page.main.objects
+        assert own_panel(made) in made.page.main.objects[-2].objects
         own, other = (made.view.of(key).canvases for key in (NOW, made.variants[0].key))
         place = next(name for name, canvas in own.items() if canvas.own and canvas.others)
         drawn = overlaid(own[place].own[0], own[place].others)
