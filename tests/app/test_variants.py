@@ -136,5 +136,7 @@ def test_only_what_has_the_same_axes_is_laid_upon_another() -> None:
     assert both.panels[1] == own.panels[1]
     (peak,) = largest(own, other)
     assert (peak.now, peak.at, peak.other, peak.other_at, peak.share) == (2.0, 10.0, -8.0, 5.0, -1.25)
+    modes = Picture((Panel(speed, torque, (Line([0, 1], [1, 1], "mode", "mode"), Line([0, 1], [2, 2], "mode"))),))
+    assert list(largest(modes, modes)) == []
     assert look("of variant 1: curve 3").colour == look("curve 3").colour
     assert look("of variant 1: curve 3").dash != look("of variant 0: curve 3").dash

@@ -16,10 +16,11 @@ CURVES = (Line, Points, Level)
 
 @dataclass(frozen=True)
 class LargestOf:
-    """The largest size of a curve in the pictures of two variants, and where along x."""
+    """The largest size of a curve in the pictures of two variants, and where along x, in the units of the axes."""
 
     curve: str
     unit: str
+    at_unit: str
     now: float
     at: float
     other: float
@@ -69,16 +70,26 @@ def _widened(own: Axis, other: Axis) -> Axis:
 
 
 def largest(own: Picture, other: Picture) -> Iterator[LargestOf]:
-    """Of every curve that both pictures name, the largest size in each, with its place along x."""
+    """Of every curve that both pictures name, the largest size in each, with its place along x.
+
+    Where several lines share a role, as the modes of a Campbell diagram do, a name stands for all of them and none is
+    compared."""
     for panel, upon in zip(own.panels, other.panels, strict=False):
         if not can_lie_upon(panel, upon):
             continue
-        named = {item.name: item for item in upon.items if isinstance(item, Line) and item.name}
-        for item in panel.items:
-            if isinstance(item, Line) and item.name in named:
+        named = {item.name: item for item in _alone(upon)}
+        for item in _alone(panel):
+            if item.name in named:
                 now, before = _peak(item), _peak(named[item.name])
                 if now and before:
-                    yield LargestOf(item.name, panel.y.unit, now[1], now[0], before[1], before[0])
+                    yield LargestOf(item.name, panel.y.unit, panel.x.unit, now[1], now[0], before[1], before[0])
+
+
+def _alone(panel: Panel) -> list[Line]:
+    """Curves with a name that are the only ones of their role."""
+    curves = [item for item in panel.items if isinstance(item, Line)]
+    roles = [item.role for item in curves]
+    return [item for item in curves if item.name and roles.count(item.role) == 1]
 
 
 def _peak(item: Line) -> tuple[float, float] | None:

@@ -395,7 +395,10 @@ def _largest(own: Picture, name: str, other: Picture) -> Iterator[Html]:
     """How the largest values of the curves differ that two pictures name, as rows of a table."""
     for one in largest(own, other):
         change = f"{one.share:+.1%}" if math.isfinite(one.share) else ""
-        values = (f"{value:.4g} {one.unit} at {at:.4g}" for value, at in ((one.other, one.other_at), (one.now, one.at)))
+        values = (
+            f"{value:.4g} {one.unit} at {at:.4g} {one.at_unit}"
+            for value, at in ((one.other, one.other_at), (one.now, one.at))
+        )
         yield markup(
             "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", one.curve, name, *values, change
         )
