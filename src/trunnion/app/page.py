@@ -19,6 +19,20 @@ _TEMPLATE = """
 {% block title %}Trunnion{% endblock %}
 {% block preamble %}
 <meta name="viewport" content="width=device-width, initial-scale=1">
+<script>
+// A slider's handle has no name of its own: it gets the words above it, which change with the parameter.
+const attached = Element.prototype.attachShadow
+Element.prototype.attachShadow = function (...given) {
+  const root = attached.apply(this, given)
+  const name = () => {
+    const words = root.querySelector(".bk-slider-title")?.textContent.replace(/: [^:]*$/, "")
+    for (const handle of words ? root.querySelectorAll(".noUi-handle") : [])
+      if (handle.getAttribute("aria-label") !== words) handle.setAttribute("aria-label", words)
+  }
+  new MutationObserver(name).observe(root, { childList: true, subtree: true, characterData: true })
+  return root
+}
+</script>
 {% endblock %}
 {% block postamble %}
 <style>
@@ -71,6 +85,7 @@ h2, p, li, td, th { overflow-wrap: anywhere; }
 .sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
 a { color: #00558a; }
+.bk-spin-btn { display: none !important; }
 :focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
 """
 

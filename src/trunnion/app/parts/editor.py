@@ -212,7 +212,7 @@ input, select, button { font: inherit; padding: 2px 4px; border: 1px solid #8a92
 input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
 input[aria-invalid="true"] { border: 2px solid #b3001b; background: #fff3f3; }
 input[type="number"] { width: 5em; }
-button { cursor: pointer; background: #f2f4f6; }
+button { cursor: pointer; background: #f2f4f6; min-width: 24px; min-height: 24px; }
 .tools { white-space: nowrap; }
 .note { color: #8d0016; font-size: 13px; max-width: 34em; white-space: pre-line; }
 .alone .group { flex-direction: column; } .alone .new { flex-direction: row; } .alone .head { flex-basis: auto; }
