@@ -135,12 +135,6 @@ def stepper_of(
     """
     if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
         raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
-    if asked[1] and prepared.clutches:
-        raise InputError(
-            "is not followed in a line with a slip clutch", element="friction", key="on", value=asked[1][0].on,
-            remedy="describe the brake as a torque over time (a machine's curve with no torque at standstill), or the "
-            "slip clutch as a Clutch",
-        )  # fmt: skip
     torques = placed_torques(prepared.assembly, asked[0])
     frictions = placed_frictions(prepared.assembly, asked[1])
     return Stepper(
