@@ -57,8 +57,8 @@ def without_curves(
     frictions: list[FrictionTorque] = []
     disks: dict[str, Rotor] = dict(unshared)
     for name, car in rolling.items():
-        climbs = car.but(rolling_resistance=0.0)
-        frictions.append(FrictionTorque(on=name, torque=float(car.load.constant - climbs.load.constant)))
+        rolls, climbs = (one.load.value(0.0) for one in (car, car.but(rolling_resistance=0.0)))
+        frictions.append(FrictionTorque(on=name, torque=float(rolls - climbs)))
         disks[name] = disks.get(name, car).but(rolling_resistance=0.0, name=name)
     for name, machine in machines.items():
         _refuse(name, machine)
@@ -87,7 +87,8 @@ def _shares(line: Driveline, speed: float, driven: frozenset[str]) -> tuple[list
     topo, column = assembly.topology, assembly.packed.column
     sharing = {
         name: one for name, one in line.parts
-        if getattr(one, "drive_share", None) and name not in driven and not isinstance(one, Machine)
+        if isinstance(one, Rotor) and getattr(one, "drive_share", None) and name not in driven
+        and not isinstance(one, Machine)
     }  # fmt: skip
     if not sharing or not topo.free:
         return [], {}

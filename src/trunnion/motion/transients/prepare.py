@@ -17,6 +17,7 @@ from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
+from trunnion.motion.transients.excited import without_varying
 from trunnion.motion.transients.machines import without_curves
 from trunnion.motion.transients.stepping import Found, Place, Stepper
 from trunnion.numerics.integration.integration import MOST_STEPS
@@ -57,7 +58,10 @@ def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Drivelin
         refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
-    given = {one.on for one in asked[0]}
+    given = {one.on for one in (*asked[0], *asked[1])}
+    line, excited = without_varying(line, given, speed)
+    asked = ((*asked[0], *excited), *asked[1:])
+    given = {one.on for one in asked[0]} - ({one.on for one in excited} - given)
     sharing = [name for name, e in line.parts if isinstance(e, Rotor) and bool(getattr(e, "drive_share", False))]
     replaced = [name for name in sharing if name in given]
     if not replaced:

@@ -1,0 +1,81 @@
+"""Excitations whose amplitude goes with the load or the speed, as a motion in time has them.
+
+What goes with the mean torque of a disk whose drive keeps its torque, as one with a drive_share does here, has one
+amplitude all the way. What goes with the square of the speed, the oscillating masses of an engine, is a torque over
+angle and speed: at each instant by the speed that the disk has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from trunnion.driveline.applied_torque import AppliedTorque
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.elements import Rotor
+from trunnion.driveline.excitation import Excitation
+from trunnion.equations.amplitudes import Running, amplitude
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.harmonics import cylinders
+from trunnion.errors import InputError
+from trunnion.laws.torque_curve import PowerCurve
+
+
+def without_varying(
+    line: Driveline, given: Collection[str], speed: float
+) -> tuple[Driveline, tuple[AppliedTorque, ...]]:
+    """The line with the amplitudes that its excitations have from an input ``speed`` [rad/s] on, and torques for those
+    by the square of the speed. Disks that are ``given`` a torque keep excitations by their load, as do those whose own
+    load goes with the speed, and tables over the speed: these are not followed.
+
+    Raises
+    ------
+    InputError : a load beyond the table of an excitation.
+    """
+    varying = [
+        (name, one) for name, one in line.parts if isinstance(one, Rotor) and any(e.varies for e in one.excitation)
+    ]
+    if not varying:
+        return line, ()
+    assembly, torques, changed = assemble(line), list[AppliedTorque](), dict[str, dict[str, object]]()
+    for name, rotor in varying:
+        kept: list[Excitation] = []
+        for number, law in enumerate(rotor.excitation, start=1):
+            if law.quadratic_amplitude is not None:
+                torques.append(_by_square(name, rotor, law))
+            elif law.varies and not law.speeds and name not in given and _steady(rotor):
+                kept.append(_at_load(assembly, name, number, law, speed))
+            else:
+                kept.append(law)
+        changed[name] = {"excitation": kept or None}
+        if not kept and getattr(rotor, "firing_angles", ()):
+            changed[name] |= {"firing_angles": None, "misfiring": None}
+    return line.replace_all(changed), tuple(torques)
+
+
+def _steady(rotor: Rotor) -> bool:
+    """Whether the torque that it drives with stays while the speed changes."""
+    load = rotor.load
+    return isinstance(load, PowerCurve) and not (load.viscous or load.quadratic)
+
+
+def _by_square(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
+    together = cylinders(rotor, law)
+    assert law.quadratic_amplitude is not None
+    size, phase = abs(together) * float(law.quadratic_amplitude), float(law.phase + np.angle(together))
+    turned = f"({float(law.order or 0)!r})*angle + ({float(law.frequency or 0)!r})*time + ({phase!r})"
+    return AppliedTorque(on=name, formula=f"({size!r})*speed^2*cos({turned})")
+
+
+def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:
+    place, table = assembly.line.index(name), assembly.table(1, abs(speed))
+    running = Running(np.abs(table[:, 0]), lambda: -assembly.own_load(place, table))
+    try:
+        found = complex(amplitude(law, np.array([law.largest]), running)[0])
+    except InputError as error:
+        raise error.but(element=name, key=f"excitation {number}") from None
+    return law.but(
+        share=None, torques=(), amplitudes=(), phases=(), amplitude=abs(found),
+        phase=float(law.phase + np.angle(found)),
+    )  # fmt: skip
