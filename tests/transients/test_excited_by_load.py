@@ -40,6 +40,19 @@ def test_the_steady_vibration_is_that_of_the_linear_response(excitation: dict[st
     assert size == pytest.approx(float(abs(known.torque).max()), rel=1e-3)
 
 
+def test_a_share_of_what_a_propeller_resists_with() -> None:
+    blades = [{"order": 4, "share": 0.01, "phase": 0.2}]
+    propeller = tn.Disk(name="propeller", inertia=3.0, quadratic_load=0.05, viscous_load=0.5, excitation=blades)
+    drive = tn.Disk(name="engine", inertia=1.0)
+    made = tn.Driveline([drive, tn.Shaft(stiffness=8e3, damping=60.0), propeller])
+    pull = [tn.AppliedTorque(on="engine", time=[0.0, 1.0], torque=[100.0, 200.0])]
+    run = tn.transient(made, 1.0, torque=pull, speed=SPEED)
+    moving = run.at(np.linspace(0, 1, 301))
+    w, phi = moving.speed[:, 1], moving.angle[:, 1]
+    expected = 0.01 * (0.5 * w + 0.05 * w**2) * np.cos(4 * phi + 0.2)
+    np.testing.assert_allclose(moving.applied[:, 1], expected, rtol=1e-9, atol=1e-12)
+
+
 def test_an_amplitude_by_load_stays_as_the_share_does() -> None:
     by_load = line(torques=[0.0, 100.0], amplitudes=[10.0, 110.0])  # 70 N m at 60
     same = line(amplitude=70.0)

@@ -1,8 +1,9 @@
 """Excitations whose amplitude goes with the load or the speed, as a motion in time has them.
 
 What goes with the mean torque of a disk whose drive keeps its torque, as one with a drive_share does here, has one
-amplitude all the way. What goes with the square of the speed, the oscillating masses of an engine, is a torque over
-angle and speed: at each instant by the speed that the disk has.
+amplitude all the way. What goes with the square of the speed, the oscillating masses of an engine, and a share of what
+its disk resists with by powers of its speed, as of a propeller's blades, is a torque over angle and speed: at each
+instant by the speed that the disk has.
 """
 
 from __future__ import annotations
@@ -44,6 +45,8 @@ def without_varying(
         for number, law in enumerate(rotor.excitation, start=1):
             if law.quadratic_amplitude is not None:
                 torques.append(_by_square(name, rotor, law))
+            elif law.share is not None and name not in given and (load := _own_curve(rotor)) is not None:
+                torques.append(_by_share(name, rotor, law, load))
             elif law.varies and not law.speeds and name not in given and _steady(rotor):
                 kept.append(_at_load(assembly, name, number, law, speed))
             else:
@@ -60,12 +63,32 @@ def _steady(rotor: Rotor) -> bool:
     return isinstance(load, PowerCurve) and not (load.viscous or load.quadratic)
 
 
+def _own_curve(rotor: Rotor) -> PowerCurve | None:
+    """What a rotor without a share of the drive resists with, where that is a sum of powers of its speed, none of them
+    negative; of a propeller or a pump by its square, say."""
+    load = rotor.load
+    if getattr(rotor, "drive_share", None) or not isinstance(load, PowerCurve):
+        return None
+    return load if min(load.constant, load.viscous, load.quadratic) >= 0 else None
+
+
+def _by_share(name: str, rotor: Rotor, law: Excitation, load: PowerCurve) -> AppliedTorque:
+    """A share of what its disk resists with at each instant, by the speed that it has."""
+    constant, viscous, quadratic = (float(part) for part in (load.constant, load.viscous, load.quadratic))
+    size = f"(({constant!r}) + ({viscous!r})*speed + ({quadratic!r})*speed^2)"
+    return _turning(name, rotor, law, float(law.share or 0), size)
+
+
 def _by_square(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
+    return _turning(name, rotor, law, float(law.quadratic_amplitude or 0), "speed^2")
+
+
+def _turning(name: str, rotor: Rotor, law: Excitation, factor: float, size: str) -> AppliedTorque:
+    """``factor`` times ``size`` at the angle that the disk has."""
     together = cylinders(rotor, law)
-    assert law.quadratic_amplitude is not None
-    size, phase = abs(together) * float(law.quadratic_amplitude), float(law.phase + np.angle(together))
+    factor, phase = abs(together) * factor, float(law.phase + np.angle(together))
     turned = f"({float(law.order or 0)!r})*angle + ({float(law.frequency or 0)!r})*time + ({phase!r})"
-    return AppliedTorque(on=name, formula=f"({size!r})*speed^2*cos({turned})")
+    return AppliedTorque(on=name, formula=f"({factor!r})*{size}*cos({turned})")
 
 
 def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:
