@@ -53,6 +53,23 @@ def test_a_share_of_what_a_propeller_resists_with() -> None:
     np.testing.assert_allclose(moving.applied[:, 1], expected, rtol=1e-9, atol=1e-12)
 
 
+def test_a_table_over_the_speed_is_read_at_each_instant() -> None:
+    table = {"speeds": [30.0, 45.0, 60.0], "amplitudes": [2.0, 6.0, 3.0], "phases": [0.0, 0.5, 0.2]}
+    shaken = tn.Disk(name="fan", inertia=3.0, excitation=[{"order": 3, "phase": 0.1, **table}])
+    made = tn.Driveline([tn.Disk(name="engine", inertia=1.0), tn.Shaft(stiffness=8e3, damping=60.0), shaken])
+    pull = [tn.AppliedTorque(on="engine", time=[0.0], torque=[60.0], between="steps")]
+    run = tn.transient(made, 1.0, torque=pull, speed=SPEED)
+    moving = run.at(np.linspace(0, 1, 301))
+    points = np.array(table["amplitudes"]) * np.exp(1j * np.array(table["phases"]))
+    at = np.interp(moving.speed[:, 1], table["speeds"], points.real) + 1j * np.interp(
+        moving.speed[:, 1], table["speeds"], points.imag
+    )
+    expected = (at * np.exp(1j * (3 * moving.angle[:, 1] + 0.1))).real
+    np.testing.assert_allclose(moving.applied[:, 1], expected, rtol=1e-9, atol=1e-10)
+    beyond = tn.transient(made, 3.0, torque=pull, speed=SPEED)
+    assert beyond.outcome.kind == "no number" and beyond.speed[-1, 1] == pytest.approx(60.0, rel=1e-3)
+
+
 def test_an_amplitude_by_load_stays_as_the_share_does() -> None:
     by_load = line(torques=[0.0, 100.0], amplitudes=[10.0, 110.0])  # 70 N m at 60
     same = line(amplitude=70.0)

@@ -12,11 +12,12 @@ from collections.abc import Collection
 
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.driveline.applied_torque import AppliedTorque
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Rotor
+from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
-from trunnion.equations.amplitudes import Running, amplitude
+from trunnion.equations.amplitudes import BEYOND, Running, amplitude
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import cylinders
 from trunnion.errors import InputError
@@ -27,8 +28,8 @@ def without_varying(
     line: Driveline, given: Collection[str], speed: float
 ) -> tuple[Driveline, tuple[AppliedTorque, ...]]:
     """The line with the amplitudes that its excitations have from an input ``speed`` [rad/s] on, and torques for those
-    by the square of the speed. Disks that are ``given`` a torque keep excitations by their load, as do those whose own
-    load goes with the speed, and tables over the speed: these are not followed.
+    by the speed. Disks that are ``given`` a torque keep excitations by their load, as do those whose own load goes
+    otherwise with the speed: these are not followed.
 
     Raises
     ------
@@ -45,14 +46,16 @@ def without_varying(
         for number, law in enumerate(rotor.excitation, start=1):
             if law.quadratic_amplitude is not None:
                 torques.append(_by_square(name, rotor, law))
+            elif law.speeds:
+                torques.append(_by_table(name, rotor, law))
             elif law.share is not None and name not in given and (load := _own_curve(rotor)) is not None:
                 torques.append(_by_share(name, rotor, law, load))
-            elif law.varies and not law.speeds and name not in given and _steady(rotor):
+            elif law.varies and name not in given and _steady(rotor):
                 kept.append(_at_load(assembly, name, number, law, speed))
             else:
                 kept.append(law)
         changed[name] = {"excitation": kept or None}
-        if not kept and getattr(rotor, "firing_angles", ()):
+        if not kept and isinstance(rotor, Disk) and rotor.firing_angles:
             changed[name] |= {"firing_angles": None, "misfiring": None}
     return line.replace_all(changed), tuple(torques)
 
@@ -83,12 +86,40 @@ def _by_square(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
     return _turning(name, rotor, law, float(law.quadratic_amplitude or 0), "speed^2")
 
 
+def _by_table(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
+    """A e^{iφ} linear between the points of a table over the speed; beyond its ends no number, which ends a run."""
+    points, phases = np.array(law.speeds), np.array(law.phases or np.zeros(len(law.speeds)))
+    values = np.array(law.amplitudes) * np.exp(1j * phases) * cylinders(rotor, law)
+    slack = BEYOND * float(points[-1])
+    low, high = float(points[0]) - slack, float(points[-1]) + slack
+    turned = _turned(law, float(law.phase))
+    terms = [f"0*sqrt(speed - ({low!r}))", f"0*sqrt(({high!r}) - speed)"]
+    for part, wave in ((values.real, "cos"), (-values.imag, "sin")):
+        if part.any():
+            terms.append(f"({_lines(points, part)})*{wave}({turned})")
+    return AppliedTorque(on=name, formula=" + ".join(terms))
+
+
+def _lines(points: Array, values: Array) -> str:
+    """Straight lines of ``speed`` through points, as a formula."""
+    slopes = np.diff(values) / np.diff(points)
+    terms = [repr(float(values[0])), f"({float(slopes[0])!r})*(speed - ({float(points[0])!r}))"]
+    for point, change in zip(points[1:-1], np.diff(slopes), strict=True):
+        if change:
+            terms.append(f"({float(change)!r})*max(speed - ({float(point)!r}), 0)")
+    return " + ".join(terms)
+
+
+def _turned(law: Excitation, phase: float) -> str:
+    """Its angle at each instant, as a formula."""
+    return f"({float(law.order or 0)!r})*angle + ({float(law.frequency or 0)!r})*time + ({phase!r})"
+
+
 def _turning(name: str, rotor: Rotor, law: Excitation, factor: float, size: str) -> AppliedTorque:
     """``factor`` times ``size`` at the angle that the disk has."""
     together = cylinders(rotor, law)
     factor, phase = abs(together) * factor, float(law.phase + np.angle(together))
-    turned = f"({float(law.order or 0)!r})*angle + ({float(law.frequency or 0)!r})*time + ({phase!r})"
-    return AppliedTorque(on=name, formula=f"({factor!r})*{size}*cos({turned})")
+    return AppliedTorque(on=name, formula=f"({factor!r})*{size}*cos({_turned(law, phase)})")
 
 
 def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:

@@ -58,10 +58,10 @@ def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Drivelin
         refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
-    given = {one.on for one in (*asked[0], *asked[1])}
+    given = {one.on for one in asked[0]} | {one.on for one in asked[1]}
     line, excited = without_varying(line, given, speed)
+    given = {one.on for one in asked[0]}
     asked = ((*asked[0], *excited), *asked[1:])
-    given = {one.on for one in asked[0]} - ({one.on for one in excited} - given)
     sharing = [name for name, e in line.parts if isinstance(e, Rotor) and bool(getattr(e, "drive_share", False))]
     replaced = [name for name in sharing if name in given]
     if not replaced:

@@ -61,6 +61,8 @@ CHECKS, EXCESS = 16, 1e-6
 SIDE = 1e-3
 """Share of its change in a short time below which what a kink switches by counts as zero."""
 
+LONGEST_FORMULA = 100
+"""Characters that a sentence shows of a formula."""
 MOST_JUDGED = 6
 """Groups at rest and clutches that stick, which are judged together."""
 LOCATED = -1
@@ -271,7 +273,9 @@ class Stepper:
             found = [one.value(place.time + later, speed, angle + later * speed) for later in (0.0, soon)]
             if np.isfinite(found).all():
                 continue
-            said = "its function" if one.stated.formula is None else f"the formula {one.stated.formula!r}"
+            written = str(one.stated.formula)
+            short = written if len(written) <= LONGEST_FORMULA else f"{written[:LONGEST_FORMULA]}..."
+            said = "its function" if one.stated.formula is None else f"the formula {short!r}"
             words = (
                 f"stopped at t = {place.time:.6g} s, where {said} of the torque on {one.stated.on} gives no finite "
                 f"number (its speed is {about_speed(speed, self.unit)}, its angle {angle:.6g} rad); look for roots, "
