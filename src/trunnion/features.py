@@ -311,6 +311,12 @@ ROWS: dict[str, Row] = {
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
         set_aside=(DRAGGED,),
     ),
+    "charted multipliers": _row(
+        refused={key: why for key, why in (_BASE | _OTHER_SPEEDS).items() if key not in ("free start", "drive share")},
+        said={**_SERIES, **QUASI_STATIC},
+        inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
+        set_aside=(DRAGGED,),
+    ),
     "loaded modes": _row(
         set_aside=(DRAGGED,),
         refused=_DRY_FRICTION,
