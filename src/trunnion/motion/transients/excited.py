@@ -47,7 +47,7 @@ def without_varying(
             if law.quadratic_amplitude is not None:
                 torques.append(_by_square(name, rotor, law))
             elif law.speeds:
-                torques.append(_by_table(name, rotor, law))
+                torques += _by_table(name, rotor, law)
             elif law.share is not None and name not in given and (load := _own_curve(rotor)) is not None:
                 torques.append(_by_share(name, rotor, law, load))
             elif law.varies and name not in given and _steady(rotor):
@@ -86,18 +86,17 @@ def _by_square(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
     return _turning(name, rotor, law, float(law.quadratic_amplitude or 0), "speed^2")
 
 
-def _by_table(name: str, rotor: Rotor, law: Excitation) -> AppliedTorque:
-    """A e^{iφ} linear between the points of a table over the speed; beyond its ends no number, which ends a run."""
+def _by_table(name: str, rotor: Rotor, law: Excitation) -> tuple[AppliedTorque, ...]:
+    """A e^{iφ} linear between the points of a table over the speed, and a torque of nothing that says as little beyond
+    its ends, which ends a run there."""
     points, phases = np.array(law.speeds), np.array(law.phases or np.zeros(len(law.speeds)))
     values = np.array(law.amplitudes) * np.exp(1j * phases) * cylinders(rotor, law)
-    slack = BEYOND * float(points[-1])
-    low, high = float(points[0]) - slack, float(points[-1]) + slack
-    turned = _turned(law, float(law.phase))
-    terms = [f"0*sqrt(speed - ({low!r}))", f"0*sqrt(({high!r}) - speed)"]
-    for part, wave in ((values.real, "cos"), (-values.imag, "sin")):
-        if part.any():
-            terms.append(f"({_lines(points, part)})*{wave}({turned})")
-    return AppliedTorque(on=name, formula=" + ".join(terms))
+    slack, turned = BEYOND * float(points[-1]), _turned(law, float(law.phase))
+    waves = ((values.real, "cos"), (-values.imag, "sin"))
+    terms = [f"({_lines(points, part)})*{wave}({turned})" for part, wave in waves if part.any()]
+    ends = [max(float(points[0]) - slack, 0.0), float(points[-1]) + slack]
+    covers = AppliedTorque(on=name, speed=ends, torque=[0.0, 0.0])
+    return AppliedTorque(on=name, formula=" + ".join(terms) or "0"), covers
 
 
 def _lines(points: Array, values: Array) -> str:

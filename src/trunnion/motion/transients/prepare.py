@@ -19,7 +19,8 @@ from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.transients.excited import without_varying
 from trunnion.motion.transients.machines import without_curves
-from trunnion.motion.transients.stepping import Found, Place, Stepper
+from trunnion.motion.transients.place import Found, Place
+from trunnion.motion.transients.stepping import Stepper
 from trunnion.numerics.integration.integration import MOST_STEPS
 
 if TYPE_CHECKING:

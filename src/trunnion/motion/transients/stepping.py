@@ -13,14 +13,14 @@ what it is asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Array, Integers
+from trunnion.arrays import Array
 from trunnion.driveline.quantities import SPEED
 from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -29,6 +29,7 @@ from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, Tor
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
+from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed
@@ -65,55 +66,6 @@ LONGEST_FORMULA = 100
 """Characters that a sentence shows of a formula."""
 MOST_JUDGED = 6
 """Groups at rest and clutches that stick, which are judged together."""
-LOCATED = -1
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a motion stands.
-
-    time [s]; angle [rad], speed [rad/s] and acceleration [rad/s²] of the rotation that it is observed from; state (2n +
-    sliders,) and regime, ``LOCATED`` where the state tells it; ``senses``: in which way the groups with friction turn,
-    by their first station, 0 where they stand.
-    """
-
-    time: float
-    state: Array
-    angle: float = 0.0
-    speed: float = 0.0
-    acceleration: float = 0.0
-    regime: int = LOCATED
-    senses: dict[int, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A stretch without a switch: the steps taken, and the numbers that the right-hand side read."""
-
-    line: LineSystem
-    trajectory: Trajectory
-    numbers: Array
-    torques: tuple[PlacedTorque, ...]
-    frictions: tuple[PlacedFriction, ...]
-
-    def regime_at(self, times: Array) -> Integers:
-        """In which the line was at times (m,)."""
-        run = self.trajectory
-        return run.regime[np.minimum(np.searchsorted(run.start[1:], times, side="right"), len(run.regime) - 1)]
-
-    @property
-    def acting(self) -> tuple[PlacedTorque | PlacedFriction, ...]:
-        """All that acts, in the order of the numbers."""
-        return (*self.torques, *self.frictions)
-
-
-class Found(NamedTuple):
-    """What became of a run."""
-
-    pieces: list[Piece]
-    place: Place
-    outcome: Outcome
-    crossed: list[tuple[float, str]]
 
 
 class _Watched(NamedTuple):
@@ -322,7 +274,7 @@ class Stepper:
                         span = f"{low:.6g} to {high:.6g} rad"
                     words = (
                         f"stopped at t = {place.time:.6g} s: the {axis.variable} of {one.stated.on} leaves its table "
-                        f"of torques, which goes from {span}; extend it, or write hold = true"
+                        f"of torques or amplitudes, which goes from {span}; extend it, or write hold = true"
                     )
                     return Outcome(False, "beyond the table", words)
         return None

@@ -21,9 +21,9 @@ from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
+from trunnion.motion.transients.place import Place
 from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others, require_begun
 from trunnion.motion.transients.result import Transient
-from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
 from trunnion.waiting import keeps_time
 
