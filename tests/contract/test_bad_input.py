@@ -1274,16 +1274,6 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.transient(
-            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
-            1.0,
-            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
-            speed=9.0,
-        ),
-        "friction.on = 'pump': is not followed in a line with a slip clutch",
-        "describe the brake as a torque over time",
-    ),
-    (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
         "points = 1: must be a whole number from 2",
         "13, say",

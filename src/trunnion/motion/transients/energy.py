@@ -18,7 +18,7 @@ from trunnion.arrays import Array
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.equations.stage_laws import has_stages, stage_law
-from trunnion.motion.transients.stepping import Piece
+from trunnion.motion.transients.place import Piece
 
 NODES = 6
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)
