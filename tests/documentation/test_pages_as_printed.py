@@ -9,7 +9,8 @@ from as_printed import ROOT, blocks_of, run, same
 
 LONG = ("first-hour-researcher.md", "how-do-i.md", "index.md")
 """They take more than a few seconds."""
-PAGES = ("first-hour-engineer.md", "exchange.md", *LONG)
+THEORY = tuple(f"theory/{path.name}" for path in sorted((ROOT / "docs/theory").glob("*.md")))
+PAGES = ("first-hour-engineer.md", "exchange.md", *THEORY, *LONG)
 
 
 @pytest.mark.filterwarnings("ignore::trunnion.InputRemark")
