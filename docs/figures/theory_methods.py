@@ -101,7 +101,13 @@ def continuation() -> None:
             color=INK,
             va="center",
         )
-    curve.set(xlabel="frequency ω of the force", ylabel="amplitude of x", xlim=(0.8, 1.6), ylim=(0, 3.2), title="Duffing's oscillator")
+    curve.set(
+        xlabel="frequency ω of the force",
+        ylabel="amplitude of x",
+        xlim=(0.8, 1.6),
+        ylim=(0, 3.2),
+        title="Duffing's oscillator",
+    )
     curve.legend(fontsize=8.5, loc="upper left")
     turn = np.linspace(0, 2 * np.pi, 200)
     circle.plot(np.cos(turn), np.sin(turn), color=FAINT)

@@ -84,6 +84,7 @@ def run(path: Path, folder: Path) -> list[str]:
     wrong = []
     before = Path.cwd()
     shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copy(ROOT / "examples/truck.toml", folder)  # guides speak of it as the reader's own
     os.chdir(folder)
     try:
         for block in blocks:

@@ -5,7 +5,8 @@
 
 The plain mean is the better one of a chaotic series. On a quasi-periodic series its error falls as 1/N only,
 while that of the windowed mean falls faster than any power (Das, Saiki, Sander, Yorke, Nonlinearity 30, 2017,
-"Quantitative quasiperiodicity"). Each batch is averaged both ways, and the way whose batches agree much better is taken.
+"Quantitative quasiperiodicity"). Each batch is averaged both ways, and the way whose batches agree much better is
+taken.
 """
 
 from __future__ import annotations
