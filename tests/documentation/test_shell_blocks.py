@@ -26,8 +26,6 @@ ELSEWHERE = {
 """How a line begins that is not typed in here, and where it is run."""
 FILES = {"my-line.toml": "pto-shaft", "truck.toml": "truck", "ship.toml": "two-stroke-ship"}
 """Files that pages speak of as the reader's own, and the examples that stand for them."""
-QUICK = ("docs/fatigue.md",)
-"""Pages whose commands take a second or two; the others are slow."""
 
 
 def lines(name: str) -> Iterator[str]:
@@ -67,9 +65,8 @@ def test_what_is_not_understood_is_seen() -> None:
 
 
 @pytest.mark.filterwarnings("ignore::trunnion.InputRemark")
-@pytest.mark.parametrize(
-    "name", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in WITH_LINES]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", WITH_LINES)
 def test_commands_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     for own, example in FILES.items():
