@@ -309,7 +309,9 @@ def test_the_speed_as_printed_is_the_balance() -> None:
 FACTORED = {
     "fan": tn.Fan(inertia=0.8, rated_power="30 kW", rated_speed="1480 rpm", load_torque=5.0, name="load"),
     "pump": tn.Pump(inertia=0.8, load_torque=90.0, viscous_load=0.2, name="load"),
-    "curve": tn.Pump(inertia=0.8, curve=[{"speed": w, "torque": t} for w, t in ((0, 10), (100, 60), (160, 150))], name="load"),
+    "curve": tn.Pump(
+        inertia=0.8, curve=[{"speed": w, "torque": t} for w, t in ((0, 10), (100, 60), (160, 150))], name="load"
+    ),
     "propeller": tn.Propeller(inertia=0.8, quadratic_load=0.007, damping_factor=2.7, name="load"),
     "power": tn.Generator(inertia=0.8, power="18 kW", name="load"),
     "kloss": tn.Generator(

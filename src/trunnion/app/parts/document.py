@@ -133,7 +133,9 @@ class Document:
                         return  # what is not there need not be taken away
                     owner[key] = [] if isinstance(following, int) else {}
                 owner = owner[key]
-            value = text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,), (FACTORS,)) else _read(text)
+            value = (
+                text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,), (FACTORS,)) else _read(text)
+            )
             if isinstance(owner, dict) and not text.strip():
                 owner.pop(last, None)
             elif text.strip() and isinstance(owner, list) and isinstance(last, int) and last >= len(owner):

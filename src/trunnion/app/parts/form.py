@@ -158,9 +158,7 @@ def _switched_off(place: int, table: Any, left: _OpenErrors) -> FieldGroup:
     return FieldGroup(path, f"{OFF_KIND}: {rule}", OFF_KIND, fields, (), left.rest(owners))
 
 
-def _load_case(
-    place: int, table: Any, disks: Sequence[str], machines: Sequence[str], left: _OpenErrors
-) -> FieldGroup:
+def _load_case(place: int, table: Any, disks: Sequence[str], machines: Sequence[str], left: _OpenErrors) -> FieldGroup:
     """A field for every disk and machine; an empty one leaves it its own torque."""
     path: Path = ("operation", LOAD_CASE, place)
     table = table if isinstance(table, dict) else {}
