@@ -66,7 +66,7 @@ ANALYSES = (
     Analysis(
         "stability_chart",
         "Stability over any two parameters, as picture and data.",
-        features="multipliers",
+        features="charted multipliers",
         pictures={"StabilityChart.plot": "trunnion.pictures.stability_chart:stability_chart"},
         command="trunnion.cli.stability:stability_chart",
         view="stability",
@@ -281,6 +281,14 @@ ANALYSES = (
         "The least factor of the drive torque with which a line passes its resonances.",
     ),
     Analysis(
+        "least_acceleration",
+        "The least acceleration with which a line passes its resonances.",
+    ),
+    Analysis(
+        "capture_map_cost",
+        "How long a map of captures will take, and how much it will hold.",
+    ),
+    Analysis(
         "capture_map",
         "From which share of its starting phases a line is captured by a resonance, over two parameters.",
         pictures={"CaptureMap.plot": "trunnion.pictures.transients:capture_map"},
@@ -400,6 +408,14 @@ ANALYSES = (
         "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
         pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
         command="trunnion.cli.measured:identify",
+    ),
+    Analysis(
+        "study",
+        "One analysis at very many points of a line, on all cores or a cluster, every answer kept.",
+        pictures={
+            "Study.plot": "trunnion.pictures.studies:study",
+            "SobolIndices.plot": "trunnion.pictures.studies:shares",
+        },
     ),
     Analysis(
         "certify_chaos",

@@ -18,7 +18,7 @@ NAMES_OF_THE_READER = {"catalogue", "reference_system", "gear_pair", "component"
 
 def result_class(name: str) -> type:
     """The one class of a result of this name."""
-    for part in ("results", "modes", "steady", "floquet", "response", "measured", "motion", "design"):
+    for part in ("results", "modes", "steady", "floquet", "response", "measured", "motion", "design", "studies"):
         for path in sorted((ROOT / part).rglob("*.py")):
             if f"class {name}(" in path.read_text(encoding="utf-8") or f"class {name}:" in path.read_text("utf-8"):
                 module = ".".join(["trunnion", *path.relative_to(ROOT).with_suffix("").parts])

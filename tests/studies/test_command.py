@@ -95,3 +95,26 @@ def test_show_says_what_sampled_numbers_follow(study, here: Path) -> None:
     assert study("study.toml", "--workers", "0").exit_code == 0
     shown = study("show", "s.zarr").stdout
     assert "variance of growth_rate by parameter, from 64 points\n  Shaft 1.damping: 9" in shown
+
+
+def test_show_draws(study, here: Path) -> None:
+    """Into files, what is asked for; another ending, and shares of what was not sampled, are refused."""
+    study("study.toml", "--workers", "0")
+    drawn = study("show", "s.zarr", "-o", "a.png", "-o", "a.svg", "--of", "verdict", "--kind", "slices", "--x", "speed")
+    assert drawn.exit_code == 0 and "a.png" in drawn.stdout
+    assert (here / "a.png").stat().st_size > 5000 and b"unstable" in (here / "a.svg").read_bytes()
+    ending = study("show", "s.zarr", "-o", "a.doc")
+    assert ending.exit_code == 2 and "end it in .png, .pdf or .svg" in ending.stderr
+    assert study("show", "s.zarr", "-o", "a.png", "--kind", "shares").exit_code == 2
+
+
+def test_a_line_of_the_catalogue(study, here: Path) -> None:
+    text = (here / "study.toml").read_text()
+    (here / "study.toml").write_text(text.replace("line.toml", "two-shaft-cardan"))
+    assert "HookeJoint 1.angle" in study("study.toml", "--workers", "0").stdout
+    (here / "study.toml").write_text(text.replace("line.toml", "two-shaft-carden"))
+    wrong = study("study.toml")
+    said = 'is neither a file nor a name of the catalogue; did you mean "two-shaft-cardan"?'
+    assert wrong.exit_code == 2 and said in wrong.stderr
+    (here / "study.toml").write_text(text.replace("line.toml", "gear-rattle"))
+    assert "is no driveline but equations of motion" in study("study.toml").stderr

@@ -13,7 +13,7 @@ import trunnion as tn
 from trunnion.studies.design import Sampling, Scattering, StudyDesign
 from trunnion.studies.quantities import StudyQuantity
 from trunnion.studies.result import Study
-from trunnion.studies.sensitivities import sensitivities
+from trunnion.studies.sensitivities import study_sensitivities as sensitivities
 
 A, B = 7.0, 0.1
 TOTAL = A**2 / 8 + B * np.pi**4 / 5 + B**2 * np.pi**8 / 18 + 0.5

@@ -40,9 +40,20 @@ def study(
             "--output",
             "-o",
             metavar="PATH",
-            help="Of export: file ending in .nc, .csv or .parquet; repeat it for more.",
+            help="Of export: file ending in .nc, .csv or .parquet; of show: a picture, .png, .pdf or .svg; repeat it.",
         ),
     ] = None,
+    of: Annotated[
+        str | None, typer.Option("--of", metavar="QUANTITY", help="That a picture shows; default: the first.")
+    ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option("--kind", metavar="KIND", help="Of picture: chart, slices, histogram, parallel or shares."),
+    ] = None,
+    x: Annotated[
+        str | None, typer.Option("--x", metavar="PARAMETER", help="Along the picture; default: the speed first.")
+    ] = None,
+    y: Annotated[str | None, typer.Option("--y", metavar="PARAMETER", help="Up the chart, or of the slices.")] = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Processes of this machine; default: one per core; 0 computes here."),
@@ -76,7 +87,8 @@ def study(
         if store is None:
             raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
         given = {"workers": workers, "scheduler": scheduler, "memory": memory, "verify": verify}
-        _of_store(what, _store_of(store), outputs or [], given, within, as_json)
+        shown = {"quantity": of or "", "kind": kind or "", "x": x or "", "y": y or ""}
+        _of_store(what, _store_of(store), outputs or [], given, within, as_json, shown)
         return
     if store is not None:
         raise InputError("is nothing that is asked of a store", key="study", value=what,
@@ -100,14 +112,20 @@ def _store_of(place: str) -> str:
     """The store at ``place``, or the one that a study's file there names."""
     if not Path(place).is_file():
         return place
-    from trunnion.studies.description import read_study
+    from trunnion.studies.description import read_description
 
-    stated, folder = read_study(place)
+    stated, folder = read_description(place)
     return str(folder / stated.store)
 
 
 def _of_store(
-    what: str, store: str, outputs: list[Path], given: dict[str, Any], within: str | None, as_json: bool
+    what: str,
+    store: str,
+    outputs: list[Path],
+    given: dict[str, Any],
+    within: str | None,
+    as_json: bool,
+    shown: dict[str, str],
 ) -> None:
     if what == "status":
         _status(store, as_json)
@@ -129,27 +147,50 @@ def _of_store(
         from trunnion.studies.result import read
 
         found = read(store)
+        if outputs:
+            _draw(found, outputs, shown)
+            if not as_json:
+                output.written(outputs)
+                return
         _say(found, as_json, whole=False)
         if not as_json:
             _say_sensitivities(found)
 
 
+def _draw(found: Study, paths: list[Path], shown: dict[str, str]) -> None:
+    """One picture, into every file."""
+    from trunnion.pictures.draw_matplotlib import draw, save
+    from trunnion.pictures.formats import check_format
+    from trunnion.pictures.studies import shares, study
+    from trunnion.studies.sensitivities import study_sensitivities
+
+    for path in paths:
+        check_format(path)
+    if shown["kind"] == "shares":
+        picture = shares(study_sensitivities(found, shown["quantity"] or found.quantities[0].path))
+    else:
+        picture = study(found, quantity=shown["quantity"], kind=shown["kind"], x=shown["x"], y=shown["y"])
+    figure = draw(picture).figure.figure
+    for path in paths:
+        save(figure, path)
+
+
 def _say_sensitivities(found: Study) -> None:
     """What the numbers of a sampled study follow."""
-    from trunnion.studies.sensitivities import sensitivities
+    from trunnion.studies.sensitivities import study_sensitivities
 
     if found.design.sampling is None or found.design.axes:
         return
     for one in found.quantities:
         if one.kind == "number":
             try:
-                output.say(str(sensitivities(found, one.path)))
+                output.say(str(study_sensitivities(found, one.path)))
             except ComputationError as error:
                 output.say(f"no sensitivities of {one.path}: {error}")
 
 
 def _status(store: str, as_json: bool) -> None:
-    from trunnion.studies.cost import in_time
+    from trunnion.results.durations import time_text
     from trunnion.studies.store import Store
 
     opened = Store.open(Path(store))
@@ -162,7 +203,7 @@ def _status(store: str, as_json: bool) -> None:
     output.say(f"{opened.question.analysis} in {store}: {counts.points} points, {counts.done} done, {counts.failed} "
                f"failed, {counts.missing} missing")  # fmt: skip
     if counts.seconds:
-        output.say(f"  {in_time(counts.seconds)} of computing so far")
+        output.say(f"  {time_text(counts.seconds)} of computing so far")
     for sentence, count in counts.reasons:
         output.say(f"  failed at {count}: {sentence}")
 
@@ -211,11 +252,11 @@ def _reported(within: float | None) -> Iterator[Callable[[StudyProgress], None]]
 def progress_line(state: Any) -> str:
     """One line about how far a study is."""
     from trunnion.numerics.memory import size_text
-    from trunnion.studies.cost import in_time
+    from trunnion.results.durations import time_text
 
     parts = [f"study: {100 * state.share:.1f} %", f"{state.rate:.3g} points/s"]
     if state.left < float("inf"):
-        parts.append(f"about {in_time(max(state.left, 1.0))} left")
+        parts.append(f"about {time_text(max(state.left, 1.0))} left")
     if state.failed:
         parts.append(f"{state.failed} failed")
     if held := state.bytes:

@@ -99,6 +99,9 @@ _CONTACTS = {"none": "#a6d5f2", "one-sided": "#e08a00", "two-sided": "#8c2d04"}
 _OTHERS = ("#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 """Colours of limits that neither verdicts nor marks use."""
 
+_CLASSES = ("#440154", "#3b528b", "#21918c", "#5ec962", "#d9b300")
+"""From low to high, lighter the higher."""
+
 LOOKS: dict[str, Look] = {
     # lines of every picture
     "line": Look(),
@@ -173,6 +176,7 @@ LOOKS: dict[str, Look] = {
     "bounds": Look("#c8c8c8", 4.0, layer=1.0),
     "begin": _mark("square", INK, 8.0, WHITE),
     "taken": _mark("circle", INK, 9.0),
+    "reaches": Look(INK, 1.4, layer=4.0),
     "best": _mark("circle", ACCENT, 9.0),
     "front": Look(ACCENT, 1.2, (), None, "circle", 5.0, True),
     "satisfied": _area(ACCENT),
@@ -244,6 +248,7 @@ FAMILIES: dict[str, Callable[[int], Look]] = {
     "theory": lambda k: _mark("circle", _curve(k).colour, 3.5, WHITE),
     "dotted": lambda k: replace(_curve(k), marker="circle", width=1.3, size=2.0, every=True),
     "envelope": lambda k: _area(_curve(k).colour, opacity=0.35),
+    "class": lambda k: Look(_CLASSES[k % len(_CLASSES)], 0.7),
     "interval": lambda k: _area(_curve(k).colour, opacity=0.25),
     "bar": lambda k: _area(_curve(k).colour, hatch=HATCHES[k % len(HATCHES)], edge=WHITE, width=0.3),
     "dots": lambda k: _mark("circle", COLOURS[k % len(COLOURS)], 0.8, width=0.0),

@@ -2,7 +2,7 @@
 
 ::
 
-    line = "truck.toml"
+    line = "truck.toml"               # or a name of the catalogue
     analysis = "stability"
     quantities = ["growth_rate", "verdict"]
     store = "truck.zarr"
@@ -182,7 +182,7 @@ class StudyPlan:
     source: str
 
 
-def read_study(path: str | os.PathLike[str]) -> tuple[StudyDescription, Path]:
+def read_description(path: str | os.PathLike[str]) -> tuple[StudyDescription, Path]:
     """The description in a file, and the folder that its paths start from.
 
     Raises
@@ -206,7 +206,7 @@ def plan_of(
     ------
     InputError : an unknown parameter, analysis, argument or quantity; nothing to vary; what no line can have.
     """
-    line = line or load(folder / stated.line, tables_anywhere=tables_anywhere)
+    line = line or _line(stated.line, folder, tables_anywhere)
     speed_varies = any(one.path == SPEED for one in stated.parameter)
     require_analysis(stated.analysis, stated.arguments, speed_varies)
     if not stated.quantities:
@@ -220,6 +220,24 @@ def plan_of(
     question = question_of(line, stated.analysis, stated.arguments, stated.quantities, design.paths, _tried(design))
     _require_possible(question, design)
     return StudyPlan(question, design, _block(stated, question), folder / stated.store, source)
+
+
+def _line(stated: str, folder: Path, tables_anywhere: bool) -> Driveline:
+    """The line of a file, or of the catalogue where no such file exists."""
+    path = folder / stated
+    if path.exists() or Path(stated).suffix or len(Path(stated).parts) != 1:
+        return load(path, tables_anywhere=tables_anywhere)
+    import trunnion  # whose catalogue stands above
+
+    try:
+        line = trunnion.catalogue(stated)
+    except InputError as error:
+        raise InputError("is neither a file nor a name of the catalogue", element="study", key="line", value=stated,
+                         remedy=error.remedy) from None  # fmt: skip
+    if not isinstance(line, Driveline):
+        raise InputError("is no driveline but equations of motion", element="study", key="line", value=stated,
+                         remedy="name a driveline: two-shaft-cardan, say")  # fmt: skip
+    return line
 
 
 def _design(stated: StudyDescription, line: Driveline, question: StudyQuestion) -> StudyDesign:

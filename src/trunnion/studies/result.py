@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
@@ -45,6 +47,14 @@ class Study(Result):
     reasons: tuple[tuple[str, int], ...] = internal("why points failed, and how many")
     ended: str = internal("what ended the run before all was done, as a clause", default="")
     failures: Mapping[int, str] = internal("why points failed, by their number", default_factory=dict)
+    unit: str = internal("of speeds in print", default="rad/s")
+
+    def plot(
+        self, axes: Axes | None = None, *, kind: str = "", quantity: str = "", x: str = "", y: str = "",
+        at: Mapping[str, float] | None = None,
+    ) -> Axes:  # fmt: skip
+        """A chart, slices, a histogram or parallel coordinates of a quantity; see ``pictures.studies.study``."""
+        return drawing(self, "plot")(self, axes, kind=kind, quantity=quantity, x=x, y=y, at=at)
 
     @property
     def missing(self) -> int:
@@ -133,7 +143,8 @@ class Study(Result):
         if self.missing:
             yield f"  {self.outcome}"
         for path, unit, low, high in self._ranges():
-            yield f"  over {path} from {in_words(low, unit, 4)} to {in_words(high, unit, 4)}"
+            words = self.words.parameter(path, unit)
+            yield f"  over {path} from {words.number(low, 4)} to {words.number(high, 4)}"
         for one in self.quantities:
             yield f"  {one.path}: {self._summary(one)}"
         for sentence, count in self.reasons[:MOST_REASONS]:
@@ -170,8 +181,39 @@ class Study(Result):
         return ", ".join([*said, *(["…"] if len(order) > 6 else [])])
 
 
+def read_study(store: str | os.PathLike[str]) -> Study:
+    """Read what a study has kept: the points that were asked for last, also while the store grows.
+
+    Parameters
+    ----------
+    store : the folder that ``study`` wrote ("truck.zarr").
+
+    Returns
+    -------
+    Study: the points with their quantities; ``missing`` counts those that are not there yet.
+
+    Raises
+    ------
+    InputError : there is no store.
+    ComputationError : a file of it is damaged.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> store = str(Path(mkdtemp()) / "angles.zarr")
+    >>> angle = {"path": "HookeJoint 1.angle", "low": "0 deg", "high": "30 deg", "points": 4}
+    >>> asked = {"line": "two-shaft-cardan", "analysis": "stability", "quantities": "verdict", "store": store}
+    >>> found = tn.study({**asked, "arguments": {"speed": 1.6}, "parameter": [angle]}, workers=0)
+    >>> tn.read_study(store)
+    <Study: stability at 4 points: 4 done, 0 failed>
+    """
+    return read(store)
+
+
 def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = None, ended: str = "") -> Study:
-    """Read the points of a design, by default of the last part of a store, also while it grows.
+    """Read the points of a design, by default of the last part of a store.
 
     Raises
     ------
@@ -206,5 +248,5 @@ def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = Non
         done=int((status == DONE).sum()), failed=int((status == FAILED).sum()),
         version=str(opened.about["computed_by"]["trunnion"]), design=asked, quantities=quantities, status=status,
         values=values, reasons=tuple(sorted(counts.items(), key=lambda one: -one[1])), ended=ended,
-        failures=dict(sorted(failures.items())),
+        failures=dict(sorted(failures.items())), unit=speed_unit(opened.question.line),
     )  # fmt: skip

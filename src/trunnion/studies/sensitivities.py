@@ -17,6 +17,7 @@ from scipy.stats import sobol_indices
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import one_number
 from trunnion.errors import ComputationError, InputError
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.result import Result
 from trunnion.studies.points import DONE
@@ -45,6 +46,10 @@ class SobolIndices(Result):
     confidence: float = attribute("of the intervals")
     variance: float = internal("of the quantity")
 
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Shares by parameter, with intervals; see ``pictures.studies.shares``."""
+        return drawing(self, "plot")(self, axes)
+
     def _lines(self) -> Iterator[str]:
         yield f"variance of {self.quantity} by parameter, from {self.points} points"
         score = np.where(np.isfinite(self.total), self.total, self.first)
@@ -56,8 +61,11 @@ class SobolIndices(Result):
             yield text
 
 
-def sensitivities(study: Study, quantity: str, *, confidence: float = 0.95, seed: int = 0) -> SobolIndices:
-    """Sobol indices of a quantity of a sampled study.
+def study_sensitivities(study: Study, quantity: str, *, confidence: float = 0.95, seed: int = 0) -> SobolIndices:
+    """Which parameters of a sampled study a quantity follows: Sobol indices, or shares by classes.
+
+    A Saltelli design (``method = "saltelli"``) gives first-order and total indices with intervals by bootstrap; other
+    samples the share that each parameter explains alone.
 
     Parameters
     ----------
@@ -70,6 +78,19 @@ def sensitivities(study: Study, quantity: str, *, confidence: float = 0.95, seed
     ------
     InputError : nothing was sampled; a quantity that is no number.
     ComputationError : points are missing or failed, so that the design is not whole; too few of them; no variance.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> asked = {"line": "two-shaft-cardan", "analysis": "natural_frequencies", "quantities": "frequency[0]"}
+    >>> asked["store"] = str(Path(mkdtemp()) / "springs.zarr")
+    >>> asked["sampling"] = {"method": "saltelli", "points": 64}
+    >>> asked["parameter"] = [{"path": f"Shaft {k}.stiffness", "tolerance": "10 %"} for k in (1, 2)]
+    >>> found = tn.study_sensitivities(tn.study(asked, workers=0), "frequency[0]")
+    >>> found.parameter
+    ('Shaft 1.stiffness', 'Shaft 2.stiffness')
     """
     plan = study.design.sampling
     if plan is None or study.design.axes:

@@ -12,7 +12,7 @@ from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.errors import InputError
 from trunnion.studies.cost import StudyCost, cost_of
-from trunnion.studies.description import StudyPlan, as_description, plan_of, read_study
+from trunnion.studies.description import StudyPlan, as_description, plan_of, read_description
 from trunnion.studies.result import Study, read
 from trunnion.studies.runner import StudyProgress, StudyRun, memory_of, require_workers, workers_here, workers_of
 from trunnion.studies.store import Store
@@ -161,5 +161,5 @@ def _plan(
 ) -> StudyPlan:
     if isinstance(stated, Mapping):
         return plan_of(as_description(stated), Path(), line, "a mapping", tables_anywhere=tables_anywhere)
-    described, folder = read_study(stated)
+    described, folder = read_description(stated)
     return plan_of(described, folder, line, Path(stated).name, tables_anywhere=tables_anywhere)
