@@ -2114,6 +2114,18 @@ PYTHON = [
         "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
         "Disk 1",
     ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Disk 1": 2})])),
+        "load case a.Disk 1 = 2: is a factor on a Disk",
+        "loads = {",
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Shaft 1": 2})])),
+        "load case a.Shaft 1 = 2: is not a Fan, Pump, Propeller or Generator",
+        "leave factors out",
+    ),
+    (lambda: LoadCase(name="a", factors={"fan": 0}), "load case a.fan = 0: must be positive", "0.01"),
+    (lambda: LoadCase(name="a", factors=3), "load case a.factors = 3: is not a table of factors", "fan = 1.2"),
     (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
     (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: goes over nothing", "or speed"),
     (
