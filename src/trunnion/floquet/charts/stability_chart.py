@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,7 @@ from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
 from trunnion.numerics.memory import MOST, size_text
 from trunnion.numerics.patches.patches import PatchedFunction
+from trunnion.numerics.workers import shared_with, workers_of_client
 from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
@@ -57,6 +59,7 @@ def stability_chart(
     tolerance: float = 1e-9,
     statically_twisted: bool = True,
     threads: int | None = None,
+    client: Any = None,
     progress: Progress | None = None,
 ) -> StabilityChart:
     """Verdict, spectral radius and its error over two parameters.
@@ -72,6 +75,8 @@ def stability_chart(
         Multipliers that collide are known to its square root; the error estimate of each pixel says so.
     statically_twisted : as in ``stability``.
     threads : default one per core.
+    client : a ``distributed.Client``, with whose workers the integrations of a driveline are shared where they take
+        longer than sending them; the chart is the same to the bit. What interpolates and judges pixels stays here.
     progress : called as progress(share done) from the calling thread.
 
     Returns
@@ -95,12 +100,13 @@ def stability_chart(
     task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
-    report_progress, built = progress or (lambda share: None), None
+    report_progress, built, workers = progress or (lambda share: None), None, workers_of_client(client)
     if isinstance(task.family, LineFamily) and not compiling_pays():
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
             built = build_with_numpy(task.family, task.x.values, task.y.values, asked, report_progress, MOST_FIRST)
-    return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
+    with shared_with(workers):
+        return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
 
 
 def chart_of_report(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,6 +22,7 @@ from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import FACTOR, Trials, passes, trials_of
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.outcome import Outcome
@@ -143,6 +144,7 @@ def capture_map(
     phases: int | ArrayLike = 8,
     tolerance: float = 1e-9,
     processes: int = 1,
+    client: Any = None,
     within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> CaptureMap:
@@ -161,6 +163,7 @@ def capture_map(
     phases : how many starting phases, even over half a turn and every other one half a turn on; or angles [rad].
     tolerance : error allowed per step.
     processes : that compute. More than one need ``if __name__ == "__main__":`` in a script.
+    client : a ``distributed.Client``, whose workers compute the same cells instead.
     within : seconds of computing after which it ends with the cells that it has, which lie all over the map.
     progress : called as progress(share done).
 
@@ -191,10 +194,11 @@ def capture_map(
         _refused(trials, key, request)
     require_memory(float(BYTES_A_CELL) * x[3] * y[3], key="y", value=y[3], remedy="ask for fewer values of x or y")
     whole_number(processes, "processes", 1)
+    workers = workers_of_client(client)
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     found: list[list[str] | None] = [None] * len(points)
     report_progress = progress or (lambda share: None)
-    for done, (place, kinds) in enumerate(_ended(trials, points, processes), start=1):
+    for done, (place, kinds) in enumerate(_ended(trials, points, processes, workers), start=1):
         found[place] = kinds
         report_progress(done / len(points))
     stopped = time_is_up() if None in found else ""
@@ -211,9 +215,15 @@ def capture_map(
     )  # fmt: skip
 
 
-def _ended(trials: Trials, points: list[dict[str, float]], processes: int) -> Iterator[tuple[int, list[str]]]:
+def _ended(
+    trials: Trials, points: list[dict[str, float]], processes: int, workers: Workers | None
+) -> Iterator[tuple[int, list[str]]]:
     """Cells as they come, in an order that soon lies all over the map; none that the time limit cut short."""
     order = np.random.default_rng(0).permutation(len(points)).tolist()
+    if workers is not None:
+        for k, kinds in workers.each(trials.kinds, (points[place] for place in order)):
+            yield order[k], kinds
+        return
     if processes == 1:
         for place in order:
             if time_is_up():
