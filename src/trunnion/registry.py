@@ -66,7 +66,7 @@ ANALYSES = (
     Analysis(
         "stability_chart",
         "Stability over any two parameters, as picture and data.",
-        features="multipliers",
+        features="charted multipliers",
         pictures={"StabilityChart.plot": "trunnion.pictures.stability_chart:stability_chart"},
         command="trunnion.cli.stability:stability_chart",
         view="stability",
@@ -279,6 +279,14 @@ ANALYSES = (
     Analysis(
         "least_drive",
         "The least factor of the drive torque with which a line passes its resonances.",
+    ),
+    Analysis(
+        "least_acceleration",
+        "The least acceleration with which a line passes its resonances.",
+    ),
+    Analysis(
+        "capture_map_cost",
+        "How long a map of captures will take, and how much it will hold.",
     ),
     Analysis(
         "capture_map",

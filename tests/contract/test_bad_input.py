@@ -158,6 +158,11 @@ def line(*elements, **rest):
     return Driveline(elements or [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1)], **rest)
 
 
+def with_play():
+    """A gear pair whose teeth part."""
+    return tn.GearPair(teeth_in=20, teeth_out=31, module=0.003, mesh_stiffness=1e7, backlash=1e-4)
+
+
 def free(**engine):
     """A line with joint angles that nothing holds at a speed, with a load of 9 N m."""
     return Driveline(
@@ -897,7 +902,7 @@ PYTHON = [
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("factor", 1.0, 2.0, 9_000), ("pump.inertia", 1.0, 2.0, 9_000), torque=[torque(**KLOSS)]
         ),
-        "y = 9000: would need 302 GB of memory",
+        "y = 9000: would need 12.1 GB of memory",
         "ask for fewer values of x or y",
     ),
     (lambda: tn.Scenario(name="a", duration=1, per_hour=0), "scenario a.per_hour = 0: must be positive", "write 0.5"),
@@ -1046,7 +1051,7 @@ PYTHON = [
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
-    (lambda: studied(line="two-shaft-carden", given=False), "is neither a file nor a name", "-cardan"),
+    (lambda: studied(line="two-shaft-carden", given=False), "two-shaft-carden': is neither a file", "-cardan"),
     (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
     (
         lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
@@ -1062,6 +1067,37 @@ PYTHON = [
         lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], factors=(2.0, 1.0)),
         "factors = [2.0, 1.0]: must be two rising positive numbers",
         "(0.5, 2.0)",
+    ),
+    (
+        lambda: tn.least_acceleration(free(), (5.0, 9.0), (2.0, 1.0), drive="pump"),
+        "accelerations = [2.0, 1.0]: must be two rising positive numbers",
+        "(0.5, 2.0)",
+    ),
+    (
+        lambda: tn.least_acceleration(free(), (5.0, 9.0), (1.0, 2.0), drive="pumpe"),
+        "drive = 'pumpe': is no disk of this line",
+        "it has",
+    ),
+    (
+        lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], around=20_000),
+        "around = 20000: are too many",
+        "at most 10000",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)],
+            store=__file__,
+        ),
+        "is no folder",
+        "name a new folder",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), store="never made",
+            torque=[tn.TorqueFunction(on="pump", function=lambda t, speed, angle: 1.0, until=1.0)],
+        ),
+        "torque on pump.store: is a function",
+        "write a formula",
     ),
     (
         lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], accuracy=0.0),
@@ -1282,9 +1318,28 @@ PYTHON = [
         "drive_share = 1",
     ),
     (
-        lambda: tn.stability_chart(free(drive_share=1), ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3)),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stability_chart(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
+    ),
+    (
+        lambda: tn.stability_chart(
+            tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]),
+            ("speed", 10, 20, 3), ("Disk 1.inertia", 0.5, 1.0, 3), about_steady_state=True,
+        ),
+        "driveline.about_steady_state = True: has straight joints",
+        "leave it out",
+    ),
+    (
+        lambda: tn.stability_chart(
+            tn.PeriodicLinearFamily(np.pi, lambda tau, a: (np.eye(1), np.eye(1), np.eye(1)), 1, {"a": 1.0}),
+            ("a", 0.0, 1.0, 3), ("a", 0.0, 1.0, 3), about_steady_state=True,
+        ),
+        "about_steady_state = True: belongs to drivelines",
+        "leave it out",
     ),
     (
         lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),

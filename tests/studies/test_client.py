@@ -133,7 +133,7 @@ def test_a_capture_map(client, monkeypatch) -> None:
         tn.capture_map(free, (15.0, 40.0), angles, factors, torque=[weak], phases=2, client=one)
         for one in (None, client)
     )
-    assert same(here, there) == [] and sent == [4]
+    assert same(here, there) == [] and sent == [1]
 
 
 @pytest.mark.slow

@@ -235,6 +235,7 @@ def stability_chart(
     speed: Speed,
     points: Annotated[tuple[int, int], OptionReader(_size, "200x150")],
     unit: SpeedUnit,
+    about_steady_state: bool = False,
     progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
@@ -242,11 +243,12 @@ def stability_chart(
     --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
     --y PARAMETER:LOW:HIGH[:POINTS][:log]  The same.
     --points NXxNY  Points along x and y where not said there.
+    --about-steady-state  About the motion that the line really makes, not that of rigid shafts.
     """
     from trunnion.cli.report import chart_json, chart_text
 
     across, up = ((*axis[:3], axis[3] or n, axis[4]) for axis, n in zip((x, y), points, strict=True))
-    chart = tn.stability_chart(line, across, up, speed=speed, progress=progress)
+    chart = tn.stability_chart(line, across, up, speed=speed, about_steady_state=about_steady_state, progress=progress)
     return CommandOutput(
         chart, content=lambda: chart_json(chart, unit), text=lambda: chart_text(chart, unit), wrap=True
     )

@@ -68,7 +68,7 @@ def stability_chart(
     unit = unit or chart.unit
     operating = operating or (line.operation if line else None)
     x, y, across, up = _axes(chart, unit)
-    items = [*_verdicts(chart, x, y), *_operating(chart, operating, across, up, unit)]
+    items = [*_verdicts(chart, x, y), *_folds(chart, x, y), *_operating(chart, operating, across, up, unit)]
     if tongues is not None:
         items += edges_of(tongues, unit, float(np.diff(chart.x).max()) if len(chart.x) > 1 else 0.0)
     if resonances is None and line is not None:
@@ -127,6 +127,16 @@ def _verdicts(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
         if chart.count(verdict):
             items.append(Cells(x, y, chart.verdict == verdict, role, words))
     return items
+
+
+def _folds(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
+    """Where the line's own motion folds back, at both ends on every row."""
+    inside = [one for one in chart.folds if chart.y[0] <= one[0] <= chart.y[-1]]
+    ends = np.array([(at, row) for row, *pair in inside for at in pair if chart.x[0] < at < chart.x[-1]])
+    if not len(ends):
+        return []
+    across, up = np.interp(ends[:, 0], chart.x, x), np.interp(ends[:, 1], chart.y, y)
+    return [Points(across, up, "fold", "the line's own motion folds back")]
 
 
 def _steps(decay: Array) -> tuple[float, float, str, Sequence[float]]:

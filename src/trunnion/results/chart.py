@@ -39,7 +39,11 @@ Resample = Callable[[Array, Array], tuple[Array, Array, Complex, Codes]]
 FORMAT = "trunnion stability chart 4"
 
 
-WAYS = 'how it was built in the end: "patches", "smaller patches", "whole periods" or "pixel by pixel"'
+WAYS = (
+    'how it was built in the end: "patches", "smaller patches", "whole periods", "pixel by pixel" or '
+    '"periodic steady states", about the line\'s own motion'
+)
+FOLDS = "(y, from, to) in x where the line's own motion folds back or is lost, on the rows searched"
 BYTES_A_PIXEL = 64
 """Radius, error, multiplier and verdict of a pixel, and what is stored beside them while it is filled."""
 
@@ -94,6 +98,7 @@ class StabilityChart(Result):
     resample: Resample | None = internal("on other pixels", default=None, compare=False)
     spot_check: SpotCheck | None = internal("direct integration at random pixels", default=None)
     way: str = attribute(WAYS, default="patches")
+    folds: tuple[tuple[float, float, float], ...] = internal(FOLDS, default=())
     unit: str = internal("of speeds in print", default="rad/s")
 
     @property
@@ -169,6 +174,7 @@ class StabilityChart(Result):
             y_parameter=_parameter_text(self.y_parameter),
             speed=float("nan") if self.speed is None else self.speed,
             spot_check=json.dumps(asdict(self.spot_check) if self.spot_check else None),
+            folds=json.dumps(self.folds),
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -290,6 +296,7 @@ def _chart_of(data: xr.Dataset) -> StabilityChart:
         function=_function_of(data),
         spot_check=SpotCheck(**check) if check else None,
         way=str(data.attrs["way"]),
+        folds=tuple((float(y), float(a), float(b)) for y, a, b in json.loads(data.attrs.get("folds", "[]"))),
     )
 
 

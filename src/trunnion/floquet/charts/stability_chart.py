@@ -21,7 +21,13 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.first_order import LARGEST_DENSE
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
-from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base, require_tree
+from trunnion.equations.steady_base import (
+    has_joint_angles,
+    has_periodic_base,
+    refuse_periodic_base,
+    require_steady_base,
+    require_tree,
+)
 from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.features import left_out
@@ -41,11 +47,13 @@ from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
 from trunnion.numerics.memory import MOST, size_text
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.numerics.workers import shared_with, workers_of_client
-from trunnion.results.chart import ChartPoint, StabilityChart, require_pixels
+from trunnion.results.chart import ChartPoint, StabilityChart, is_log, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
 
 Progress = Callable[[float], None]
+ABOUT_STEADY_STATES = "periodic steady states"
+"""How ``StabilityChart.way`` names charts about the line's own motion."""
 IN_NUMPY, SHARPEST = 0.01, 1e-12
 """Share of the tolerance that is asked for in NumPy: the kernels, too, know their samples that much better."""
 
@@ -58,6 +66,7 @@ def stability_chart(
     speed: float | str | None = None,
     tolerance: float = 1e-9,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     threads: int | None = None,
     client: Any = None,
     progress: Progress | None = None,
@@ -74,9 +83,13 @@ def stability_chart(
     tolerance : error asked of the interpolated quantities, relative to their size where that exceeds 1.
         Multipliers that collide are known to its square root; the error estimate of each pixel says so.
     statically_twisted : as in ``stability``.
+    about_steady_state : about the periodic motion that the line really makes, under its loads and joints and without
+        its excitations, instead of the motion of rigid shafts. A free–free line with joint angles is always judged
+        about it. Every point costs milliseconds; points at which several motions exist are not judged.
     threads : default one per core.
     client : a ``distributed.Client``, with whose workers the integrations of a driveline are shared where they take
-        longer than sending them; the chart is the same to the bit. What interpolates and judges pixels stays here.
+        longer than sending them; the chart is the same to the bit. What interpolates and judges pixels stays here,
+        and so does a chart about the line's own motion.
     progress : called as progress(share done) from the calling thread.
 
     Returns
@@ -97,16 +110,73 @@ def stability_chart(
     <StabilityChart: stability chart, speed × HookeJoint 1.angle, 20 × 10 points: 193 stable, 7 unstable>
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
+    workers = workers_of_client(client)
+    if isinstance(line, PeriodicLinearFamily):
+        if about_steady_state:
+            raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+    elif about_steady_state or _always_about_steady_state(assemble(line), x, y):
+        return _about_steady_states(assemble(line), x, y, speed, tolerance, progress or (lambda share: None))
     task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
     if not tolerance > 0 or not np.isfinite(tolerance):
         raise InputError("must be positive and finite", key="tolerance", value=tolerance, remedy="1e-9, say")
-    report_progress, built, workers = progress or (lambda share: None), None, workers_of_client(client)
+    report_progress, built = progress or (lambda share: None), None
     if isinstance(task.family, LineFamily) and not compiling_pays():
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
             built = build_with_numpy(task.family, task.x.values, task.y.values, asked, report_progress, MOST_FIRST)
     with shared_with(workers):
         return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
+
+
+def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisRequest) -> bool:
+    """Whether the line is free–free and has angles, or an axis gives it some."""
+    if not assembly.topology.free or assembly.topology.graph:
+        return False
+    across, up = axis(assembly, x, "x")[0], axis(assembly, y, "y")[0]
+    corners = assembly.table(4)
+    across.columns.put(corners, across.values[[0, 0, -1, -1]])
+    up.columns.put(corners, up.values[[0, -1, 0, -1]])
+    return has_periodic_base(assembly, corners)
+
+
+def _about_steady_states(
+    assembly: Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | str | None,
+    tolerance: float,
+    report_progress: Progress,
+) -> StabilityChart:
+    require_period(assembly.line, assembly.topology)
+    across, up, said, base = _axes_of(assembly, x, y, speed)
+    if not has_joint_angles(assembly, _corners(assembly, across, up, base)):
+        raise InputError(
+            "has straight joints, and turns with its shafts twisted by its loads alone", element="driveline",
+            key="about_steady_state", value=True, remedy="leave it out",
+        )  # fmt: skip
+    from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
+
+    chart = SteadyStateChart.of(assembly, _request(across), _request(up), base)
+    found = chart.pixels(across.values, up.values, lambda share: report_progress(0.95 * share))
+    check = chart.check(found, across.values, up.values)
+    report_progress(1.0)
+    left = (finding.sentence for finding in left_out("stability_chart", assembly.line))
+    return StabilityChart(
+        x=across.values, y=up.values, x_parameter=across.parameter, y_parameter=up.parameter, x_unit=across.unit,
+        y_unit=up.unit, spectral_radius=found.every.radius, error_estimate=found.every.error,
+        critical_multiplier=found.every.critical, verdict=found.every.verdict,
+        speed=None if np.isnan(base) else base, period=chart.period, tolerance=tolerance, statically_twisted=True,
+        remarks=(*said, *found.remarks(chart, across.values, up.values), *left), line=assembly.line,
+        function=chart.function, evaluate_point=chart.point, resample=chart.resampled,
+        spot_check=check if check.points else None, way=ABOUT_STEADY_STATES, unit=speed_unit(assembly.line),
+        folds=tuple((y, one.low, one.high) for y, one in found.folds),
+    )  # fmt: skip
+
+
+def _request(own: ChartAxis) -> AxisRequest:
+    """An axis as it is asked for: its ends and as many points as are there."""
+    low, high = float(own.values[0]), float(own.values[-1])
+    return (own.parameter, low, high, len(own.values), own.scale)
 
 
 def chart_of_report(
@@ -216,6 +286,28 @@ def _line_task(
 ) -> Task:
     assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
+    across, up, clipped, base = _axes_of(assembly, x, y, speed)
+    refuse_periodic_base(
+        assembly,
+        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
+        bends=across.is_joint_angle or up.is_joint_angle,
+    )
+    corners = _corners(assembly, across, up, base)
+    require_steady_base(assembly, corners)
+    require_tree(assembly, "charts do")
+    refuse_pendulums(assembly.line, NOT_ALIKE)
+    family = LineFamily(assembly, across, up, base, twisted)
+    _refuse_too_long(family)
+
+    said = [finding.sentence for finding in left_out(analysis, assembly.line)]
+    remarks = (*clipped, *_idle(family, across, up, "line", numpy_only), *said)
+    return Task(family, across, up, None if np.isnan(base) else base, assembly.line, remarks)
+
+
+def _axes_of(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None
+) -> tuple[ChartAxis, ChartAxis, list[str], float]:
+    """Both axes, what was clipped of them, and the speed [rad/s] where neither is it, else NaN."""
     across, said_x = axis(assembly, x, "x")
     up, said_y = axis(assembly, y, "y")
     both = set(across.columns.index.tolist()) & set(up.columns.index.tolist())
@@ -227,27 +319,19 @@ def _line_task(
             remedy="give y a parameter that leaves it alone",
         )
     check_corners(assembly, across, up)
-    refuse_periodic_base(
-        assembly,
-        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
-        bends=across.is_joint_angle or up.is_joint_angle,
-    )
     swept = across.is_speed or up.is_speed
     if swept and speed is not None:
         raise InputError("is an axis already", key="speed", value=speed, remedy="leave speed out")
     base = float("nan") if swept else operating_speed(assembly.line, speed)
+    return across, up, [said for said in (said_x, said_y) if said], base
+
+
+def _corners(assembly: Assembly, across: ChartAxis, up: ChartAxis, base: float) -> Array:
+    """Packed numbers (4, column) at the corners of a chart."""
     corners = assembly.table(4, base)
     across.columns.put(corners, across.values[[0, 0, -1, -1]])
     up.columns.put(corners, up.values[[0, -1, 0, -1]])
-    require_steady_base(assembly, corners)
-    require_tree(assembly, "charts do")
-    refuse_pendulums(assembly.line, NOT_ALIKE)
-    family = LineFamily(assembly, across, up, base, twisted)
-    _refuse_too_long(family)
-
-    said = [finding.sentence for finding in left_out(analysis, assembly.line)]
-    remarks = tuple(s for s in (said_x, said_y, *_idle(family, across, up, "line", numpy_only), *said) if s)
-    return Task(family, across, up, None if swept else base, assembly.line, remarks)
+    return corners
 
 
 def _refuse_too_long(family: LineFamily) -> None:
@@ -364,6 +448,8 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
         own = UserFamily(family, chart.x_label, chart.y_label, _middle(chart.x, chart.y))
     elif chart.line is None:
         own = StoredPatches(chart) if chart.function.patches else None
+    elif chart.way == ABOUT_STEADY_STATES:
+        return _read_about_steady_states(chart)
     else:
         own = family_of_chart(chart)
     if own is None:
@@ -375,6 +461,20 @@ def load_chart(path: str | os.PathLike[str], *, family: PeriodicLinearFamily | N
         evaluate_point=_pointwise(own, chart.function, tolerance),
         resample=_resampler(own, chart.function, tolerance, os.cpu_count() or 1),
     )
+
+
+def _read_about_steady_states(chart: StabilityChart) -> StabilityChart:
+    """A chart read from a file that answers as before."""
+    from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
+
+    assert chart.line is not None
+    requests = [
+        (label, float(values[0]), float(values[-1]), len(values), "log" if is_log(values) else "linear")
+        for label, values in ((chart.x_parameter, chart.x), (chart.y_parameter, chart.y))
+    ]
+    speed = float("nan") if chart.speed is None else chart.speed
+    own = SteadyStateChart.of(assemble(chart.line), requests[0], requests[1], speed)
+    return replace(chart, evaluate_point=own.point, resample=own.resampled)
 
 
 def family_of_chart(chart: StabilityChart) -> LineFamily:

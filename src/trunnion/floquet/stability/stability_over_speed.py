@@ -19,11 +19,9 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.first_order import (
     LARGEST_DENSE,
     LineRates,
-    fastest_cycles,
     first_order,
     period_of,
     scales,
-    steps_that_see,
 )
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import line_matrices, rigid_motions
@@ -33,7 +31,7 @@ from trunnion.errors import InputError
 from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import spectral_radius, without
-from trunnion.results.verdict import Verdict, verdicts
+from trunnion.results.verdict import verdicts
 from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
@@ -146,6 +144,7 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
 
 
 def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesBySpeed | None) -> StabilityOverSpeed:
+    from trunnion.floquet.propagation.about_steady_states import multipliers_about
     from trunnion.steady.free.periodic_steady_states import steady_state_slopes
 
     require_balance(assembly, assembly.table(len(speed), speed))
@@ -156,22 +155,8 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
             element="driveline",
             remedy="ask stability at single speeds",
         )
-    there = np.flatnonzero(motions.found)
-    radius, error = np.full(len(speed), np.nan), np.full(len(speed), np.nan)
-    critical = np.full(len(speed), np.nan, dtype=complex)
-    if len(there):
-        cycles = fastest_cycles(assembly, motions.period)
-        found = exponential_monodromies(
-            lambda which, tau: motions.rates(there[which], tau),
-            len(there),
-            2 * assembly.topology.size,
-            motions.period,
-            least_steps=steps_that_see(cycles),
-            aside=lambda which, z: motions.beside_neutral(there[which], z),
-        )
-        radius[there], error[there], critical[there] = found.radius, found.error, found.critical
-    code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
-    return _along(speed, radius, error, critical, code.astype(np.int8), motions.period)
+    found = multipliers_about(motions)
+    return _along(speed, found.radius, found.error, found.critical, found.verdict, motions.period)
 
 
 def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityOverSpeed:

@@ -1,15 +1,17 @@
-"""Periodic motions of a free–free line with joint angles, at many mean speeds at once, by the balance of their
+"""Periodic motions of lines with joint angles, at many mean speeds or numbers at once, by the balance of their
 harmonics.
 
     ẍ = a(t, x, ẋ) + T b(t, x, ẋ),    x = a₀ + Σ_k (a_k cos kbΩt + b_k sin kbΩt),    phaseᵀ a₀ = 0
 
 T is the torque of the drives beyond the balance of the loads, which keeps the mean speed; the last equation fixes the
-phase. Accelerations and their slopes come from the compiled nonlinear equations at samples of the period; Newton's
-steps are taken for all speeds together.
+phase. Of a line whose input turns as prescribed neither is there. Accelerations and their slopes come from the compiled
+nonlinear equations at samples of the period; Newton's steps are taken for all speeds together.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -41,16 +43,26 @@ MOST_NUMBERS = 4_000_000
 
 @dataclass(frozen=True)
 class SteadyStates:
-    """Motions at ``speed`` (case,) [rad/s]: ``found`` (case,), rotations ``rows`` (case, n, 2h + 1) [rad] as series of
-    the period, ``torque`` (case,) [N m at the input] that drives beyond the balance; ``numbers`` (case, number): what
-    the compiled equations read, without it."""
+    """Motions at ``value`` (case,), speeds [rad/s] or what else ``balance.rows`` reads: ``found`` (case,), rotations
+    ``rows`` (case, n, 2h + 1) [rad] as series of the period, ``torque`` (case,) [N m at the input] that drives beyond
+    the balance; ``numbers`` (case, number): what the compiled equations read, without it."""
 
     balance: FreeBalance
-    speed: Array
+    value: Array
     found: Flags
     rows: Array
     torque: Array
     numbers: Array
+
+    @cached_property
+    def table(self) -> Array:
+        """Packed numbers (case, column)."""
+        return self.balance.rows(self.value)
+
+    @property
+    def speed(self) -> Array:
+        """Mean speeds (case,) [rad/s]."""
+        return np.asarray(self.table[:, 0])
 
     @property
     def h(self) -> int:
@@ -82,8 +94,8 @@ class SteadyStates:
 
     @cached_property
     def coefficients(self) -> LineCoefficients:
-        """Of the line at the speeds, about zero twist."""
-        return self.balance.untwisted(self.speed)
+        """Of the lines, about zero twist."""
+        return self.balance.line.untwisted(self.table)
 
     @property
     def states(self) -> Array:
@@ -115,68 +127,90 @@ class SteadyStates:
     def part(self, at: slice) -> SteadyStates:
         """Some of them."""
         return SteadyStates(
-            self.balance, self.speed[at], self.found[at], self.rows[at], self.torque[at], self.numbers[at]
+            self.balance, self.value[at], self.found[at], self.rows[at], self.torque[at], self.numbers[at]
         )
 
     def _driven(self, more: float) -> Array:
-        return self.numbers + (self.torque + more)[:, None] * self.balance.drive
+        if not self.balance.free:
+            return self.numbers
+        return self.numbers + (self.torque + more)[:, None] * self._drive
+
+    @cached_property
+    def _drive(self) -> Array:
+        """What one N m of the drives at the input changes of the numbers, (case, number) or the same for all."""
+        return self.balance.drive_of(self.table)
+
+
+Rows = Callable[[Array], Array]
+"""Values (case,) → packed numbers (case, column)."""
 
 
 class FreeBalance:
-    """Motions of a free line by the balance of their harmonics."""
+    """Motions of a line by the balance of their harmonics."""
 
     def __init__(self, assembly: Assembly, period: float) -> None:
         """``period`` [rad of input angle]."""
         refuse_dragged(assembly)
         topo = assembly.topology
-        self.assembly, self.period, self.turn = assembly, period, rigid_rotation(topo)
-        self.phase = np.eye(topo.size)[topo.coordinate[topo.group_of(0)]]
+        self.assembly, self.period, self.turn, self.free = assembly, period, rigid_rotation(topo), topo.free
+        first = topo.coordinate[topo.group_of(0)] if topo.free else 0
+        self.phase = np.eye(topo.size)[first]
         self.fastest = max(1, int(np.ceil(max(float(rate) for rate in topo.rates) * period / (2 * np.pi) - 1e-9)))
         self.fewest = max(FEWEST, 3 * self.fastest)
         self.line = LineSystem(assembly, 1.0)
         self.address, self.weight = self.line.system.rate.address, np.ones(2 * topo.size)
+        self.rows: Rows = self._at_speeds
+
+    def along(self, rows: Rows) -> FreeBalance:
+        """The same of lines whose packed numbers ``rows`` reads from the values asked for, in place of speeds."""
+        other = copy(self)
+        other.rows = rows
+        return other
+
+    def drive_of(self, table: Array) -> Array:
+        """What one N m of the drives at the input changes of the numbers: (case, number), or (number,) of a line whose
+        speed alone changes."""
+        own = self.assembly.table(1, 1.0)[0]
+        if (table[:, 1:] == own[1:]).all():
+            return self._own_drive
+        return np.stack([self.line.numbers(row, drive=1.0) - self.line.numbers(row) for row in table])
 
     @cached_property
-    def drive(self) -> Array:
-        """What one N m of the drives at the input changes of the numbers, (number,)."""
-        row = self._table(np.ones(1))[0]
+    def _own_drive(self) -> Array:
+        row = self.assembly.table(1, 1.0)[0]
         return self.line.numbers(row, drive=1.0) - self.line.numbers(row)
 
-    def untwisted(self, speed: Array) -> LineCoefficients:
-        """The line's coefficients at ``speed`` (case,) about zero twist."""
-        return self.line.untwisted(self._table(speed))
-
-    def numbers(self, speed: Array, co: LineCoefficients) -> Array:
+    def numbers(self, table: Array, co: LineCoefficients) -> Array:
         """What the compiled equations read (case, number)."""
-        table = self._table(speed)
         return np.stack([self.line.numbers(row, known=co, case=i) for i, row in enumerate(table)])
 
-    def _table(self, speed: Array) -> Array:
+    def _at_speeds(self, speed: Array) -> Array:
         table = self.assembly.table(len(speed))
         table[:, 0] = speed
         return table
 
-    def solve(self, speed: Array, h: int, guess: Array | None = None) -> SteadyStates:
-        """Motions of ``h`` harmonics at ``speed`` (case,) [rad/s], from a guess (case, n, 2h + 1) or rigid shafts."""
+    def solve(self, value: Array, h: int, guess: Array | None = None) -> SteadyStates:
+        """Motions of ``h`` harmonics at ``value`` (case,), from a guess (case, n, 2h + 1) or rigid shafts."""
         unknowns = len(self.turn) * (2 * h + 1) + 1
         batch_size = max(1, MOST_NUMBERS // unknowns**2)
         with on_one_thread():
             parts = [
-                self._batch(speed[i : i + batch_size], h, None if guess is None else guess[i : i + batch_size])
-                for i in range(0, len(speed), batch_size)
+                self._batch(value[i : i + batch_size], h, None if guess is None else guess[i : i + batch_size])
+                for i in range(0, len(value), batch_size)
             ]
-        keys = ("speed", "found", "rows", "torque", "numbers")
+        keys = ("value", "found", "rows", "torque", "numbers")
         return SteadyStates(self, *(np.concatenate([getattr(part, key) for part in parts]) for key in keys))
 
-    def _batch(self, speed: Array, h: int, guess: Array | None) -> SteadyStates:
-        co = self.untwisted(speed)
-        numbers, first = self.numbers(speed, co), self._rigid(speed, h, co) if guess is None else guess
+    def _batch(self, value: Array, h: int, guess: Array | None) -> SteadyStates:
+        table = self.rows(value)
+        speed, co = table[:, 0], self.line.untwisted(table)
+        numbers, first = self.numbers(table, co), self._rigid(table, h, co) if guess is None else guess
         inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
         unit = ANGLE_SCALE * speed**2 * inertia / self.period
 
         def motions(cases: Places, z: Array, found: Flags) -> SteadyStates:
             rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
-            return SteadyStates(self, speed[cases], found, rows, unit[cases] * z[:, -1], numbers[cases])
+            return SteadyStates(self, value[cases], found, rows, unit[cases] * z[:, -1], numbers[cases])
 
         def equations(cases: Places, z: Array) -> tuple[Array, Array]:
             return self._equations(motions(cases, z, np.zeros(len(z), dtype=bool)), unit[cases])
@@ -192,8 +226,7 @@ class FreeBalance:
         n, h, rate = len(self.turn), motions.h, motions.rate
         cases, wide = len(rate), 2 * h + 1
         rates, slopes = motions.sampled()
-        by_torque = motions.sampled(1.0)[0] - rates
-        around, along = rates[..., n:].transpose(0, 2, 1), by_torque[..., n:].transpose(0, 2, 1)
+        around = rates[..., n:].transpose(0, 2, 1)
         speed = motions.speed
         d = fourier.rate_matrix(h, 1.0)
         by_angle, by_speed = (fourier.product_blocks(part, h) for part in np.split(slopes[..., n:, :], 2, axis=-1))
@@ -203,24 +236,30 @@ class FreeBalance:
         size = n * wide
         whole = np.zeros((cases, size + 1, size + 1))
         whole[:, :size, :size] = matrix.reshape(cases, size, size) / (speed**2)[:, None, None]
-        column = fourier.rows_of(along, h).reshape(cases, size)
-        whole[:, :size, size] = -column * (unit / (ANGLE_SCALE * speed**2))[:, None]
-        whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
         inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
         left = inertial - fourier.rows_of(around, h)
         missing = np.zeros((cases, size + 1))
         missing[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
+        if not self.free:  # no torque is missing
+            whole[:, size, size], missing[:, size] = 1.0, motions.torque / unit
+            return missing, whole
+        along = (motions.sampled(1.0)[0] - rates)[..., n:].transpose(0, 2, 1)
+        whole[:, :size, size] = -fourier.rows_of(along, h).reshape(cases, size) * (
+            unit / (ANGLE_SCALE * speed**2)
+        )[:, None]  # fmt: skip
+        whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
         missing[:, size] = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
         return missing, whole
 
-    def _rigid(self, speed: Array, h: int, co: LineCoefficients) -> Array:
+    def _rigid(self, table: Array, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""
         topo, times = self.assembly.topology, 4 * h + 4
         tau = self.period * np.arange(times) / times
         base, plain = (base_motion(topo, case, tau).angle for case in (co, co.straight))
-        statically_loaded = self.assembly.coefficients(self._table(speed), free_play=True)
+        statically_loaded = self.assembly.coefficients(table, free_play=True)
         loaded, loose = (base_motion(topo, case, np.zeros(1)).angle[:, 0] for case in (statically_loaded, co))
         rows = fourier.rows_of((base - plain)[..., topo.firsts].transpose(0, 2, 1), h)
         rows[..., 0] += (loaded - loose)[:, topo.firsts]
-        rows[..., 0] -= np.outer(rows[..., 0] @ self.phase, self.phase) / (self.phase @ self.phase)
+        if self.free:
+            rows[..., 0] -= np.outer(rows[..., 0] @ self.phase, self.phase) / (self.phase @ self.phase)
         return rows

@@ -1,5 +1,5 @@
-"""The periodic motions of a free–free line with joint angles, at many mean speeds, and its equations linearised about
-them.
+"""The periodic motions of a line with joint angles, at many mean speeds or along a parameter, and its equations
+linearised about them.
 
 Each is solved once by ``free_balance``, whoever asks: the orders and the stability along a range. Excitations of disks
 and transmission errors are left out, as in ``periodic_steady_state``, which finds one motion by shooting.
@@ -37,6 +37,8 @@ ALIKE = 1e-6
 """Difference [rad] of two motions that are the same."""
 LEAP = 0.1
 """Share of its swing by which a motion may change in one step: by more it fell into another one."""
+FAR_LEAP = 4.0
+"""The same where the motion leads back as well: swings past a resonance have the other sense."""
 AWAY = np.array([0.9, 1.1, 0.75, 1.3])
 """Shares of a speed at which one begins to follow a motion to it that is not found otherwise."""
 BESIDE = 1e-6
@@ -60,13 +62,14 @@ class Break:
 class SteadyStateSlopes:
     """Slopes along the motions, and what is no disturbance of them.
 
-    solved, speed: what knows the motions, and where; found (speed,); period [rad of input angle]; slopes: Fourier
-    coefficients (speed, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (speed,
-    2n): the disturbances that shift the phase, and that change the speed where no torque depends on it (else None).
+    solved, value: what knows the motions, and where; found (value,); period [rad of input angle]; slopes: Fourier
+    coefficients (value, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (value,
+    2n): the disturbances that shift the phase of a free–free line, and that change its speed where no torque depends on
+    it (else None).
     """
 
-    solved: SteadyStatesBySpeed
-    speed: Array
+    solved: SteadyStateCurve
+    value: Array
     found: Flags
     period: float
     slopes: Complex
@@ -87,7 +90,10 @@ class SteadyStateSlopes:
         return np.asarray((wave @ flat).reshape(len(which), len(tau), *slopes.shape[2:]))
 
     def beside_neutral(self, which: Places, matrix: Array) -> Array:
-        """Matrices (case, 2n − 1, 2n − 1) without the shift of the phase; 0 for the multiplier of the speed."""
+        """Matrices (case, 2n − 1, 2n − 1) without the shift of the phase; 0 for the multiplier of the speed. Those of
+        a line whose speed is prescribed as they are."""
+        if not self.solved.balance.free:
+            return matrix
         finite = np.isfinite(matrix).all(axis=(1, 2))
         left = np.full((len(matrix), matrix.shape[1] - 1, matrix.shape[2] - 1), np.nan)
         rest = np.linalg.qr(self.shift[which][finite][:, :, None], mode="complete")[0][:, :, 1:]
@@ -103,7 +109,7 @@ class SteadyStateSlopes:
     def speed_grows(self, i: int) -> bool | None:
         """Whether a change of the speed does, where the torque of the drives stays the same: the motion takes the less
         of it the faster it is. None where that cannot be computed."""
-        rise = self.solved.torque_rise(float(self.speed[i]))
+        rise = self.solved.torque_rise(float(self.value[i]))
         return rise < 0 if rise else None
 
 
@@ -123,22 +129,25 @@ def steady_state_slopes(
     ``solved`` : what is known of them already. ``found`` is False where the harmonics did not settle.
     """
     solved = solved or SteadyStatesBySpeed(line)
-    if solved.obstacle:
-        return None
-    motions = solved.at_all(speeds)
+    return None if solved.obstacle else slopes_along(solved, speeds)
+
+
+def slopes_along(solved: SteadyStateCurve, values: Array) -> SteadyStateSlopes:
+    """Motions at all ``values`` of a curve."""
+    motions = solved.at_all(values)
     n, balance = len(motions.balance.turn), motions.balance
     batch_size = max(1, MOST_NUMBERS // (motions.times * (2 * n) ** 2))
-    parts = [_about(motions.part(slice(i, i + batch_size))) for i in range(0, len(speeds), batch_size)]
+    parts = [_about(motions.part(slice(i, i + batch_size))) for i in range(0, len(values), batch_size)]
     slopes, shift, drift = (np.concatenate(each) for each in zip(*parts, strict=True))
     damping = np.trace(slopes[:, 0, n:, n:], axis1=1, axis2=2).real
     return SteadyStateSlopes(
         solved,
-        speeds,
+        values,
         motions.found & motions.resolved,
         balance.period,
         slopes,
         shift,
-        None if loaded_by_speed(balance.assembly) else drift,
+        None if solved.by_speed else drift,
         np.abs(damping) * balance.period < 1e-12 * n,
     )
 
@@ -197,43 +206,32 @@ class KnownSteadyState:
         return float(np.abs(self.rows[:, 1:]).max())
 
 
+def _faster(table: Array) -> Array:
+    """Packed numbers at speeds greater by ``BESIDE``."""
+    table = table.copy()
+    table[:, 0] *= 1 + BESIDE
+    return table
+
+
 def apart(one: Array, other: Array) -> float:
     """Largest difference [rad] of any harmonic but the mean of two motions, (n, 2h + 1) each."""
     h = max(fourier.order(one), fourier.order(other))
     return float(np.abs(fourier.resized(one, h) - fourier.resized(other, h))[:, 1:].max())
 
 
-class SteadyStatesBySpeed:
-    """The motions of one line, each speed solved once: the orders and the stability along a range ask for the same.
+class SteadyStateCurve:
+    """The motions along one parameter, each value solved once. Phases count from zero rotation of the input."""
 
-    Phases count from zero rotation of the input.
-    """
-
-    def __init__(self, line: Driveline) -> None:
-        self.line = line
+    def __init__(self, balance: FreeBalance, ends: tuple[float, float], by_speed: bool) -> None:
+        """``ends`` : lowest and highest value; ``by_speed``: whether any torque depends on the speed."""
+        self.balance, self.ends, self._depends_on_speed = balance, ends, by_speed
         self.known: dict[float, KnownSteadyState] = {}
         self.broken: tuple[Break, ...] = ()
 
-    @cached_property
-    def obstacle(self) -> str:
-        """Why there is no balance of smooth equations for all speeds; empty where there is."""
-        if mean_by_load(self.line) and loaded_by_speed(assemble(unexcited(self.line))):
-            return "the mean of its clutch changes with the speed besides"
-        if line_system(self.unexcited, 1.0, linearised=True).system.regimes is not None:
-            return "it has stages or play besides"
-        return ""
-
-    @cached_property
-    def unexcited(self) -> Assembly:
-        """The line without excitation, clutches that state a motion as their mean."""
-        return assemble(with_mean_clutches(assemble(unexcited(self.line)), 1.0))
-
-    @cached_property
-    def balance(self) -> FreeBalance:
-        """What solves them."""
-        return FreeBalance(
-            self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
-        )
+    @property
+    def by_speed(self) -> bool:
+        """Whether any torque depends on the speed."""
+        return self._depends_on_speed
 
     def at_all(self, speeds: Array) -> SteadyStates:
         """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
@@ -257,7 +255,8 @@ class SteadyStatesBySpeed:
     def torque_rise(self, speed: float) -> float:
         """How much more torque [N m] the drives give at a speed greater by ``BESIDE``; 0 where that is unknown."""
         one = self.known[speed]
-        further = self.balance.solve(np.array([speed * (1 + BESIDE)]), one.h, one.rows[None])
+        faster = self.balance.along(lambda value: _faster(self.balance.rows(value)))
+        further = faster.solve(np.array([speed]), one.h, one.rows[None])
         return float(further.torque[0] - one.torque) if further.found[0] else 0.0
 
     def continued(self, motion: KnownSteadyState, begin: float, end: float) -> tuple[float, KnownSteadyState]:
@@ -270,7 +269,7 @@ class SteadyStatesBySpeed:
             further = self._led_to(to, motion, slope * (to - at))
             if further is None:
                 step = (to - at) / 2
-                if abs(step) < CLOSE * abs(at):
+                if abs(step) < self._finest(at):
                     break
             else:
                 slope = (further.rows - fourier.resized(motion.rows, further.h)) / (to - at)
@@ -325,9 +324,18 @@ class SteadyStatesBySpeed:
         for side in (there[there < speed].max(initial=-np.inf), there[there > speed].min(initial=np.inf)):
             if np.isfinite(side):
                 yield float(side), self.known[float(side)]
-        away = self.balance.solve(speed * AWAY, self.balance.fewest)
+        away = self.balance.solve(self._aside(speed), self.balance.fewest)
         for i in np.flatnonzero(away.found & away.resolved):
-            yield float(away.speed[i]), KnownSteadyState.of(away, i)
+            yield float(away.value[i]), KnownSteadyState.of(away, i)
+
+    def _aside(self, value: float) -> Array:
+        """Values at which one begins to follow a motion to ``value`` that is not found otherwise."""
+        low, high = self.ends
+        return np.clip(value + (high - low) * (AWAY - 1), low, high)
+
+    def _finest(self, value: float) -> float:
+        """How closely one locates where a motion ends."""
+        return CLOSE * (self.ends[1] - self.ends[0])
 
     def _from_neighbours(self, motions: SteadyStates) -> SteadyStates:
         """With those that were not found looked for again from the nearest that were, outwards."""
@@ -335,24 +343,68 @@ class SteadyStatesBySpeed:
         lost = np.flatnonzero(~found)
         while len(lost) and found.any():
             there = np.flatnonzero(found)
-            apart = np.abs(motions.speed[lost][:, None] - motions.speed[there])
+            apart = np.abs(motions.value[lost][:, None] - motions.value[there])
             next_to = np.argsort(apart.min(axis=1))[0]
             i, near = lost[next_to], there[apart[next_to].argmin()]
-            one = self.balance.solve(motions.speed[[i]], motions.h, rows[[near]])
+            one = self.balance.solve(motions.value[[i]], motions.h, rows[[near]])
             found[i], rows[i], torque[i] = one.found[0], one.rows[0], one.torque[0]
             lost = np.delete(lost, next_to)
-        return SteadyStates(self.balance, motions.speed, found, rows, torque, motions.numbers)
+        return SteadyStates(self.balance, motions.value, found, rows, torque, motions.numbers)
 
 
-def breaks(solved: SteadyStatesBySpeed, speeds: Array) -> tuple[Break, ...]:
-    """Those between the lowest and the highest of ``speeds`` (speed,) [rad/s], looked for between all of them."""
+class SteadyStatesBySpeed(SteadyStateCurve):
+    """The motions of one line over its speed [rad/s]: the orders and the stability along a range ask for the same."""
+
+    def __init__(self, line: Driveline) -> None:
+        self.line = line
+        self.known, self.broken = {}, ()
+
+    @cached_property
+    def obstacle(self) -> str:
+        """Why there is no balance of smooth equations for all speeds; empty where there is."""
+        if mean_by_load(self.line) and loaded_by_speed(assemble(unexcited(self.line))):
+            return "the mean of its clutch changes with the speed besides"
+        if line_system(self.unexcited, 1.0, linearised=True).system.regimes is not None:
+            return "it has stages or play besides"
+        return ""
+
+    @cached_property
+    def unexcited(self) -> Assembly:
+        """The line without excitation, clutches that state a motion as their mean."""
+        return assemble(with_mean_clutches(assemble(unexcited(self.line)), 1.0))
+
+    @cached_property
+    def balance(self) -> FreeBalance:
+        """What solves them."""
+        return FreeBalance(
+            self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
+        )
+
+    @property
+    def by_speed(self) -> bool:
+        """Whether any torque depends on the speed."""
+        return loaded_by_speed(self.unexcited)
+
+    def _aside(self, value: float) -> Array:
+        return value * AWAY
+
+    def _finest(self, value: float) -> float:
+        return CLOSE * abs(value)
+
+
+def breaks(solved: SteadyStateCurve, speeds: Array, *, between: bool = True) -> tuple[Break, ...]:
+    """Those between the lowest and the highest of ``speeds`` (speed,) [rad/s], looked for between all of them.
+
+    ``between`` : False where what happens between two neighbours matters to neither: they belong together where each
+    leads to the other in one step, be it a large one.
+    """
     speeds = np.unique(speeds)
     solved.at_all(speeds)
     usable = [speed for speed in speeds.tolist() if solved.known[speed].settled]
     low, high = float(speeds[0]), float(speeds[-1])
     if not usable:
         return (Break(low, high, NONE),)
-    walk = _BranchWalk(solved, low, high)
+    walk = _BranchWalk(solved, low, high, between)
     found = _merged([*walk.outside(usable[0], low), *walk.between(usable), *walk.outside(usable[-1], high)])
     return tuple(walk.with_outer_motions(one, usable) for one in found)
 
@@ -372,9 +424,10 @@ def _merged(found: Iterable[Break]) -> Iterator[Break]:
 class _BranchWalk:
     """From motion to motion between two speeds [rad/s]."""
 
-    solved: SteadyStatesBySpeed
+    solved: SteadyStateCurve
     low: float
     high: float
+    closely: bool = True
 
     def outside(self, speed: float, end: float) -> Iterator[Break]:
         """What lies between the outermost motion found and the end of the range."""
@@ -385,7 +438,12 @@ class _BranchWalk:
     def between(self, speeds: list[float]) -> Iterator[Break]:
         """What lies between neighbours of which neither leads to the other."""
         pairs = list(pairwise(speeds))
-        for (a, b), same in zip(pairs, self._lead_over(pairs), strict=True):
+        together = self._lead_over(pairs, LEAP)
+        if not self.closely:
+            back = self._lead_over([(b, a) for a, b in pairs], FAR_LEAP)
+            over = self._lead_over(pairs, FAR_LEAP)
+            together = [one or (up and down) for one, up, down in zip(together, over, back, strict=True)]
+        for (a, b), same in zip(pairs, together, strict=True):
             up = b if same else self._continued(a, b)
             down = a if up == b else self._continued(b, a)
             if up != b and down != a:
@@ -402,11 +460,12 @@ class _BranchWalk:
                 self.solved.known[fold] = motion
         return found
 
-    def _lead_over(self, pairs: list[tuple[float, float]]) -> list[bool]:
-        """Of pairs of speeds whether the motion at the first leads to that at the second in one small step."""
+    def _lead_over(self, pairs: list[tuple[float, float]], leap: float) -> list[bool]:
+        """Of pairs of speeds whether the motion at the first leads to that at the second in one step, of no more than
+        the share ``leap`` of its swing."""
         known, found = self.solved.known, [False] * len(pairs)
         orders = [max(known[a].h, known[b].h) for a, b in pairs]
-        near = [apart(known[a].rows, known[b].rows) <= LEAP * known[a].swing for a, b in pairs]
+        near = [apart(known[a].rows, known[b].rows) <= leap * known[a].swing for a, b in pairs]
         for h in sorted(set(orders)):
             which = [i for i, one in enumerate(orders) if one == h and near[i]]
             if not which:

@@ -1,0 +1,48 @@
+"""Multipliers of lines about the periodic motions that they make, at many values of one parameter together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Array, Codes, Complex
+from trunnion.equations.first_order import fastest_cycles, steps_that_see
+from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
+from trunnion.results.verdict import Verdict, verdicts
+from trunnion.steady.free.periodic_steady_states import SteadyStateSlopes
+
+
+@dataclass(frozen=True)
+class SteadyStateMultipliers:
+    """radius, error (its estimate), critical (the largest multiplier), verdict (code), each (value,); NaN and FAILED
+    where there is no motion that is known. matrix (value, 2n, 2n): what a disturbance becomes in a period, in
+    energy-like units."""
+
+    radius: Array
+    error: Array
+    critical: Complex
+    verdict: Codes
+    matrix: Array
+
+
+def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
+    """Of all motions, without what is no disturbance of them; ``tolerance`` as of ``exponential_monodromies``."""
+    count, size = len(motions.value), 2 * len(motions.solved.balance.turn)
+    there = np.flatnonzero(motions.found)
+    radius, error = np.full(count, np.nan), np.full(count, np.nan)
+    critical, matrix = np.full(count, np.nan, dtype=complex), np.full((count, size, size), np.nan)
+    if len(there):
+        found = exponential_monodromies(
+            lambda which, tau: motions.rates(there[which], tau),
+            len(there),
+            size,
+            motions.period,
+            tolerance=tolerance,
+            least_steps=steps_that_see(fastest_cycles(motions.solved.balance.assembly, motions.period)),
+            aside=lambda which, z: motions.beside_neutral(there[which], z),
+        )
+        radius[there], error[there], critical[there] = found.radius, found.error, found.critical
+        matrix[there] = found.matrix
+    code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
+    return SteadyStateMultipliers(radius, error, critical, code.astype(np.int8), matrix)
