@@ -213,12 +213,12 @@ def lasting(*curves, **operation):
 ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
 
 
-def studied(**changes):
+def studied(given=True, **changes):
     """What a study of a small line would cost."""
     stated = {"line": "", "analysis": "stability", "quantities": ["growth_rate"], "store": "a.zarr"}
     parts = ConstantSpeed(), HookeJoint(angle=0.1), Shaft(stiffness=1e4, damping=2.0), Disk(inertia=0.8)
     asked = {**stated, "parameter": [ANGLES], "arguments": {"speed": 50.0}, **changes}
-    return tn.study_cost(asked, line=line(*parts))
+    return tn.study_cost(asked, line=line(*parts) if given else None)
 
 
 def history(values, **rest):
@@ -1051,6 +1051,13 @@ PYTHON = [
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
+    (lambda: studied(line="two-shaft-carden", given=False), "two-shaft-carden': is neither a file", "-cardan"),
+    (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
+    (
+        lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
+        "client = 'str': is no client of Dask",
+        "give a distributed.Client",
+    ),
     (
         lambda: tn.study({}, workers=1, scheduler="tcp://far:1"),
         "workers and scheduler: are two ways to compute",
