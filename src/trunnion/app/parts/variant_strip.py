@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import panel as pn
 
 from trunnion.app.address import MOST_VARIANTS
-from trunnion.app.parts.widgets import Html, HtmlPane, column, markup, wrapped
+from trunnion.app.parts.widgets import Html, HtmlPane, column, heading, markup, wrapped
 
 MOST_KEPT = MOST_VARIANTS
 """Variants that are kept at most: an address holds all of them."""
@@ -17,7 +17,6 @@ MOST_SHOWN = 3
 """Variants that are computed and shown beside the present line."""
 WRAPPED = ".bk-btn { white-space: normal; overflow-wrap: anywhere; text-align: left; }"
 """Of a button that has a name in its words, however long."""
-LABEL = "label, span { overflow-wrap: anywhere; white-space: normal; }"
 BESIDE, UPON = "beside each other", "on the same axes"
 
 
@@ -100,15 +99,19 @@ class VariantStrip:
             made.on_click(lambda event: act())
             return made
 
-        shown = pn.widgets.Checkbox(label=f"show {one.name}", value=one.is_shown, margin=(4, 5), stylesheets=[LABEL])
-        shown.param.watch(lambda event: self.actions.show_variant(one.key, event.new), "value")
+        is_shown, word = one.is_shown, "Hide" if one.is_shown else "Show"
         acts = [
+            button(
+                f"{word} {one.name}",
+                "beside the line now, or no more",
+                lambda: self.actions.show_variant(one.key, not is_shown),
+            ),
             button(
                 f"Swap {one.name}", "make it the present line, and keep that one", lambda: self.actions.swap(one.key)
             ),
             button(f"Drop {one.name}", "keep it no more", lambda: self.actions.drop(one.key)),
         ]
-        return column(shown, self._said[one.key], wrapped(*acts))
+        return column(heading(one.name), self._said[one.key], wrapped(*acts))
 
 
 def free_name(variants: Sequence[KeptVariant]) -> str:
