@@ -8,12 +8,11 @@ import zlib
 from collections.abc import Mapping, Sequence
 from urllib.parse import urlencode
 
+from trunnion.app.parts.variant_strip import MOST_KEPT
 from trunnion.errors import InputError
 
 LARGEST = 1_000_000
 """Characters that a packed line may unfold to."""
-MOST_VARIANTS = 6
-"""Kept variants that an address holds at most."""
 
 
 def pack(toml: str) -> str:
@@ -59,5 +58,5 @@ def address(
 
 def kept_keys(query: Mapping[str, str]) -> list[str]:
     """Keys of the kept variants of a query, in their order; "kept" alone is how there was one."""
-    keys = ["kept", *(f"kept{number}" for number in range(1, MOST_VARIANTS + 1))]
+    keys = ["kept", *(f"kept{number}" for number in range(1, MOST_KEPT + 1))]
     return [key for key in keys if key in query]

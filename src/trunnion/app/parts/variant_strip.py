@@ -8,10 +8,9 @@ from typing import Any, Protocol
 
 import panel as pn
 
-from trunnion.app.address import MOST_VARIANTS
 from trunnion.app.parts.widgets import Html, HtmlPane, column, heading, markup, wrapped
 
-MOST_KEPT = MOST_VARIANTS
+MOST_KEPT = 6
 """Variants that are kept at most: an address holds all of them."""
 MOST_SHOWN = 3
 """Variants that are computed and shown beside the present line."""
