@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -30,6 +31,7 @@ from trunnion.floquet.charts.stability_chart import Task, family_of_chart
 from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
 from trunnion.floquet.tongues.rows import TongueRow, unknown_row, unstable_intervals
+from trunnion.floquet.tongues.rows_by_collisions import SAMPLED_WORDS, sampled_rows
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.floquet.tongues.windows import StableWindows, stable_windows
 from trunnion.results.chart import StabilityChart, require_pixels
@@ -162,7 +164,7 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
 
 def _region(task: Task, speeds: int, tolerance: float, workers: int, report_progress: Progress) -> Region:
     """The box to search; few rows of a long line cost less than one patch of its matrices."""
-    if 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
+    if not task.family.analytic or 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
         return unpatched(task.family, task.x.values, task.y.values, workers)
     return patched(task.family, task.x.values, task.y.values, tolerance, workers, report_progress)
 
@@ -170,8 +172,9 @@ def _region(task: Task, speeds: int, tolerance: float, workers: int, report_prog
 def _rows(region: Region, speed: Array) -> list[TongueRow]:
     """Unstable ranges of the parameter at every speed (speed,)."""
     rows: list[TongueRow] = []
+    search = partial(unstable_intervals, region) if region.family.analytic else sampled_rows(region)
     for start in range(0, len(speed), AT_ONCE):
-        rows += unstable_intervals(region, region.family.to_patch(speed[start : start + AT_ONCE], False))
+        rows += search(region.family.to_patch(speed[start : start + AT_ONCE], False))
     return rows
 
 
@@ -231,6 +234,8 @@ def _result(
 
 
 def _search_words(region: Region) -> str:
+    if not region.family.analytic:
+        return f"stability about the line's own motion: values of the parameter {SAMPLED_WORDS}"
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
         return f"stability sampled along the parameter, edges solved for: {few}, so narrow ranges may be missing"
