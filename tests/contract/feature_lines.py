@@ -249,10 +249,20 @@ def excited(change: Change) -> Change:
 
 
 OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
-    ("stability_chart", "drive share"): (
-        lambda line: put("load", load_torque=80.0)(free(line)),
-        lambda line: put("load", load_torque=80.0)(free(line)).replace("hub", drive_share=0.5),
-    ),
+    **{
+        (name, "drive share"): (
+            lambda line: put("load", load_torque=80.0)(free(line)),
+            lambda line: put("load", load_torque=80.0)(free(line)).replace("hub", drive_share=0.5),
+        )
+        for name in (
+            "stability_chart",
+            "stable_limit",
+            "tongues",
+            "stable_windows",
+            "minimum_damping",
+            "tolerance_study",
+        )
+    },
     ("resonance_speeds", "shafts tied to two others"): (same, lambda line: tied(line, straight=False)),
     ("resonance_speeds", "closed loop"): (same, lambda line: looped(line, straight=False)),
     ("phase_forks", "centrifugal pendulum"): (same, damped_by(pendulum())),

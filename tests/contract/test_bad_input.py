@@ -1304,8 +1304,11 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stable_limit(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            "HookeJoint 1.angle", [30, 40],
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
     ),
     (

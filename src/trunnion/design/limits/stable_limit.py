@@ -27,7 +27,7 @@ from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.charts.building import family_for, strategy_named
-from trunnion.floquet.charts.stability_chart import Task, family_of_chart
+from trunnion.floquet.charts.stability_chart import ABOUT_STEADY_STATES, Task, family_of_chart
 from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
 from trunnion.floquet.tongues.rows import TongueRow, unknown_row, unstable_intervals
@@ -58,6 +58,7 @@ def stable_limit(
     between: bool = True,
     scan: int = SCAN,
     tolerance: float = PATCH_TOLERANCE,
+    about_steady_state: bool = False,
     within: float | None = None,
     progress: Progress | None = None,
 ) -> StableLimit:
@@ -74,6 +75,7 @@ def stable_limit(
         ``stable_windows``); False for the speeds alone.
     scan : steps of the grid on which the limits of the description are compared.
     tolerance : of the patches that tell where to look; edges are solved for by themselves.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     within : seconds that it may take; the limit is unknown at speeds that were not reached, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -105,7 +107,10 @@ def stable_limit(
     ends = float(speed.min()), float(speed.max())
     if ends[0] == ends[1]:
         ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)
-    task = task_of(assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit")
+    task = task_of(
+        assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit",
+        about_steady_state=about_steady_state,
+    )  # fmt: skip
     workers = os.cpu_count() or 1
     region = _region(task, len(speed), tolerance, workers, lambda s: report_progress(0.6 * s))
     at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
@@ -128,6 +133,7 @@ def stable_limit(
                 high,
                 ends,
                 margin=margin,
+                about_steady_state=about_steady_state,
                 progress=lambda s: report_progress(end + (1 - end) * s),
             )
     except OutOfTime as error:
@@ -147,6 +153,11 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     speeds : inside the chart's x axis [rad/s]; those outside are moved to its nearest end.
     own : add the chart's own speeds.
     """
+    if chart.way == ABOUT_STEADY_STATES:
+        raise InputError(
+            "is about the line's own motion and has no patches to search", element="chart",
+            remedy="ask stable_limit of the line",
+        )  # fmt: skip
     if chart.x_label != "speed" or chart.line is None or chart.function is None or min(len(chart.x), len(chart.y)) < 2:
         raise InputError("needs a chart of a driveline with the speed along x", element="chart")
     own_family, workers = family_of_chart(chart), os.cpu_count() or 1

@@ -34,6 +34,7 @@ from trunnion.floquet.tolerance.spread import (
     tables,
     values_in_words,
 )
+from trunnion.floquet.tolerance.steady_state_lines import lines_like
 from trunnion.results.chart import require_pixels
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
@@ -189,7 +190,7 @@ def tolerance_study(
     assembly, spreads, taken = _read(line, tolerances)
     each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
     require_pixels(each * SCRAMBLES, len(at))
-    lines = ManyLines.of(
+    lines = lines_like(
         assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip

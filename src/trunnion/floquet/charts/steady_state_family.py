@@ -14,7 +14,7 @@ from trunnion.floquet.charts.axes import ChartAxis
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
-from trunnion.floquet.propagation.about_steady_states import multipliers_about
+from trunnion.floquet.propagation.about_steady_states import multipliers_about, pixels_of_rows
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, breaks, slopes_along
 from trunnion.waiting import keep_time
 
@@ -86,18 +86,11 @@ class SteadyStateFamily(LineFamily):
         return max((one.swing for one in self.row(y).known.values() if one.settled), default=0.0)
 
     def _scattered(self, x: Array, y: Array) -> Pixels:
-        """Points that lie anywhere, as a curve from one to the next."""
+        """Points that lie anywhere."""
         assert self.charted is not None
-        table = self.charted.table(x, y)
-
-        def rows(value: Array) -> Array:
-            before = np.clip(np.floor(value).astype(int), 0, max(len(table) - 2, 0))
-            share = (value - before)[:, None]
-            return np.asarray(table[before] * (1 - share) + table[np.minimum(before + 1, len(table) - 1)] * share)
-
-        balance = self.charted.unexcited.balance.along(rows)
-        curve = SteadyStateCurve(balance, (0.0, float(len(table) - 1)), self.charted.by_speed)
-        return _pixels(curve, np.arange(len(table), dtype=float))
+        balance, table = self.charted.unexcited.balance, self.charted.table(x, y)
+        found = pixels_of_rows(balance, table, self.charted.by_speed)
+        return Pixels(found.radius, found.error, found.critical, found.verdict)
 
 
 def _pixels(curve: SteadyStateCurve, values: Array) -> Pixels:

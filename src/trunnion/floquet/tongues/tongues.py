@@ -56,6 +56,7 @@ def tongues(
     speed: float | str | None = None,
     rows: int = ROWS,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Tongues:
@@ -69,11 +70,13 @@ def tongues(
     speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
     rows : values of y searched to begin with, more where tongues are born, close or meet.
     statically_twisted : as in ``stability``.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     threads : default one per core.
     progress : called as progress(share done).
 
     Up to three unknowns every row is searched completely: every change of stability is a zero of one of three analytic
-    functions, and their zeros on a row are all found. Longer lines are sampled. ``search`` in the result says which.
+    functions, and their zeros on a row are all found. Longer lines are sampled, and so are those that are judged about
+    their own motion. ``search`` in the result says which.
 
     Raises
     ------
@@ -90,7 +93,7 @@ def tongues(
     """
     if isinstance(rows, bool) or not isinstance(rows, int | np.integer) or rows < 3:
         raise InputError("must be a whole number, 3 or more", key="rows", value=rows)
-    task = task_of(line, x, y, speed, statically_twisted, "tongues")
+    task = task_of(line, x, y, speed, statically_twisted, "tongues", about_steady_state=about_steady_state)
     workers, report_progress = threads or os.cpu_count() or 1, progress or (lambda share: None)
     if task.family.analytic:
         region = patched(
@@ -163,13 +166,15 @@ def task_of(
     speed: float | str | None,
     twisted: bool,
     analysis: str,
+    *,
+    about_steady_state: bool = False,
 ) -> Task:
     """What is to be searched, checked; ranges are ``(parameter, low, high)``."""
     for key, request in (("x", x), ("y", y)):
         if isinstance(request, str) or not isinstance(request, Sequence) or len(request) != 3:
             remedy = f'write {key}=("speed", 10, 200)'
             raise InputError("must be (parameter, low, high)", key=key, value=request, remedy=remedy)
-    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis)
+    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis, about_steady_state=about_steady_state)
 
 
 def rows_in_words(region: Region, apart: str) -> str:
