@@ -67,7 +67,8 @@ class Pair:
         return np.concatenate([v, [first, (s * two - one) / j[1], (-two - self.load - self.viscous * v[2]) / j[2]]])
 
     def radius(self) -> float:
-        """Largest multiplier of the motion over half a turn but that of a shift in time."""
+        """Largest multiplier of the motion over half a turn but that of a shift in time, and of the speed where no torque
+        depends on it."""
         period = np.pi / self.speed
         own = slice(1, 3) if self.driven else slice(0, 3)
         places = np.r_[np.arange(3)[own], 3 + np.arange(3)[own]]
@@ -112,7 +113,7 @@ class Pair:
         n = len(places)
         matrix = ((end[:, :n] - end[:, n:])[places] / (2 * step)).astype(float)
         values = np.linalg.eigvals(matrix)
-        if not self.driven:
+        for _ in range(0 if self.driven else 1 if self.viscous else 2):
             values = np.delete(values, np.abs(values - 1).argmin())
         return float(np.abs(values).max())
 
@@ -121,7 +122,11 @@ def agrees(pair: Pair, chart: tn.StabilityChart, points: list[tuple[int, int]], 
     """``at``: which field of ``Pair`` y is."""
     period = chart.period / np.pi
     for row, column in points:
-        own = {"angle": lambda y: {"angles": (pair.angles[0], y)}, "load": lambda y: {"load": y}}[at["y"]]
+        own = {
+            "angle": lambda y: {"angles": (pair.angles[0], y)},
+            "load": lambda y: {"load": y},
+            "viscous": lambda y: {"viscous": y},
+        }[at["y"]]
         one = Pair(**{**vars(pair), "speed": float(chart.x[column]), **own(float(chart.y[row]))})
         true = one.radius() ** period
         off = abs(chart.spectral_radius[row, column] - true)
@@ -140,6 +145,13 @@ def test_a_free_line_over_speed_and_angle() -> None:
     assert here.spectral_radius == pytest.approx(one.radius() ** (chart.period / np.pi), abs=here.error_estimate + 3e-7)
     assert np.abs(here.multipliers - 1).min() == 0  # the shift in time
     assert "own periodic motion" in str(chart)
+
+
+def test_a_load_by_speed_that_comes_to_nothing() -> None:
+    """There the speed changes without end, which is no disturbance; elsewhere it counts."""
+    pair = Pair(False, 80.0, (0.3, 0.2), viscous=0.5)
+    chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 3), ("Disk 3.viscous_load", 0.0, 0.4, 3))
+    agrees(pair, chart, [(0, 0), (0, 1), (1, 1), (2, 2)], y="viscous")
 
 
 def test_a_driven_line_whose_load_twists_it_far() -> None:

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -102,17 +101,10 @@ class SteadyStateChart:
         self.y.columns.put(table, y)
         return table
 
-    @cached_property
-    def by_speed(self) -> bool:
-        """Whether any torque depends on the speed anywhere on the chart."""
-        table = self.table(*(part.ravel() for part in np.meshgrid(self.x.values, self.y.values)))
-        co = self.unexcited.balance.line.untwisted(table)
-        return self.unexcited.by_speed or bool(co.viscous.any() or co.quadratic.any())
-
     def curve(self, y: float) -> SteadyStateCurve:
         """The motions of one row, of which nothing is known yet."""
         balance = self.unexcited.balance.along(lambda value: self.table(value, np.full(len(value), y)))
-        return SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])), self.by_speed)
+        return SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])))
 
     def row(self, x: Array, y: float) -> SteadyStateRow:
         """The motions and multipliers at ``x`` (points,), rising, of one row."""

@@ -89,7 +89,7 @@ class SteadyStateFamily(LineFamily):
         """Points that lie anywhere."""
         assert self.charted is not None
         balance, table = self.charted.unexcited.balance, self.charted.table(x, y)
-        found = pixels_of_rows(balance, table, self.charted.by_speed)
+        found = pixels_of_rows(balance, table)
         return Pixels(found.radius, found.error, found.critical, found.verdict)
 
 

@@ -49,11 +49,9 @@ def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) ->
     return SteadyStateMultipliers(radius, error, critical, code.astype(np.int8), matrix)
 
 
-def pixels_of_rows(
-    balance: FreeBalance, table: Array, by_speed: bool, *, tolerance: float = 1e-9
-) -> SteadyStateMultipliers:
+def pixels_of_rows(balance: FreeBalance, table: Array, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
     """Of lines that lie anywhere, rows of packed numbers (line, column): about the motion that rigid shafts lead to,
-    else that of a line nearby in the table. ``by_speed``: whether any torque depends on the speed.
+    else that of a line nearby in the table.
 
     Critical multipliers are those with a positive imaginary part.
     """
@@ -64,6 +62,6 @@ def pixels_of_rows(
         share = (value - before)[:, None]
         return np.asarray(table[before] * (1 - share) + table[np.minimum(before + 1, len(table) - 1)] * share)
 
-    curve = SteadyStateCurve(balance.along(rows), (0.0, float(len(table) - 1)), by_speed)
+    curve = SteadyStateCurve(balance.along(rows), (0.0, float(len(table) - 1)))
     found = multipliers_about(slopes_along(curve, np.arange(len(table), dtype=float)), tolerance=tolerance)
     return replace(found, critical=np.where(found.critical.imag < 0, found.critical.conj(), found.critical))

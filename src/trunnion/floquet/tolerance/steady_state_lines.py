@@ -69,7 +69,7 @@ def lines_like(assembly: Assembly, table: Array, twisted: bool, threads: int) ->
     columns, own = (np.array([pair[i] for pair in shared], dtype=np.intp) for i in (0, 1))
 
     def pixels(rows: Array, tolerance: float) -> Pixels:
-        found = pixels_of_rows(solved.balance, rows, solved.by_speed, tolerance=tolerance)
+        found = pixels_of_rows(solved.balance, rows, tolerance=tolerance)
         return Pixels(found.radius, found.error, found.critical, found.verdict)
 
     return SteadyStateLines(assembly, twisted, threads, pixels, columns, own, solved.unexcited)
