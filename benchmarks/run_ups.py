@@ -3,7 +3,8 @@
     PYTHONPATH=src python benchmarks/run_ups.py [RUNS] [PROCESSES]
 
 Prints the processor time of one run by tolerance, and what 10 000 take in so many processes, taken from RUNS of them
-with angles and stiffnesses at random. The numbers of the last run stand in ``benchmarks/README.md``.
+with angles and stiffnesses at random; then what a map of 10 000 run-ups takes, whose cells keep no motion, as
+``capture_map_cost`` says. The numbers of the last run stand in ``benchmarks/README.md``.
 """
 
 from __future__ import annotations
@@ -67,3 +68,6 @@ if __name__ == "__main__":
             wall = time.monotonic() - begin
         print(f"  {ALL} of them: {ALL * wall / count / 60:.1f} min in {processes} processes on this machine as loaded, "
               f"{ALL * used / count / processes / 60:.1f} min by processor time")  # fmt: skip
+    angles, stiffnesses = ("HookeJoint 1.angle", 0.05, 0.2, 100), ("front.stiffness", 1e4, 3e4, 100)
+    for phases in (1, 8):
+        print(tn.capture_map_cost(line(), (5.0, 138.0), angles, stiffnesses, phases=phases, sample=40, processes=2))

@@ -139,6 +139,8 @@ from trunnion.motion.orbits.periodic_response import periodic_response as period
 from trunnion.motion.orbits.sweep import rattle_index as rattle_index
 from trunnion.motion.orbits.sweep import sweep as sweep
 from trunnion.motion.passing.capture_map import capture_map as capture_map
+from trunnion.motion.passing.capture_map_cost import capture_map_cost as capture_map_cost
+from trunnion.motion.passing.least_acceleration import least_acceleration as least_acceleration
 from trunnion.motion.passing.least_drive import least_drive as least_drive
 from trunnion.motion.passing.passing import passing as passing
 from trunnion.motion.passing.run_up import run_up as run_up

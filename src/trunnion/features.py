@@ -403,6 +403,8 @@ NOT_ANALYSES = {
     "damper_optimum": "closed forms for one mode of natural_frequencies, which says what is left out",
     "capture_map": "passing over two parameters, which counts, refuses and says the same",
     "passing": "transient of a free–free line until it has a speed, which counts, refuses and says the same",
+    "capture_map_cost": "asks passing at a few cells of a map, and multiplies",
+    "least_acceleration": "passing over accelerations, which counts, refuses and says the same",
     "least_drive": "passing over factors of the torque, which counts, refuses and says the same",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",

@@ -281,6 +281,14 @@ ANALYSES = (
         "The least factor of the drive torque with which a line passes its resonances.",
     ),
     Analysis(
+        "least_acceleration",
+        "The least acceleration with which a line passes its resonances.",
+    ),
+    Analysis(
+        "capture_map_cost",
+        "How long a map of captures will take, and how much it will hold.",
+    ),
+    Analysis(
         "capture_map",
         "From which share of its starting phases a line is captured by a resonance, over two parameters.",
         pictures={"CaptureMap.plot": "trunnion.pictures.transients:capture_map"},

@@ -902,7 +902,7 @@ PYTHON = [
         lambda: tn.capture_map(
             free(), (5.0, 9.0), ("factor", 1.0, 2.0, 9_000), ("pump.inertia", 1.0, 2.0, 9_000), torque=[torque(**KLOSS)]
         ),
-        "y = 9000: would need 302 GB of memory",
+        "y = 9000: would need 12.1 GB of memory",
         "ask for fewer values of x or y",
     ),
     (lambda: tn.Scenario(name="a", duration=1, per_hour=0), "scenario a.per_hour = 0: must be positive", "write 0.5"),
@@ -1060,6 +1060,37 @@ PYTHON = [
         lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], factors=(2.0, 1.0)),
         "factors = [2.0, 1.0]: must be two rising positive numbers",
         "(0.5, 2.0)",
+    ),
+    (
+        lambda: tn.least_acceleration(free(), (5.0, 9.0), (2.0, 1.0), drive="pump"),
+        "accelerations = [2.0, 1.0]: must be two rising positive numbers",
+        "(0.5, 2.0)",
+    ),
+    (
+        lambda: tn.least_acceleration(free(), (5.0, 9.0), (1.0, 2.0), drive="pumpe"),
+        "drive = 'pumpe': is no disk of this line",
+        "it has",
+    ),
+    (
+        lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], around=20_000),
+        "around = 20000: are too many",
+        "at most 10000",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), torque=[torque(**KLOSS)],
+            store=__file__,
+        ),
+        "is no folder",
+        "name a new folder",
+    ),
+    (
+        lambda: tn.capture_map(
+            free(), (5.0, 9.0), ("pump.inertia", 1.0, 2.0, 2), ("factor", 1.0, 2.0, 2), store="never made",
+            torque=[tn.TorqueFunction(on="pump", function=lambda t, speed, angle: 1.0, until=1.0)],
+        ),
+        "torque on pump.store: is a function",
+        "write a formula",
     ),
     (
         lambda: tn.least_drive(free(), (5.0, 9.0), torque=[torque(**KLOSS)], accuracy=0.0),

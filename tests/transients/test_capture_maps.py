@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -78,11 +79,15 @@ def test_what_was_computed_is_kept() -> None:
 
 
 def test_the_least_torque_against_a_readers_own_equations() -> None:
-    found = tn.least_drive(bent(0.16), ENDS, torque=weak(2.5), factors=(0.8, 6.0), points=3, accuracy=0.1, phases=[0.5])
+    found = tn.least_drive(
+        bent(0.16), ENDS, torque=weak(2.5), factors=(0.8, 6.0), points=3, accuracy=0.1, around=3, phases=[0.5]
+    )
     assert found.outcome.kind == "found" and 1 < found.least / found.below <= 1.1
     for one in found.trials:
         known = np.mean([not by_hand(0.16, one.factor, phase) for phase in found.phases])
         assert one.share == known, one.factor
+    assert found.nature is not None and found.nature.kind == "one edge" and len(found.band) == 3
+    assert "the boundary is one edge" in str(found) and found.data.attrs["boundary"] == "one edge"
     assert "passes from 1 starting phase" in str(found) and "nothing was run between" in str(found)
 
 
@@ -107,3 +112,54 @@ def test_the_command(tmp_path: Path) -> None:
     assert (tmp_path / "map.png").stat().st_size > 10_000
     wrong = CliRunner().invoke(app, [*asked, "--y", "factor:1"])
     assert wrong.exit_code == 2 and "is no range of factors" in wrong.output
+
+
+def _small(store: Path, **more: object) -> CaptureMap:
+    asked: dict[str, object] = {"torque": weak(2.5), "phases": 1, "store": store, **more}
+    return tn.capture_map(bent(), ENDS, (*ANGLES[:3], 4), ("factor", 1.0, 3.0, 3), **asked)  # type: ignore[arg-type]
+
+
+def test_a_stopped_map_goes_on_from_its_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from trunnion.motion.passing import map_store
+    from trunnion.motion.passing.trials import Trials
+
+    monkeypatch.setattr(map_store, "PIECE", 5)
+    folder, asked = tmp_path / "map", []
+    kinds = Trials.kinds
+    monkeypatch.setattr(Trials, "kinds", lambda self, point: (asked.append(dict(point)), kinds(self, point))[1])
+    with tn.time_limit() as limit:
+        part = _small(folder, progress=lambda share: limit.stop() if share > 0.5 else None)
+    assert part.computed.sum() == 7 and len(list(folder.glob("piece-*.npy"))) == 2
+    whole = _small(folder)
+    assert whole.computed.all() and len(asked) <= 12 + 1 and not [*folder.glob(".*")]
+    once = _small(tmp_path / "once")
+    assert np.array_equal(whole.share, once.share)
+    count = len(asked)
+    assert np.array_equal(_small(folder).share, once.share) and len(asked) == count  # nothing is computed again
+    (folder / "piece-0000001.npy").write_bytes(b"rubbish")
+    with pytest.raises(tn.InputError, match="is damaged; remove this file"):
+        _small(folder)
+    with pytest.raises(tn.InputError, match="holds another map: it differs in torque"):
+        _small(folder, torque=weak(2.6))
+    with pytest.raises(tn.InputError, match="holds something else"):
+        _small(tmp_path)
+
+
+def test_a_million_cells_are_planned() -> None:
+    million = ("HookeJoint 1.angle", 0.05, 0.2, 1000), ("factor", 2.0, 9.0, 1000)
+    cost = tn.capture_map_cost(bent(), ENDS, *million, torque=weak(2.5), phases=1, sample=3, processes=2)
+    assert cost.cells == cost.run_ups == 1_000_000 and cost.timed == 3
+    assert cost.elapsed == cost.seconds / 2 and cost.seconds > 1e3 and cost.memory < 1e9
+    assert "1 000 000 cells, 1 000 000 run-ups" in str(cost) and "in 2 processes" in str(cost)
+
+
+def test_a_map_says_how_its_boundary_lies() -> None:
+    share = np.array([[0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0], [0.0, 0.25, np.nan, 1.0]])
+    one = tn.capture_map(bent(), ENDS, (*ANGLES[:3], 2), ("factor", 5.0, 8.0, 2), torque=weak(2.5), phases=2)
+    x, y = np.linspace(0.1, 0.2, 4), np.linspace(1, 3, 3)
+    made = dataclasses.replace(
+        one, x=x, y=y, share=share, undecided=np.zeros((3, 4)), short=share > 2, computed=np.isfinite(share)
+    )
+    assert made.changes[0].tolist() == [3, 1, 1] and made.changes[1].tolist() == [0, 1, 1, 0]
+    assert "more than once in 1 of 3 rows along angle of HookeJoint 1" in str(made)
+    assert "the phase decides in 1 cell" in str(made)

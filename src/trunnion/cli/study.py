@@ -190,7 +190,7 @@ def _say_sensitivities(found: Study) -> None:
 
 
 def _status(store: str, as_json: bool) -> None:
-    from trunnion.studies.cost import in_time
+    from trunnion.results.durations import time_text
     from trunnion.studies.store import Store
 
     opened = Store.open(Path(store))
@@ -203,7 +203,7 @@ def _status(store: str, as_json: bool) -> None:
     output.say(f"{opened.question.analysis} in {store}: {counts.points} points, {counts.done} done, {counts.failed} "
                f"failed, {counts.missing} missing")  # fmt: skip
     if counts.seconds:
-        output.say(f"  {in_time(counts.seconds)} of computing so far")
+        output.say(f"  {time_text(counts.seconds)} of computing so far")
     for sentence, count in counts.reasons:
         output.say(f"  failed at {count}: {sentence}")
 
@@ -252,11 +252,11 @@ def _reported(within: float | None) -> Iterator[Callable[[StudyProgress], None]]
 def progress_line(state: Any) -> str:
     """One line about how far a study is."""
     from trunnion.numerics.memory import size_text
-    from trunnion.studies.cost import in_time
+    from trunnion.results.durations import time_text
 
     parts = [f"study: {100 * state.share:.1f} %", f"{state.rate:.3g} points/s"]
     if state.left < float("inf"):
-        parts.append(f"about {in_time(max(state.left, 1.0))} left")
+        parts.append(f"about {time_text(max(state.left, 1.0))} left")
     if state.failed:
         parts.append(f"{state.failed} failed")
     if held := state.bytes:

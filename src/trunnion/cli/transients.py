@@ -111,6 +111,10 @@ def capture_map(
     drive: str = "",
     phases: Annotated[int, NumberBounds(1)] = 8,
     processes: Annotated[int, NumberBounds(1)] = 1,
+    store: str = "",
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Compute a few cells alone, and say how long all would take.")
+    ] = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -124,10 +128,18 @@ def capture_map(
     --drive DISK  Whose torque the factor scales, where torques act on several.
     --phases  Starting phases of every cell.
     --processes  That compute.
+    --store FOLDER  Where cells are written in pieces, and from where it goes on.
     """
+    acting, driver = _acting(line, scenario), drive or None
+    if dry_run:
+        return CommandOutput(
+            tn.capture_map_cost(
+                line, (from_, to), x, y, scenario=acting, drive=driver, phases=phases, processes=processes
+            )
+        )
     found = tn.capture_map(
-        line, (from_, to), x, y, scenario=_acting(line, scenario), drive=drive or None,
-        phases=phases, processes=processes, progress=progress,
+        line, (from_, to), x, y, scenario=acting, drive=driver, phases=phases, processes=processes,
+        store=store or None, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit), outcome=found.outcome)
 

@@ -115,8 +115,24 @@ class PlacedTorque:
         since, until = self.stated.since, self.stated.until
         return (since is None or pieces[0] >= 0) and (until is None or pieces[0] < len(self.axes[0].knots) - 1)
 
+    @cached_property
+    def _rows(self) -> dict[tuple[int, ...], Array]:
+        """Rows of pieces that were asked for."""
+        return {}
+
+    @cached_property
+    def _cells(self) -> dict[tuple[int, ...], TorquePiece]:
+        """Pieces that were asked for."""
+        return {}
+
     def cell(self, pieces: Sequence[int]) -> TorquePiece:
         """The polynomials of a piece of every axis; of what is a formula or a function, where it does not act."""
+        known = tuple(pieces)
+        if known not in self._cells:
+            self._cells[known] = self._cell(known)
+        return self._cells[known]
+
+    def _cell(self, pieces: Sequence[int]) -> TorquePiece:
         if self.stated.by_program:
             return TorquePiece(0.0, 0.0, np.zeros((POWERS, POWERS)), _one())
         if self.stated.is_motor:
@@ -187,11 +203,10 @@ class PlacedTorque:
             if self.called is not None:
                 return self.called.value(time, speed, angle)
             return float(line_kernel().formula(self.program, 0, time, speed, angle, -1)[0])
-        cell = self.cell([axis.piece(given[axis.variable]) for axis in self.axes])
-        u = given[self.first] - cell.first
-        v = given[self.second] - cell.second
-        powers = np.arange(POWERS)
-        return float(u**powers @ cell.above @ v**powers / (v**powers @ cell.below))
+        pieces = tuple(axis.piece(given[axis.variable]) for axis in self.axes)
+        if pieces not in self._rows:
+            self._rows[pieces] = self.row(pieces)
+        return float(line_kernel().applied(self._rows[pieces], 0, time, angle, speed)[0])
 
     @property
     def first(self) -> str:

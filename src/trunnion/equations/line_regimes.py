@@ -56,6 +56,16 @@ def watch_kernel() -> ModuleType:
     )
 
 
+@cache
+def passage_kernel() -> ModuleType:
+    """The compiled stretches of passages, of which nothing is kept but where the line stands."""
+    here = Path(__file__)
+    integration = here.parents[1] / "numerics" / "integration" / "integration_kernel.py"
+    return kernel_file(
+        str(here.with_name("passage_kernel.py")), str(integration), str(here.with_name("line_kernel.py"))
+    )
+
+
 def released_kernel() -> ModuleType:
     """The compiled right-hand side of lines with slip clutches and pendulums, what switches there, and what observes
     them."""

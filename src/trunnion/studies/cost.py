@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.numerics.memory import size_text
 from trunnion.results.counts import counted
+from trunnion.results.durations import time_text
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.result import Result
 from trunnion.studies.description import StudyPlan
@@ -55,10 +56,14 @@ class StudyCost(Result):
     def _lines(self) -> Iterator[str]:
         where = f"{counted(self.blocks, 'block')}, {counted(self.shards, 'shard')}"
         yield f"{counted(self.points, 'point')}{in_axes(self.shape)} in {where}"
-        how = "by the compiled batch" if self.batched else f"{in_time(self.least)} to {in_time(self.most)}, one by one"
-        yield f"  {in_time(self.seconds_a_point)} a point ({how}; {self.timed} timed)"
+        how = (
+            "by the compiled batch"
+            if self.batched
+            else f"{time_text(self.least)} to {time_text(self.most)}, one by one"
+        )
+        yield f"  {time_text(self.seconds_a_point)} a point ({how}; {self.timed} timed)"
         on = counted(self.workers, "worker")
-        yield f"  {in_time(self.seconds)} of processor time, about {in_time(self.elapsed)} on {on}"
+        yield f"  {time_text(self.seconds)} of processor time, about {time_text(self.elapsed)} on {on}"
         yield f"  at most {size_text(self.bytes)} in the store"
 
 
@@ -92,11 +97,3 @@ def cost_of(plan: StudyPlan, workers: int) -> StudyCost:
         least=min(taken), most=max(taken), timed=timed, batched=question.batched, bytes=design.size * each,
         workers=workers, shape=design.shape,
     )  # fmt: skip
-
-
-def in_time(seconds: float) -> str:
-    """A time in a unit that suits it."""
-    for unit, size in (("d", 86400.0), ("h", 3600.0), ("min", 60.0), ("s", 1.0), ("ms", 1e-3)):
-        if seconds >= size:
-            return f"{seconds / size:.3g} {unit}"
-    return f"{seconds * 1e6:.3g} µs"

@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from multiprocessing import get_context
-from typing import TypeAlias
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
-from trunnion.driveline.arguments import one_number, whole_number
+from trunnion.driveline.arguments import whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.parameters import SPEED, pack
+from trunnion.driveline.parameters import pack
 from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.coefficients import Assembly
-from trunnion.errors import InputError
-from trunnion.motion.passing.start import ends_of, lasting
-from trunnion.motion.passing.trials import FACTOR, Trials, passes, trials_of
-from trunnion.numerics.memory import require_memory
+from trunnion.motion.passing.map_cells import KINDS, UNKNOWN, MapRequest, Request, computed_cells, map_request
+from trunnion.motion.passing.map_store import MapStore
+from trunnion.motion.passing.trials import FACTOR
+from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.outcome import Outcome
@@ -30,11 +28,6 @@ from trunnion.results.result import Result
 from trunnion.results.speeds import rounded_speed
 from trunnion.results.variables import Attribute, Variable
 from trunnion.waiting import keeps_time, time_is_up
-
-Request: TypeAlias = tuple[str, float, float, int]
-BYTES_A_CELL = 4000
-"""Of a cell while it waits, about."""
-SHORT = "short of torque"
 
 
 @labelled
@@ -63,12 +56,20 @@ class CaptureMap(Result):
         known to the size of a cell, ``cell``."""
         half, known = self.share >= 0.5, np.isfinite(self.share)
         across, up = _edges(self.x), _edges(self.y)
-        pieces = []
-        for j, i in zip(*np.nonzero((half[:, 1:] != half[:, :-1]) & known[:, 1:] & known[:, :-1]), strict=True):
-            pieces.append([(across[i + 1], up[j]), (across[i + 1], up[j + 1])])
-        for j, i in zip(*np.nonzero((half[1:] != half[:-1]) & known[1:] & known[:-1]), strict=True):
-            pieces.append([(across[i], up[j + 1]), (across[i + 1], up[j + 1])])
-        return np.array(pieces, dtype=float).reshape(-1, 2, 2)
+        j, i = np.nonzero((half[:, 1:] != half[:, :-1]) & known[:, 1:] & known[:, :-1])
+        beside = np.stack([across[i + 1], up[j], across[i + 1], up[j + 1]], axis=1)
+        j, i = np.nonzero((half[1:] != half[:-1]) & known[1:] & known[:-1])
+        above = np.stack([across[i], up[j + 1], across[i + 1], up[j + 1]], axis=1)
+        return np.concatenate([beside, above]).reshape(-1, 2, 2)
+
+    @property
+    def changes(self) -> tuple[Integers, Integers]:
+        """How often the share crosses one half along each row (y,) and along each column (x,), cells that are not known
+        left out: more than once is a boundary that folds back, or slivers."""
+        half, known = self.share >= 0.5, np.isfinite(self.share)
+        rows = [_turns(one[seen]) for one, seen in zip(half, known, strict=True)]
+        columns = [_turns(one[seen]) for one, seen in zip(half.T, known.T, strict=True)]
+        return np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64)
 
     @property
     def cell(self) -> tuple[float, float]:
@@ -117,12 +118,24 @@ class CaptureMap(Result):
         if len(self.boundary):
             wide, high = (axis.number(size, 3) for axis, size in zip(self.axes, self.cell, strict=True))
             yield f"  the boundary at one half is known to a cell, {wide} by {high}"
+            yield f"  {self._nature()}"
         if self.short.any():
             yield f"  short of torque without any resonance in {int(self.short.sum())} cells"
         if self.undecided.any():
             yield f"  some phases are undecided in {int((self.undecided > 0).sum())} cells, and left out there"
         if self.stopped:
             yield f"  {self.outcome}"
+
+    def _nature(self) -> str:
+        """How the boundary lies, as far as cells tell."""
+        words = []
+        for axis, changes, lines in zip(self.axes, self.changes, ("rows", "columns"), strict=True):
+            folds = int((changes > 1).sum())
+            what = "at most once" if not folds else f"more than once in {folds} of {len(changes)} {lines}"
+            words.append(f"{what} along {axis.quantity}")
+        mixed = int(((self.share > 0) & (self.share < 1)).sum())
+        phases = f"; the phase decides in {counted(mixed, 'cell')}" if len(self.phases) > 1 else ""
+        return f"it is crossed {words[0]} and {words[1]}{phases}; strips narrower than a cell are not seen"
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Share captured in colour, and the boundary at one half; see ``pictures.transients``."""
@@ -141,8 +154,9 @@ def capture_map(
     scenario: Scenario | str | None = None,
     drive: str | None = None,
     phases: int | ArrayLike = 8,
-    tolerance: float = 1e-9,
+    tolerance: float = 1e-6,
     processes: int = 1,
+    store: str | Path | None = None,
     within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> CaptureMap:
@@ -159,8 +173,10 @@ def capture_map(
     drive : name of the disk whose torques the factor scales; by default the one that torques act on, or the
         line's Motor.
     phases : how many starting phases, even over half a turn and every other one half a turn on; or angles [rad].
-    tolerance : error allowed per step.
+    tolerance : error allowed per step of the finer of two runs that must end alike; the other has thirty times as much.
     processes : that compute. More than one need ``if __name__ == "__main__":`` in a script.
+    store : folder that the cells are written to in pieces, while they are computed; where it holds some of this map
+        already, only the others are computed. ``capture_map_cost`` says beforehand how long a map takes.
     within : seconds of computing after which it ends with the cells that it has, which lie all over the map.
     progress : called as progress(share done).
 
@@ -170,7 +186,7 @@ def capture_map(
 
     Raises
     ------
-    InputError : no such parameter; a wrong count or range; what ``passing`` refuses.
+    InputError : no such parameter; a wrong count or range; what ``passing`` refuses; a store that holds another map.
 
     Examples
     --------
@@ -183,102 +199,47 @@ def capture_map(
     array([[0., 1.],
            [0., 0.]])
     """
-    trials = trials_of(line, ends_of(speeds), lasting(line, torque, friction, scenario), drive, phases, tolerance)
-    columns, rows = _values(trials.line, "x", x), _values(trials.line, "y", y)
-    if x[0] == y[0]:
-        raise InputError("is varied twice", key="y", value=y[0], remedy="give another parameter")
-    for key, request in (("x", x), ("y", y)):  # what the line refuses, before anything is computed
-        _refused(trials, key, request)
-    require_memory(float(BYTES_A_CELL) * x[3] * y[3], key="y", value=y[3], remedy="ask for fewer values of x or y")
+    asked = map_request(line, speeds, x, y, (torque, friction, scenario), drive, phases, tolerance)
     whole_number(processes, "processes", 1)
-    points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
-    found: list[list[str] | None] = [None] * len(points)
-    report_progress = progress or (lambda share: None)
-    for done, (place, kinds) in enumerate(_ended(trials, points, processes), start=1):
-        found[place] = kinds
-        report_progress(done / len(points))
-    stopped = time_is_up() if None in found else ""
-    shape = (len(rows), len(columns))
-    share, undecided, short = (
-        np.array([measure(one) for one in found]).reshape(shape) for measure in (_share, _undecided, _short)
-    )
-    units = tuple("1" if one[0] == FACTOR else pack(trials.line).resolve_axis(one[0]).unit for one in (x, y))
+    kept = None if store is None else MapStore(store, asked)
+    counts = np.full((asked.cells, len(KINDS)), UNKNOWN, dtype=np.int64) if kept is None else kept.counts()
+    report_progress, done = progress or (lambda share: None), int((counts[:, 0] != UNKNOWN).sum())
+    report_progress(done / asked.cells)
+    try:
+        for place, found in computed_cells(asked, counts, processes):
+            counts[place] = found
+            done += 1
+            if kept is not None:
+                kept.note(place, counts)
+            report_progress(done / asked.cells)
+    finally:
+        if kept is not None:
+            kept.write(counts)
+    stopped = time_is_up() if done < asked.cells else ""
+    return _map_of(asked, counts, stopped)
+
+
+def _map_of(asked: MapRequest, counts: Integers, stopped: str) -> CaptureMap:
+    trials, shape = asked.trials, (len(asked.y), len(asked.x))
+    known = counts[:, 0] != UNKNOWN
+    passed, captured, short, undecided = (np.where(known, counts[:, k], 0) for k in range(len(KINDS)))
+    decided, every = passed + captured, np.maximum(counts.sum(axis=1), 1)
+    share = np.divide(captured, decided, where=decided > 0, out=np.full(len(counts), np.nan))
+    units = tuple("1" if one == FACTOR else pack(trials.line).resolve_axis(one).unit for one in asked.parameters)
     return CaptureMap(
-        parameters=(x[0], y[0]), units=(units[0], units[1]), x=columns, y=rows, share=share, undecided=undecided,
-        short=short.astype(bool), computed=np.array([one is not None for one in found]).reshape(shape),
-        phases=trials.phases, first=trials.first, last=trials.last, drive=trials.drive, tolerance=tolerance,
+        parameters=asked.parameters, units=(units[0], units[1]), x=asked.x, y=asked.y, share=share.reshape(shape),
+        undecided=(undecided / every).reshape(shape), short=(short > 0).reshape(shape), computed=known.reshape(shape),
+        phases=trials.phases, first=trials.first, last=trials.last, drive=trials.drive, tolerance=trials.tolerance,
         stopped=stopped, unit=speed_unit(trials.line),
     )  # fmt: skip
-
-
-def _ended(trials: Trials, points: list[dict[str, float]], processes: int) -> Iterator[tuple[int, list[str]]]:
-    """Cells as they come, in an order that soon lies all over the map; none that the time limit cut short."""
-    order = np.random.default_rng(0).permutation(len(points)).tolist()
-    if processes == 1:
-        for place in order:
-            if time_is_up():
-                return
-            kinds = trials.kinds(points[place])
-            if time_is_up():
-                return
-            yield place, kinds
-        return
-    # Most of the work is done under the interpreter's lock, so that threads would wait for each other.
-    with ProcessPoolExecutor(processes, get_context("spawn")) as pool:
-        waiting = {pool.submit(trials.kinds, points[place]): place for place in order}
-        try:
-            for one in as_completed(waiting):
-                yield waiting[one], one.result()
-                if time_is_up():
-                    return
-        finally:
-            pool.shutdown(wait=True, cancel_futures=True)
-
-
-def _share(kinds: list[str] | None) -> float:
-    decided = [kind for kind in kinds or () if kind not in ("undecided", SHORT)]
-    return 1 - passes(decided) / len(decided) if decided else np.nan
-
-
-def _undecided(kinds: list[str] | None) -> float:
-    return kinds.count("undecided") / len(kinds) if kinds else 0.0
-
-
-def _short(kinds: list[str] | None) -> bool:
-    return SHORT in (kinds or ())
-
-
-def _values(line: Driveline, key: str, request: Request) -> Array:
-    """Rising values (m,) of a parameter of the map."""
-    remedy = '("HookeJoint 1.angle", 0.1, 0.3, 12), say'
-    if not isinstance(request, tuple | list) or len(request) != 4 or not isinstance(request[0], str):
-        raise InputError("must be a parameter, its first and last value and how many", key=key, remedy=remedy)
-    path, low, high, count = request
-    if path == SPEED:
-        raise InputError("is what the line runs through", key=key, value=path, remedy="vary another parameter")
-    if path != FACTOR:
-        pack(line).resolve_axis(path)
-    ends = one_number(low, key, remedy), one_number(high, key, remedy)
-    if not (np.all(np.isfinite(ends)) and ends[0] < ends[1]) or (path == FACTOR and ends[0] <= 0):
-        what = "must rise" if path != FACTOR else "must rise from above 0"
-        raise InputError(what, key=key, value=list(request), remedy=remedy)
-    whole_number(count, key, 2)
-    require_memory(float(BYTES_A_CELL) * count, key=key, value=count, remedy="ask for fewer values")
-    return np.linspace(*ends, count)
-
-
-def _refused(trials: Trials, key: str, request: Request) -> None:
-    path = request[0]
-    if path == FACTOR:
-        return
-    packed = pack(trials.line)
-    for end in request[1:3]:
-        table = packed.table(1)
-        packed.resolve_axis(path).put(table, end)
-        packed.line_at(table[0])
 
 
 def _edges(values: Array) -> Array:
     """Edges of cells about even values."""
     half = (values[1] - values[0]) / 2
     return np.append(values - half, values[-1] + half)
+
+
+def _turns(half: Flags) -> int:
+    """How often it changes."""
+    return int((half[1:] != half[:-1]).sum())

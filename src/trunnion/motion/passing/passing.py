@@ -30,13 +30,14 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.passing.passing_result import Passing, PassingEnd
+from trunnion.motion.passing.quick_passage import LOOKS, QuickPassage, is_quick
 from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.passing.start import begun_line, ends_of, lasting
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.strongest_order import strongest_order
-from trunnion.motion.transients.prepare import Actions, follow, require_begun
+from trunnion.motion.transients.prepare import Actions, follow, require_begun, stepper_of
 from trunnion.motion.transients.result import Transient
-from trunnion.motion.transients.stepping import Place
+from trunnion.motion.transients.stepping import Place, Stepper
 from trunnion.numerics.integration.integration import MOST_STEPS
 from trunnion.steady.shooting.integration_outcomes import OUT_OF_TIME
 from trunnion.waiting import keeps_time, time_is_up
@@ -45,14 +46,14 @@ DWELT = 3.0
 """Times the rigid line's time beyond which a line has dwelt."""
 FEWEST_TURNS, DECAYS, SHARE = 40, 4.0, 0.1
 """Of a stretch: turns at the speed it has, times that the slowest mode takes to decay by e, and rigid times."""
-LOOKS = 32
-"""Mean speeds in a stretch."""
 FAR = 20.0
 """Rigid times that a captured line would take at the rate at which it still gains speed."""
 STRETCHES = 3
 """The last ones that must all be so."""
 LONGEST = 60.0
 """Rigid times, and as many stretches, after which it is not decided."""
+PLAINLY = 0.3
+"""Share of the rigid line's mean acceleration that a line which passes plainly gains at least, from look to look."""
 LOOSER = 30.0
 """How much looser the tolerance of a second run is, whose ending must be the same."""
 
@@ -119,13 +120,18 @@ def passing(
     return _result(description, made, run, kind, other, tolerance)
 
 
-def passing_kind(
-    prepared: LineSystem, asked: Actions, first: float, last: float, phase: float, rigid: float, tolerance: float
-) -> str:
-    """The kind of ending alone, as ``passing`` has it."""
-    made = _Follower(prepared, asked, first, last, phase, rigid)
-    kind = made.ending(tolerance)[1]
-    return kind if _alike(kind, made.other_kind(kind, tolerance)) else "undecided"
+def passing_kinds(
+    prepared: LineSystem, asked: Actions, first: float, last: float, phases: Array, rigid: float, tolerance: float
+) -> list[str]:
+    """The kinds of ending alone, from every starting phase [rad], each as ``passing`` has it."""
+    made = _Follower(prepared, asked, first, last, 0.0, rigid)
+    found = []
+    for phase in phases:
+        made.phase = float(phase)
+        kind, plainly = made.kind(tolerance)
+        sure = plainly or _alike(kind, made.other_kind(kind, tolerance))
+        found.append(kind if sure else "undecided")
+    return found
 
 
 def _alike(kind: str, other: str) -> bool:
@@ -139,6 +145,7 @@ class _Follower:
         self.line, self.asked, self.first, self.last, self.phase, self.rigid = line, asked, first, last, phase, rigid
         knots = time_knots(placed_torques(line.assembly, asked[0]), placed_frictions(line.assembly, asked[1]))
         self.progress: Callable[[float], None] = lambda way: None
+        self.steppers: dict[float, Stepper] = {}
         self.steady = float(max(knots, default=0.0)) if np.isfinite(rigid) else 0.0
         modes = natural_frequencies(line.assembly)
         self.decay = float(max((1 / (z * w) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if
@@ -148,52 +155,65 @@ class _Follower:
 
     def ending(self, tolerance: float) -> tuple[Transient, str]:
         """The run, and how it ended."""
+        way = _WholeWay(self, tolerance)
+        kind = self._judged(way)
+        assert way.run is not None
+        return way.run, kind
+
+    def kind(self, tolerance: float) -> tuple[str, bool]:
+        """How it ends, without the motion, by compiled stretches where nothing switches; and whether it passes so
+        plainly that no other tolerance could end otherwise.
+
+        Beside the edge of capture the motion comes near the one that neither passes nor is caught, gains nothing there,
+        and leaves it by e in a time that is not shorter than some periods of the mode. From a distance of its error
+        that takes over a dozen of these, which looks of a few turns see.
+        """
+        if tolerance not in self.steppers:
+            self.steppers[tolerance] = stepper_of(self.line, self.asked, tolerance)
+        stepper = self.steppers[tolerance]
+        if is_quick(stepper):
+            way = QuickPassage(stepper, self.start(), self.phase, self.first, self.last, tolerance)
+            if way.fits and (kind := self._judged(way)):
+                usual = (self.last - self.first) / self.rigid
+                return kind, kind == "passed" and way.gained > PLAINLY * usual
+        return self.ending(tolerance)[1], False
+
+    def start(self) -> Array:
+        """The state that it begins with."""
         state = self.line.rest(self.phase)
         if self.first == 0:
             n = self.line.assembly.topology.size
             state[n : 2 * n] = 0.0
-        place = Place(0.0, state, angle=self.phase, speed=self.first)
+        return np.asarray(state)
+
+    def _judged(self, way: _WholeWay | QuickPassage) -> str:
+        """How it ends; "" for what a quick passage cannot follow."""
         stretches: list[tuple[float, float, float]] = []
         unsteady = 0  # stretches in which what acts still changes over time: nothing has settled there
-        run: Transient | None = None
         while True:
             speed = max(abs(float(stretches[-1][1] if stretches else self.first)), 0.1 * self.last)
             length = max(FEWEST_TURNS * TURN / speed, DECAYS * self.decay, SHARE * self.usual)
-            since = run.end if run else 0.0
-            run = self._on(run, run.place if run else place, length, tolerance)
-            if run.outcome.kind != "reached":
+            since = way.time
+            ended, mean, highest = way.on(length)
+            if ended != "reached":
                 break
             if time_is_up():
-                return run, "undecided"
-            stretches.append(self._means(run, since))
-            self.progress(float(np.clip((stretches[-1][2] - self.first) / (self.last - self.first), 0.0, 1.0)))
+                return "undecided"
+            stretches.append((way.time - since, mean, highest))
+            self.progress(float(np.clip((highest - self.first) / (self.last - self.first), 0.0, 1.0)))
             if since < self.steady:
                 unsteady = len(stretches)
             if self._settled(stretches[unsteady:]):
-                return run, "captured" if np.isfinite(self.rigid) else "short of torque"
-            if run.end > LONGEST * self.usual and len(stretches) > LONGEST:
-                return run, "undecided"
-        if run.outcome.kind == "crossed":
-            return run, "dwelt" if run.end > DWELT * self.rigid else "passed"
-        return run, "undecided"
+                return "captured" if np.isfinite(self.rigid) else "short of torque"
+            if way.time > LONGEST * self.usual and len(stretches) > LONGEST:
+                return "undecided"
+        if ended == "crossed":
+            return "dwelt" if way.time > DWELT * self.rigid else "passed"
+        return "" if ended == "other" and isinstance(way, QuickPassage) else "undecided"
 
     def other_kind(self, kind: str, tolerance: float) -> str:
         """How it ends at a looser tolerance; as it did where there is no time for that."""
-        return kind if time_is_up() else self.ending(min(LOOSER * tolerance, 1e-3))[1]
-
-    def _on(self, run: Transient | None, place: Place, length: float, tolerance: float) -> Transient:
-        found = follow(self.line, place, length, self.asked, tolerance, MOST_STEPS, self.last)
-        if run is None and found.outcome.kind != OUT_OF_TIME:
-            require_begun(found.outcome, found.pieces)
-        made = Transient.of(self.line, found, self.asked, tolerance, place.time, "", self.line.assembly.line)
-        return made if run is None else run.joined(made)
-
-    def _means(self, run: Transient, since: float) -> tuple[float, float, float]:
-        """Length [s] of the last stretch, its mean speed [rad/s], and the highest mean over one of its looks."""
-        times = np.linspace(since, run.end, LOOKS + 1)
-        angle = run.whole.angle(times)
-        means = np.diff(angle) / np.diff(times)
-        return run.end - since, float(means.mean()), float(means.max())
+        return kind if time_is_up() else self.kind(min(LOOSER * tolerance, 1e-3))[0]
 
     def _settled(self, stretches: list[tuple[float, float, float]]) -> bool:
         """Whether the last stretches gain too little ever to come to the last speed."""
@@ -205,6 +225,35 @@ class _Follower:
             if rate * FAR * self.usual > way:
                 return False
         return True
+
+
+class _WholeWay:
+    """The same with the whole motion kept."""
+
+    def __init__(self, made: _Follower, tolerance: float) -> None:
+        self.made, self.tolerance = made, tolerance
+        self.run: Transient | None = None
+        self.begun = Place(0.0, made.start(), angle=made.phase, speed=made.first)
+
+    @property
+    def time(self) -> float:
+        """Where it stands [s]."""
+        return self.run.end if self.run else 0.0
+
+    def on(self, length: float) -> tuple[str, float, float]:
+        """Go on for ``length`` [s]: how that ended, mean speed, and highest mean speed of a look [rad/s]."""
+        since, made, asked = self.time, self.made, self.made.asked
+        place = self.run.place if self.run else self.begun
+        found = follow(made.line, place, length, asked, self.tolerance, MOST_STEPS, made.last)
+        if self.run is None and found.outcome.kind != OUT_OF_TIME:
+            require_begun(found.outcome, found.pieces)
+        more = Transient.of(made.line, found, asked, self.tolerance, place.time, "", made.line.assembly.line)
+        run = self.run = more if self.run is None else self.run.joined(more)
+        if run.outcome.kind != "reached":
+            return run.outcome.kind, np.nan, np.nan
+        times = np.linspace(since, run.end, LOOKS + 1)
+        means = np.diff(run.whole.angle(times)) / np.diff(times)
+        return "reached", float(means.mean()), float(means.max())
 
 
 def _result(

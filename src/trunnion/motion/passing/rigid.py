@@ -37,19 +37,20 @@ def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> f
     """
     assembly, topo = line.assembly, line.assembly.topology
     co = line.untwisted(assembly.table(1, line.speed))
-    ratio, inertia = topo.mean_speeds, float(co.inertia[0] @ topo.mean_speeds**2)
-    torques, frictions = placed_torques(assembly, asked[0]), placed_frictions(assembly, asked[1])
+    ratio, inertia = np.abs(topo.mean_speeds), float(co.inertia[0] @ topo.mean_speeds**2)
+    constant, viscous, quadratic = (
+        float(part[0] @ ratio**power) for part, power in ((co.load, 1), (co.viscous, 2), (co.quadratic, 3))
+    )
+    torques = [(float(ratio[one.station]), one) for one in placed_torques(assembly, asked[0])]
+    frictions = [(float(ratio[one.station]), one) for one in placed_frictions(assembly, asked[1])]
 
     def gained(t: float, state: Sequence[float]) -> list[float]:
         angle, speed = state
-        own = np.abs(ratio) * speed
-        load = co.load[0] + (co.viscous[0] + co.quadratic[0] * np.abs(own)) * own
-        total = -float(load @ np.abs(ratio))
-        for one in torques:
-            size = abs(ratio[one.station])
+        total = -constant - (viscous + quadratic * abs(speed)) * speed
+        for size, one in torques:
             total += size * _finite(one, t, size * speed, size * angle)
-        for rubs in frictions:
-            total -= abs(ratio[rubs.station]) * rubs.stated.torque * rubs.share(t)[0] * np.sign(speed or 1.0)
+        for size, rubs in frictions:
+            total -= size * rubs.stated.torque * rubs.share(t)[0] * (-1.0 if speed < 0 else 1.0)
         return [speed, total / inertia]
 
     def reached(t: float, state: Sequence[float]) -> float:
@@ -60,7 +61,7 @@ def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> f
 
     reached.terminal = hangs.terminal = True  # type: ignore[attr-defined]
     begin = abs(gained(0.0, (0.0, first))[1])
-    knots = time_knots(torques, frictions)
+    knots = time_knots([one for _, one in torques], [one for _, one in frictions])
     after = float(knots[-1]) if len(knots) else 0.0
     most = max(begin, max((abs(gained(t, (0.0, first))[1]) for t in knots), default=0.0))
     if most == 0.0:

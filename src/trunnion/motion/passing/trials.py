@@ -16,7 +16,8 @@ from trunnion.driveline.machines import Motor
 from trunnion.driveline.parameters import pack
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.motion.passing.passing import passing_kind
+from trunnion.motion.passing.even_acceleration import accelerating
+from trunnion.motion.passing.passing import passing_kinds
 from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.passing.start import begun_line
 from trunnion.motion.transients.prepare import Actions
@@ -24,6 +25,8 @@ from trunnion.results.counts import few
 
 FACTOR = "factor"
 """Name of the parameter that scales the drive torque."""
+ACCELERATION = "acceleration"
+"""Name of the parameter by which the drive accelerates the rigid line evenly."""
 MOST_PHASES = 10_000
 
 
@@ -50,17 +53,21 @@ class Trials:
         packed = pack(self.line)
         table = packed.table(1)
         for path, value in values.items():
-            if path != FACTOR:
+            if path not in (FACTOR, ACCELERATION):
                 packed.resolve_axis(path).put(table, value)
         factor = values.get(FACTOR, 1.0)
         prepared, acting = begun_line(packed.line_at(table[0]), self.asked, self.first)
-        torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in acting[0])
-        asked = (torque, *acting[1:])
+        if ACCELERATION in values:
+            others = tuple(one for one in acting[0] if one.on != self.drive)
+            even = accelerating(
+                prepared, (others, *acting[1:]), self.drive, values[ACCELERATION], self.first, self.last
+            )
+            asked = ((*others, even), *acting[1:])
+        else:
+            torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in acting[0])
+            asked = (torque, *acting[1:])
         rigid = rigid_time(prepared, asked, self.first, self.last)
-        return [
-            passing_kind(prepared, asked, self.first, self.last, float(phase), rigid, self.tolerance)
-            for phase in self.phases
-        ]
+        return passing_kinds(prepared, asked, self.first, self.last, self.phases, rigid, self.tolerance)
 
 
 def trials_of(

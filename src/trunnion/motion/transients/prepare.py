@@ -19,6 +19,7 @@ from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.transients.machines import without_curves
 from trunnion.motion.transients.stepping import Found, Place, Stepper
+from trunnion.numerics.integration.integration import MOST_STEPS
 
 if TYPE_CHECKING:
     from trunnion.driveline.driveline import Driveline
@@ -113,6 +114,25 @@ def follow(
     ------
     InputError : a tolerance out of range; times beyond a table; what acts on a disk that a ConstantSpeed turns.
     """
+    stepper = stepper_of(prepared, asked, tolerance, most_steps, mean_speed)
+    for one in stepper.torques:
+        _require_times(one, place.time, place.time + duration)
+    return stepper.run(place, duration, progress)
+
+
+def stepper_of(
+    prepared: LineSystem,
+    asked: Actions,
+    tolerance: float,
+    most_steps: int = MOST_STEPS,
+    mean_speed: float | None = None,
+) -> Stepper:
+    """What follows a line under what is asked for.
+
+    Raises
+    ------
+    InputError : a tolerance out of range; what acts on a disk that a ConstantSpeed turns.
+    """
     if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
         raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
     if asked[1] and prepared.clutches:
@@ -123,13 +143,10 @@ def follow(
         )  # fmt: skip
     torques = placed_torques(prepared.assembly, asked[0])
     frictions = placed_frictions(prepared.assembly, asked[1])
-    for one in torques:
-        _require_times(one, place.time, place.time + duration)
-    stepper = Stepper(
+    return Stepper(
         prepared, torques, frictions, asked[2], tolerance=tolerance, most_steps=most_steps,
         unit=speed_unit(prepared.assembly.line), mean_speed=mean_speed,
     )  # fmt: skip
-    return stepper.run(place, duration, progress)
 
 
 def require_begun(outcome: Outcome, pieces: Sequence[object]) -> None:
