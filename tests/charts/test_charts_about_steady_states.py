@@ -67,8 +67,8 @@ class Pair:
         return np.concatenate([v, [first, (s * two - one) / j[1], (-two - self.load - self.viscous * v[2]) / j[2]]])
 
     def radius(self) -> float:
-        """Largest multiplier of the motion over half a turn but that of a shift in time, and of the speed where no torque
-        depends on it."""
+        """Largest multiplier of the motion over half a turn but that of a shift in time, and of the speed where no
+        torque depends on it."""
         period = np.pi / self.speed
         own = slice(1, 3) if self.driven else slice(0, 3)
         places = np.r_[np.arange(3)[own], 3 + np.arange(3)[own]]

@@ -228,9 +228,14 @@ class SteadyStateCurve:
 
     def __init__(self, balance: FreeBalance, ends: tuple[float, float]) -> None:
         """``ends`` : lowest and highest value."""
-        self.balance, self.ends = balance, ends
+        self._balance, self.ends = balance, ends
         self.known: dict[float, KnownSteadyState] = {}
         self.broken: tuple[Break, ...] = ()
+
+    @property
+    def balance(self) -> FreeBalance:
+        """What solves them."""
+        return self._balance
 
     def by_speed(self, table: Array) -> Flags:
         """Whether any torque depends on the speed at rows of packed numbers (case,)."""
