@@ -1312,7 +1312,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stability_chart(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
@@ -1336,7 +1336,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stable_limit(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             "HookeJoint 1.angle", [30, 40],
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
