@@ -383,7 +383,6 @@ ROWS: dict[str, Row] = {
             LAG: "equations of motion have no lagging torque",
             OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
             **_NO_PATH,
-            "excitation that varies with speed or load": "its amplitude would change on the way",
         },
         said=_IN_ROWS,
         inert=_PASSIVE,

@@ -213,12 +213,12 @@ def lasting(*curves, **operation):
 ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
 
 
-def studied(**changes):
+def studied(given=True, **changes):
     """What a study of a small line would cost."""
     stated = {"line": "", "analysis": "stability", "quantities": ["growth_rate"], "store": "a.zarr"}
     parts = ConstantSpeed(), HookeJoint(angle=0.1), Shaft(stiffness=1e4, damping=2.0), Disk(inertia=0.8)
     asked = {**stated, "parameter": [ANGLES], "arguments": {"speed": 50.0}, **changes}
-    return tn.study_cost(asked, line=line(*parts))
+    return tn.study_cost(asked, line=line(*parts) if given else None)
 
 
 def history(values, **rest):
@@ -1051,6 +1051,13 @@ PYTHON = [
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
+    (lambda: studied(line="two-shaft-carden", given=False), "two-shaft-carden': is neither a file", "-cardan"),
+    (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
+    (
+        lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
+        "client = 'str': is no client of Dask",
+        "give a distributed.Client",
+    ),
     (
         lambda: tn.study({}, workers=1, scheduler="tcp://far:1"),
         "workers and scheduler: are two ways to compute",
@@ -1272,16 +1279,6 @@ PYTHON = [
         ),
         "driveline.ConstantSpeed: prescribes the speed, so that nothing can capture",
         "leave it out",
-    ),
-    (
-        lambda: tn.transient(
-            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
-            1.0,
-            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
-            speed=9.0,
-        ),
-        "friction.on = 'pump': is not followed in a line with a slip clutch",
-        "describe the brake as a torque over time",
     ),
     (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
@@ -2127,6 +2124,18 @@ PYTHON = [
         "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
         "Disk 1",
     ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Disk 1": 2})])),
+        "load case a.Disk 1 = 2: is a factor on a Disk",
+        "loads = {",
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Shaft 1": 2})])),
+        "load case a.Shaft 1 = 2: is not a Fan, Pump, Propeller or Generator",
+        "leave factors out",
+    ),
+    (lambda: LoadCase(name="a", factors={"fan": 0}), "load case a.fan = 0: must be positive", "0.01"),
+    (lambda: LoadCase(name="a", factors=3), "load case a.factors = 3: is not a table of factors", "fan = 1.2"),
     (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
     (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: goes over nothing", "or speed"),
     (

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -45,6 +45,7 @@ from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
 from trunnion.numerics.memory import MOST, size_text
 from trunnion.numerics.patches.patches import PatchedFunction
+from trunnion.numerics.workers import shared_with, workers_of_client
 from trunnion.results.chart import ChartPoint, StabilityChart, is_log, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
@@ -69,6 +70,7 @@ def stability_chart(
     statically_twisted: bool = True,
     about_steady_state: bool = False,
     threads: int | None = None,
+    client: Any = None,
     progress: Progress | None = None,
 ) -> StabilityChart:
     """Verdict, spectral radius and its error over two parameters.
@@ -87,6 +89,9 @@ def stability_chart(
         its excitations, instead of the motion of rigid shafts. A free–free line with joint angles is always judged
         about it. Every point costs milliseconds; points at which several motions exist are not judged.
     threads : default one per core.
+    client : a ``distributed.Client``, with whose workers the integrations of a driveline are shared where they take
+        longer than sending them; the chart is the same to the bit. What interpolates and judges pixels stays here,
+        and so does a chart about the line's own motion.
     progress : called as progress(share done) from the calling thread.
 
     Returns
@@ -107,6 +112,7 @@ def stability_chart(
     <StabilityChart: stability chart, speed × HookeJoint 1.angle, 20 × 10 points: 193 stable, 7 unstable>
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
+    workers = workers_of_client(client)
     if isinstance(line, PeriodicLinearFamily):
         require_no_steady_state(about_steady_state)
     elif about_steady_state or _always_about_steady_state(assemble(line), x, y):
@@ -119,7 +125,8 @@ def stability_chart(
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
             built = build_with_numpy(task.family, task.x.values, task.y.values, asked, report_progress, MOST_FIRST)
-    return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
+    with shared_with(workers):
+        return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
 
 
 def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisRequest) -> bool:
