@@ -1051,7 +1051,11 @@ PYTHON = [
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
-    (lambda: studied(line="two-shaft-carden", given=False), "two-shaft-carden': is neither a file", "-cardan"),
+    (
+        lambda: studied(line="two-shaft-carden", given=False),
+        "study.line = 'two-shaft-carden': is neither a file nor a name of the catalogue",
+        'did you mean "two-shaft-cardan"?',
+    ),
     (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
     (
         lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
