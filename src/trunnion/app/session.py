@@ -182,7 +182,7 @@ class Session:
         self.view = self.view_of("driveline")
         self.edit(change)
         whose = " and ".join(f"every {kind}" for kind in kinds)
-        self.page.message(f"500 N·m stands for {whose} at the end of the table: type what yours may bear.")
+        self.page.message(f"500 N m stands for {whose} at the end of the table: type what yours may bear.")
 
     def _line_changed(self) -> None:
         self.sliders.adapt(self.document.line)

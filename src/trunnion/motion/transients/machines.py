@@ -27,6 +27,12 @@ class CurveFromRest(AppliedTorque):
     below: ClassVar[bool] = True
 
 
+class LessFriction(AppliedTorque):
+    """What friction that falls with the speed lacks of its torque at rest; its work is friction's."""
+
+    rubs: ClassVar[bool] = True
+
+
 SPAN = 1e3
 """How far from the speed at which a run begins constant power is followed, of either way: beyond, it ends."""
 
@@ -70,8 +76,11 @@ def without_curves(
             name=name, inertia=machine.moment_of_inertia, excitation=machine.excitation, after=machine.after
         )
     for name, brake in brakes.items():
-        _refuse_falling(name, brake)
-        if brake.torque or brake.static_torque:
+        if brake.stribeck_speed is not None:
+            assert brake.static_torque is not None
+            frictions.append(FrictionTorque(on=name, torque=brake.static_torque))
+            torques.append(_falling(name, brake))
+        elif brake.torque or brake.static_torque:
             frictions.append(FrictionTorque(on=name, torque=brake.torque, static=brake.static_torque))
         disks[name] = Disk(name=name, inertia=brake.inertia, excitation=brake.excitation, after=brake.after)
     # Names that count disks would shift by those that come in.
@@ -110,12 +119,15 @@ def _at_rest(machine: Machine) -> float:
     return max(float(machine.table.torques[0]), 0.0)
 
 
-def _refuse_falling(name: str, brake: Brake) -> None:
-    if brake.stribeck_speed is not None:
-        raise InputError(
-            "lets friction fall with the speed, which is not followed here", element=name, key="stribeck_speed",
-            value=brake.stribeck_speed, remedy="leave it out: friction then falls at once from static_torque to torque",
-        )  # fmt: skip
+def _falling(name: str, brake: Brake) -> AppliedTorque:
+    """How much friction is below its static torque T_s, in the sense of ω: (T_s − T_c)(1 − e^(−|ω|/ω_s)), nothing
+    at rest, where T_s holds.
+
+    With t = tanh(ω/2ω_s) that is (T_s − T_c) 2t/(1 + |t|), which has no kink for the integration to stop at.
+    """
+    assert brake.static_torque is not None and brake.stribeck_speed is not None
+    less, t = brake.static_torque - brake.torque, f"tanh(speed/{2 * brake.stribeck_speed!r})"
+    return LessFriction(on=name, formula=f"{2 * less!r}*{t}/(1 + sqrt({t}^2))")
 
 
 def _refuse(name: str, machine: Machine) -> None:
