@@ -1051,7 +1051,11 @@ PYTHON = [
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
-    (lambda: studied(line="two-shaft-carden", given=False), "two-shaft-carden': is neither a file", "-cardan"),
+    (
+        lambda: studied(line="two-shaft-carden", given=False),
+        "study.line = 'two-shaft-carden': is neither a file nor a name of the catalogue",
+        'did you mean "two-shaft-cardan"?',
+    ),
     (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
     (
         lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
@@ -1309,7 +1313,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stability_chart(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
@@ -1332,8 +1336,11 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stable_limit(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
+            "HookeJoint 1.angle", [30, 40],
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
     ),
     (
