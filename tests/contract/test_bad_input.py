@@ -241,12 +241,12 @@ def lasting(*curves, **operation):
 ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
 
 
-def studied(**changes):
+def studied(given=True, **changes):
     """What a study of a small line would cost."""
     stated = {"line": "", "analysis": "stability", "quantities": ["growth_rate"], "store": "a.zarr"}
     parts = ConstantSpeed(), HookeJoint(angle=0.1), Shaft(stiffness=1e4, damping=2.0), Disk(inertia=0.8)
     asked = {**stated, "parameter": [ANGLES], "arguments": {"speed": 50.0}, **changes}
-    return tn.study_cost(asked, line=line(*parts))
+    return tn.study_cost(asked, line=line(*parts) if given else None)
 
 
 def history(values, **rest):
@@ -1099,6 +1099,17 @@ PYTHON = [
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
     (
+        lambda: studied(line="two-shaft-carden", given=False),
+        "study.line = 'two-shaft-carden': is neither a file nor a name of the catalogue",
+        'did you mean "two-shaft-cardan"?',
+    ),
+    (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
+    (
+        lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
+        "client = 'str': is no client of Dask",
+        "give a distributed.Client",
+    ),
+    (
         lambda: tn.study({}, workers=1, scheduler="tcp://far:1"),
         "workers and scheduler: are two ways to compute",
         "give one",
@@ -1321,16 +1332,6 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.transient(
-            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
-            1.0,
-            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
-            speed=9.0,
-        ),
-        "friction.on = 'pump': is not followed in a line with a slip clutch",
-        "describe the brake as a torque over time",
-    ),
-    (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
         "points = 1: must be a whole number from 2",
         "13, say",
@@ -1359,7 +1360,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stability_chart(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
@@ -1382,8 +1383,11 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stable_limit(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
+            "HookeJoint 1.angle", [30, 40],
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
     ),
     (
@@ -2171,6 +2175,18 @@ PYTHON = [
         "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
         "Disk 1",
     ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Disk 1": 2})])),
+        "load case a.Disk 1 = 2: is a factor on a Disk",
+        "loads = {",
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Shaft 1": 2})])),
+        "load case a.Shaft 1 = 2: is not a Fan, Pump, Propeller or Generator",
+        "leave factors out",
+    ),
+    (lambda: LoadCase(name="a", factors={"fan": 0}), "load case a.fan = 0: must be positive", "0.01"),
+    (lambda: LoadCase(name="a", factors=3), "load case a.factors = 3: is not a table of factors", "fan = 1.2"),
     (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
     (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: goes over nothing", "or speed"),
     (
