@@ -306,12 +306,6 @@ ROWS: dict[str, Row] = {
         set_aside=(DRAGGED,),
     ),
     "multipliers": _row(
-        refused={**_BASE, **_OTHER_SPEEDS},
-        said={**_SERIES, **QUASI_STATIC},
-        inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
-        set_aside=(DRAGGED,),
-    ),
-    "charted multipliers": _row(
         refused={key: why for key, why in (_BASE | _OTHER_SPEEDS).items() if key not in ("free start", "drive share")},
         said={**_SERIES, **QUASI_STATIC},
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},

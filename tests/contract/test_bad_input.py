@@ -213,12 +213,12 @@ def lasting(*curves, **operation):
 ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
 
 
-def studied(**changes):
+def studied(given=True, **changes):
     """What a study of a small line would cost."""
     stated = {"line": "", "analysis": "stability", "quantities": ["growth_rate"], "store": "a.zarr"}
     parts = ConstantSpeed(), HookeJoint(angle=0.1), Shaft(stiffness=1e4, damping=2.0), Disk(inertia=0.8)
     asked = {**stated, "parameter": [ANGLES], "arguments": {"speed": 50.0}, **changes}
-    return tn.study_cost(asked, line=line(*parts))
+    return tn.study_cost(asked, line=line(*parts) if given else None)
 
 
 def history(values, **rest):
@@ -1052,6 +1052,17 @@ PYTHON = [
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),
     (
+        lambda: studied(line="two-shaft-carden", given=False),
+        "study.line = 'two-shaft-carden': is neither a file nor a name of the catalogue",
+        'did you mean "two-shaft-cardan"?',
+    ),
+    (lambda: studied(line="gear-rattle", given=False), "study.line = 'gear-rattle': is no driveline but", "two-shaft"),
+    (
+        lambda: tn.tolerance_study(line(), {"Shaft 1.stiffness": 0.1}, 10.0, client="tcp://far:1"),
+        "client = 'str': is no client of Dask",
+        "give a distributed.Client",
+    ),
+    (
         lambda: tn.study({}, workers=1, scheduler="tcp://far:1"),
         "workers and scheduler: are two ways to compute",
         "give one",
@@ -1302,7 +1313,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stability_chart(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
@@ -1325,8 +1336,11 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stable_limit(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
+            "HookeJoint 1.angle", [30, 40],
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
     ),
     (

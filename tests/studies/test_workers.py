@@ -13,7 +13,8 @@ import pytest
 from studies.asked import BATCH, CALLS, data_of, grid, line, stated
 
 import trunnion as tn
-from trunnion.studies import points, runner
+from trunnion.numerics.versions import computed_by
+from trunnion.studies import runner
 from trunnion.studies.runner import workers_here
 from trunnion.studies.store import Store
 from trunnion.studies.task import DIED
@@ -70,7 +71,7 @@ def prepared(asked: dict[str, Any]) -> tuple[Any, ...]:
 
 
 def test_a_worker_of_another_version(tmp_path, client, monkeypatch) -> None:
-    ours = points.computed_by()
+    ours = computed_by()
     monkeypatch.setattr(client, "run", lambda function, *rest: {"tcp://far:1": {**ours, "numpy": "1.0"}})
     with pytest.raises(tn.InputError, match=r"worker of other versions \(tcp://far:1: numpy 1\.0, here"):
         tn.study(stated(tmp_path / "a.zarr"), line=line(), client=client)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
-import platform
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,7 +17,6 @@ from typing import Any
 
 import numpy as np
 
-from trunnion._version import __version__
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps, loads
@@ -28,6 +26,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError, TrunnionError, short
 from trunnion.floquet.tolerance.many_lines import UNKNOWN, ManyLines
+from trunnion.numerics.versions import computed_by
 from trunnion.registry import ANALYSES
 from trunnion.results.verdict import Verdict
 from trunnion.studies.quantities import StudyQuantity
@@ -211,17 +210,6 @@ def _sentence(error: Exception) -> str:
     if not isinstance(error, TrunnionError):
         text = f"{type(error).__name__}: {text}"
     return short(" ".join(text.split()), LONGEST_SENTENCE)
-
-
-def computed_by() -> dict[str, str]:
-    """Versions and processor that numbers depend on: points of unlike ones are never mixed in one store."""
-    from importlib.metadata import version
-
-    from trunnion.studies.sources import package_digest
-
-    names = ("numpy", "scipy", "numba")
-    return {"trunnion": __version__, "sources": package_digest(), **{n: version(n) for n in names},
-            "machine": platform.machine()}  # fmt: skip
 
 
 def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: bool) -> None:

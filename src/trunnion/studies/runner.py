@@ -410,7 +410,7 @@ def require_workers(client: Any, store: Store, scheduler: str) -> int:
     ------
     InputError : one does not.
     """
-    from trunnion.studies.points import computed_by
+    from trunnion.numerics.versions import computed_by
 
     try:
         client.wait_for_workers(1, timeout=30)

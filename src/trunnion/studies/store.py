@@ -29,11 +29,12 @@ from typing import Any
 import numpy as np
 
 from trunnion.errors import ComputationError, InputError
+from trunnion.numerics.versions import computed_by
 from trunnion.studies.block_files import DamagedBlock, address, read_block, write_block
 from trunnion.studies.design import StudyDesign, refuse_latin
 from trunnion.studies.extra import zarr
 from trunnion.studies.parts import StudyPart
-from trunnion.studies.points import FAILED, Evaluated, StudyQuestion, computed_by
+from trunnion.studies.points import FAILED, Evaluated, StudyQuestion
 from trunnion.studies.shards import (
     DamagedShard,
     array_names,

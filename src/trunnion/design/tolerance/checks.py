@@ -20,10 +20,11 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.tolerance.sampling import SCRAMBLES, interval, sobol
 from trunnion.floquet.tolerance.spread import Spread, numbers_at, tables, values_in_words
+from trunnion.numerics.workers import Workers
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
-from trunnion.waiting import OutOfTime, time_is_up, to_the_end
+from trunnion.waiting import OutOfTime, keep_time, time_is_up, to_the_end
 
 SECONDS = 30.0
 FEWEST, MOST = 4, 256
@@ -100,6 +101,7 @@ def study_checks(
     confidence: float,
     seed: int,
     report_progress: Callable[[float], None],
+    workers: Workers | None = None,
 ) -> CheckStudy:
     """Judge ``lines`` lines (None: as many as ``SECONDS`` allow) over ``speeds``; see ``tolerance_study``.
 
@@ -120,8 +122,8 @@ def study_checks(
     found: list[dict[str, Check] | None] = []
     ended = ""
     try:
-        for k, place in enumerate(shares):
-            found.append(judge.of(place))
+        for k, checks in enumerate(_judged(judge, shares, workers)):
+            found.append(checks)
             report_progress((k + 1) / len(shares))
     except OutOfTime as error:
         ended = error.why
@@ -154,6 +156,27 @@ def study_checks(
         failed=int(np.count_nonzero(~computed)), chosen_by_cost=lines is None, seconds=seconds, worst=worst,
         ranking=ranking, ended=ended,
     )  # fmt: skip
+
+
+def _judged(judge: _Judge, shares: Array, workers: Workers | None) -> Iterator[dict[str, Check] | None]:
+    """Checks of one line after another, from workers in the order of the shares.
+
+    Raises
+    ------
+    OutOfTime : the time was up before the last line was judged.
+    """
+    if workers is None:
+        yield from map(judge.of, shares)
+        return
+    arrived: dict[int, dict[str, Check] | None] = {}
+    given = 0
+    for number, checks in workers.each(judge.of, iter(shares)):
+        arrived[number] = checks
+        while given in arrived:
+            yield arrived.pop(given)
+            given += 1
+    if given < len(shares):
+        keep_time()
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,6 +35,8 @@ from trunnion.floquet.tolerance.spread import (
     tables,
     values_in_words,
 )
+from trunnion.floquet.tolerance.steady_state_lines import SteadyStateLines, lines_like
+from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.chart import require_pixels
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
@@ -41,7 +44,7 @@ from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import Verdict
-from trunnion.waiting import OutOfTime, keeps_time, limited, time_is_up, to_the_end
+from trunnion.waiting import OutOfTime, keep_time, keeps_time, limited, time_is_up, to_the_end
 
 TOLERANCE = 1e-8
 """Error asked of monodromy matrices: radii within it of 1 count as undecided."""
@@ -143,6 +146,7 @@ def tolerance_study(
     seed: int = 0,
     statically_twisted: bool = True,
     threads: int | None = None,
+    client: Any = None,
     within: float | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> ToleranceStudy:
@@ -162,6 +166,8 @@ def tolerance_study(
     seed : of the scrambles; the same seed gives the same numbers.
     statically_twisted : as in ``stability``.
     threads : default one per core.
+    client : a ``distributed.Client``, whose workers judge the same lines instead, in pieces of 32 768 lines at one
+        speed and of one line by the checks; free–free lines with joint angles are judged here.
     within : seconds that it may take; the lines judged until then are counted, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -189,13 +195,16 @@ def tolerance_study(
     assembly, spreads, taken = _read(line, tolerances)
     each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
     require_pixels(each * SCRAMBLES, len(at))
-    lines = ManyLines.of(
+    workers = workers_of_client(client)
+    lines = lines_like(
         assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip
     shares = sobol(len(spreads), each, seed)
     report_progress = progress or (lambda share: None)
-    growth, verdict, ended = _judged(lines, spreads, shares, at, report_progress)
+    growth, verdict, ended = _judged(
+        lines, spreads, shares, at, report_progress, None if isinstance(lines, SteadyStateLines) else workers
+    )
     shares = shares[: growth.shape[1]]
     fine = np.isin(verdict, (Verdict.STABLE, Verdict.MARGINAL))
     stable, at_each = fine.all(axis=0), fine.mean(axis=1)
@@ -205,7 +214,7 @@ def tolerance_study(
         count = None if checks is True else int(checks)
         try:
             judged = study_checks(
-                assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, report_progress
+                assembly, spreads, (float(at.min()), float(at.max())), count, confidence, seed, report_progress, workers
             )
             ended = judged.ended
         except OutOfTime as error:
@@ -251,6 +260,7 @@ def _judged(
     shares: Array,
     speeds: Array,
     report_progress: Callable[[float], None],
+    workers: Workers | None,
 ) -> tuple[Array, Codes, str]:
     """Growth rates and verdicts (speeds, samples) of all lines, or of as many scrambles as a time limit allows, and
     what ended it then, as a clause.
@@ -267,9 +277,7 @@ def _judged(
     for first in range(0, len(shares), size):
         here = slice(first, first + size)
         try:
-            for k, speed in enumerate(speeds.tolist()):
-                table = tables(lines.assembly, spreads, shares[here], speed)
-                found = lines.judged(table, TOLERANCE)
+            for k, (table, found) in enumerate(_at_speeds(lines, spreads, shares[here], speeds, workers)):
                 growth[k, here], verdict[k, here] = lines.growth(table, found), found.verdict
                 report_progress((first + size * (k + 1) / len(speeds)) / (len(shares) * (1 + 1 / len(speeds))))
         except OutOfTime as error:
@@ -277,6 +285,28 @@ def _judged(
                 raise
             return growth[:, :first], verdict[:, :first], error.why
     return growth, verdict, ""
+
+
+def _at_speeds(
+    lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, speeds: Array, workers: Workers | None
+) -> Iterator[tuple[Array, Pixels]]:
+    """Numbers and pixels of the lines at ``shares`` at one speed after another.
+
+    Raises
+    ------
+    OutOfTime : the time was up before all of them were judged.
+    """
+
+    def table(k: int) -> Array:
+        return tables(lines.assembly, spreads, shares, float(speeds[k]))
+
+    if workers is None:
+        yield from ((own, lines.judged(own, TOLERANCE)) for own in map(table, range(len(speeds))))
+        return
+    found = lines.judged_by(workers, table, len(speeds), TOLERANCE)
+    yield from ((table(k), one) for k, one in enumerate(found))
+    if len(found) < len(speeds):
+        keep_time()
 
 
 def _require_known(found: Pixels, speed: float) -> None:

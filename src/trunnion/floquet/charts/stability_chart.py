@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +24,6 @@ from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import (
     has_joint_angles,
     has_periodic_base,
-    refuse_periodic_base,
     require_steady_base,
     require_tree,
 )
@@ -45,9 +45,13 @@ from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
 from trunnion.numerics.memory import MOST, size_text
 from trunnion.numerics.patches.patches import PatchedFunction
+from trunnion.numerics.workers import shared_with, workers_of_client
 from trunnion.results.chart import ChartPoint, StabilityChart, is_log, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
+
+if TYPE_CHECKING:
+    from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 
 Progress = Callable[[float], None]
 ABOUT_STEADY_STATES = "periodic steady states"
@@ -66,6 +70,7 @@ def stability_chart(
     statically_twisted: bool = True,
     about_steady_state: bool = False,
     threads: int | None = None,
+    client: Any = None,
     progress: Progress | None = None,
 ) -> StabilityChart:
     """Verdict, spectral radius and its error over two parameters.
@@ -84,6 +89,9 @@ def stability_chart(
         its excitations, instead of the motion of rigid shafts. A free–free line with joint angles is always judged
         about it. Every point costs milliseconds; points at which several motions exist are not judged.
     threads : default one per core.
+    client : a ``distributed.Client``, with whose workers the integrations of a driveline are shared where they take
+        longer than sending them; the chart is the same to the bit. What interpolates and judges pixels stays here,
+        and so does a chart about the line's own motion.
     progress : called as progress(share done) from the calling thread.
 
     Returns
@@ -104,9 +112,9 @@ def stability_chart(
     <StabilityChart: stability chart, speed × HookeJoint 1.angle, 20 × 10 points: 193 stable, 7 unstable>
     """
     require_pixels(*(_points_of(request) for request in (x, y)))
+    workers = workers_of_client(client)
     if isinstance(line, PeriodicLinearFamily):
-        if about_steady_state:
-            raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+        require_no_steady_state(about_steady_state)
     elif about_steady_state or _always_about_steady_state(assemble(line), x, y):
         return _about_steady_states(assemble(line), x, y, speed, tolerance, progress or (lambda share: None))
     task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
@@ -117,7 +125,8 @@ def stability_chart(
         with instead_of_compiling():
             asked = max(tolerance * IN_NUMPY, SHARPEST)
             built = build_with_numpy(task.family, task.x.values, task.y.values, asked, report_progress, MOST_FIRST)
-    return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
+    with shared_with(workers):
+        return _chart(task, built, tolerance, statically_twisted, threads, report_progress)
 
 
 def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisRequest) -> bool:
@@ -131,14 +140,29 @@ def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisReques
     return has_periodic_base(assembly, corners)
 
 
-def _about_steady_states(
-    assembly: Assembly,
-    x: AxisRequest,
-    y: AxisRequest,
-    speed: float | str | None,
-    tolerance: float,
-    report_progress: Progress,
-) -> StabilityChart:
+def require_no_steady_state(about_steady_state: bool) -> None:
+    """Refuse the motion of a driveline to a family of one's own."""
+    if about_steady_state:
+        raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+
+
+def _steady_state_task(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None, analysis: str
+) -> Task:
+    """What is to be searched about the line's own motion."""
+    across, up, said, base, own = _own_axes(assembly, x, y, speed)
+    from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
+
+    family = SteadyStateFamily.about(assembly, across, up, base, own)
+    left = (finding.sentence for finding in left_out(analysis, assembly.line))
+    remarks = (*said, "judged about the line's own periodic motion, without its excitations", *left)
+    return Task(family, across, up, None if np.isnan(base) else base, assembly.line, remarks)
+
+
+def _own_axes(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None
+) -> tuple[ChartAxis, ChartAxis, list[str], float, SteadyStateChart]:
+    """As ``_axes_of``, and the motions over both axes."""
     require_period(assembly.line, assembly.topology)
     across, up, said, base = _axes_of(assembly, x, y, speed)
     if not has_joint_angles(assembly, _corners(assembly, across, up, base)):
@@ -148,7 +172,18 @@ def _about_steady_states(
         )  # fmt: skip
     from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 
-    chart = SteadyStateChart.of(assembly, _request(across), _request(up), base)
+    return across, up, said, base, SteadyStateChart.of(assembly, _request(across), _request(up), base)
+
+
+def _about_steady_states(
+    assembly: Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | str | None,
+    tolerance: float,
+    report_progress: Progress,
+) -> StabilityChart:
+    across, up, said, base, chart = _own_axes(assembly, x, y, speed)
     found = chart.pixels(across.values, up.values, lambda share: report_progress(0.95 * share))
     check = chart.check(found, across.values, up.values)
     report_progress(1.0)
@@ -251,17 +286,22 @@ def chart_task(
     analysis: str = "stability_chart",
     *,
     numpy_only: bool = False,
+    about_steady_state: bool = False,
 ) -> Task:
     """A line or family over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
 
-    ``numpy_only``: nothing is compiled for it, where the line suits that.
+    ``numpy_only``: nothing is compiled for it, where the line suits that. ``about_steady_state`` as of
+    ``stability_chart``.
 
     Raises
     ------
     InputError : see ``stability_chart``.
     """
     if not isinstance(line, PeriodicLinearFamily):
+        if about_steady_state or _always_about_steady_state(assemble(line), x, y):
+            return _steady_state_task(assemble(line), x, y, speed, analysis)
         return _line_task(line, x, y, speed, twisted, analysis, numpy_only)
+    require_no_steady_state(about_steady_state)
     if speed is not None:
         raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
     return _user_task(line, x, y)
@@ -279,11 +319,6 @@ def _line_task(
     assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
     across, up, clipped, base = _axes_of(assembly, x, y, speed)
-    refuse_periodic_base(
-        assembly,
-        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
-        bends=across.is_joint_angle or up.is_joint_angle,
-    )
     corners = _corners(assembly, across, up, base)
     require_steady_base(assembly, corners)
     require_tree(assembly, "charts do")

@@ -6,7 +6,8 @@ far larger than what the radius is wanted to: there steps of exponentials are ha
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from trunnion.numerics.chain.chain_exponentials import ChainExponentials
 from trunnion.numerics.chain.chain_monodromy import Window, chain_monodromy, symmetry_phase
 from trunnion.numerics.chain.exponential_monodromy import step_halving
 from trunnion.numerics.threads import on_threads
+from trunnion.numerics.workers import Workers
 
 AT_ONCE = 1 << 15
 """Lines in one call of the kernel."""
@@ -77,13 +79,45 @@ class ManyLines:
 
     def judged(self, table: Array, tolerance: float) -> Pixels:
         """Radius, error, critical multiplier and verdict of rows of ``table``, each (rows,)."""
-        stiff = np.mean(_too_coarse(self.integrated(table[:FIRST], tolerance))) > 0.5
-        ways = (lambda rows: self.integrated(rows, tolerance)), self.stepped
-        way, other = ways[::-1] if stiff else ways
-        found = _joined([way(table[start : start + AT_ONCE]) for start in range(0, len(table), AT_ONCE)])
+        stiff = self._stiff(table, tolerance)
+        parts = [(table[start : start + AT_ONCE], tolerance, stiff) for start in range(0, len(table), AT_ONCE)]
+        return self._mended([self._by(part) for part in parts], table, tolerance, stiff)
+
+    def judged_by(self, workers: Workers, table: Callable[[int], Array], tables: int, tolerance: float) -> list[Pixels]:
+        """The same of several tables, by their number, shared with workers, to the bit; fewer of the first ones where
+        the time is up."""
+        known, sizes, stiff = replace(self, threads=1), list[int](), list[bool]()
+
+        def parts() -> Iterator[tuple[Array, float, bool]]:
+            for number in range(tables):
+                rows = table(number)
+                sizes.append(-(-len(rows) // AT_ONCE))
+                stiff.append(self._stiff(rows, tolerance))
+                for start in range(0, len(rows), AT_ONCE):
+                    yield rows[start : start + AT_ONCE], tolerance, stiff[-1]
+
+        found, judged = workers.all(known._by, parts()), list[Pixels]()
+        for number, size in enumerate(sizes):
+            own, found = found[:size], found[size:]
+            if len(own) < size:
+                break
+            judged.append(self._mended(own, table(number), tolerance, stiff[number]))
+        return judged
+
+    def _stiff(self, table: Array, tolerance: float) -> bool:
+        return bool(np.mean(_too_coarse(self.integrated(table[:FIRST], tolerance))) > 0.5)
+
+    def _by(self, part: tuple[Array, float, bool]) -> Pixels:
+        """Rows in the way that suits most of them."""
+        rows, tolerance, stiff = part
+        return self.stepped(rows) if stiff else self.integrated(rows, tolerance)
+
+    def _mended(self, parts: list[Pixels], table: Array, tolerance: float, stiff: bool) -> Pixels:
+        """All rows, those that one way leaves too coarse in the other."""
+        found = _joined(parts)
         coarse = np.flatnonzero(_too_coarse(found))
         if len(coarse):
-            found.put_better(other(table[coarse]), coarse)
+            found.put_better(self._by((table[coarse], tolerance, not stiff)), coarse)
         return found
 
     def integrated(self, table: Array, tolerance: float) -> Pixels:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,6 +27,7 @@ from trunnion.motion.chaos.lyapunov_spectrum import shear_bound
 from trunnion.numerics.averages import average
 from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.of_systems import about
@@ -34,6 +37,7 @@ from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.maps import TimedMap
 from trunnion.systems.system import System
+from trunnion.waiting import keep_time
 
 Request = tuple[str, float, float, int]
 
@@ -152,6 +156,7 @@ def lyapunov_sweep(
     interval: float | None = None,
     tolerance: float = 1e-9,
     threads: int | None = None,
+    client: Any = None,
     progress: Callable[[float], None] | None = None,
 ) -> LyapunovSweep:
     """Lyapunov exponents at every value of one parameter, each motion beginning at ``start``.
@@ -169,6 +174,7 @@ def lyapunov_sweep(
     interval : length of a period [s] where the system has none; by default about once around.
     tolerance : error allowed per step.
     threads : by default one per processor.
+    client : a ``distributed.Client``, whose workers compute the same numbers instead.
     progress : called as progress(share done).
 
     Returns
@@ -192,7 +198,17 @@ def lyapunov_sweep(
     count = whole_number("exponents", system.size if exponents is None else exponents, 1, system.size)
     points = [{parameter: float(v)} for v in chosen]
     mean, width, failed = _all(
-        system, points, count, periods, transient, start, interval, tolerance, _threads(threads), progress
+        system,
+        points,
+        count,
+        periods,
+        transient,
+        start,
+        interval,
+        tolerance,
+        _threads(threads),
+        workers_of_client(client),
+        progress,
     )
     order = np.argsort(-mean, axis=1, kind="stable")
     mean, width = np.take_along_axis(mean, order, 1), np.take_along_axis(width, order, 1)
@@ -213,6 +229,7 @@ def lyapunov_map(
     interval: float | None = None,
     tolerance: float = 1e-8,
     threads: int | None = None,
+    client: Any = None,
     progress: Callable[[float], None] | None = None,
 ) -> LyapunovMap:
     """The largest Lyapunov exponent over two parameters, each motion beginning at ``start``.
@@ -228,6 +245,7 @@ def lyapunov_map(
     interval : length of a period [s] where the system has none; by default about once around.
     tolerance : error allowed per step.
     threads : by default one per processor.
+    client : a ``distributed.Client``, whose workers compute the same numbers instead.
     progress : called as progress(share done).
 
     Returns
@@ -252,7 +270,9 @@ def lyapunov_map(
     require_memory(needed, key="x, y", value=f"{len(columns)} x {len(rows)}", remedy="ask for fewer values")
     points = [{x[0]: float(a), y[0]: float(b)} for b in rows for a in columns]
     used = _threads(threads)
-    mean, width, failed = _all(system, points, 1, periods, transient, start, interval, tolerance, used, progress)
+    mean, width, failed = _all(
+        system, points, 1, periods, transient, start, interval, tolerance, used, workers_of_client(client), progress
+    )
     shape = (len(rows), len(columns))
     return LyapunovMap(
         system, (x[0], y[0]), columns, rows, mean.reshape(shape), width.reshape(shape), periods, transient, tolerance,
@@ -260,41 +280,78 @@ def lyapunov_map(
     )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class _Question:
+    """What is asked at every point: ``count`` exponents of ``system`` from ``state``."""
+
+    system: System
+    count: int
+    periods: int
+    transient: int
+    state: Array
+    interval: float | None
+    tolerance: float
+
+    def at(self, point: Mapping[str, float]) -> tuple[Array, Array] | None:
+        """Exponents (count,) and half widths of their intervals; None where the motion did not reach its end."""
+        here = self.system.with_parameters(point)
+        length = self.interval or here.forcing_period or usual_time(here, self.state, self.tolerance)
+        frame = tilted_frame(self.system, self.count)
+        motion = TimedMap.over(here, length, tolerance=self.tolerance).motion(self.state, frame)
+        found = motion.run(self.transient)
+        if found.end is IntegrationEnd.REACHED:
+            found = motion.run(self.periods)
+        if found.end is not IntegrationEnd.REACHED:
+            return None
+        result, bound = average(found.growth / length), shear_bound(self.periods, length)
+        # What lies within the bound may be 0 and only seem not to be.
+        width = np.where(np.abs(result.mean) <= bound, np.fmax(result.half_width, bound), result.half_width)
+        return np.asarray(result.mean), np.asarray(width)
+
+    def at_each(self, points: Sequence[Mapping[str, float]]) -> list[tuple[Array, Array] | None]:
+        """The same of several points, which a worker does in turn."""
+        return [self.at(point) for point in points]
+
+
 def _all(
     system: System, points: list[dict[str, float]], count: int, periods: int, transient: int, start: ArrayLike | None,
-    interval: float | None, tolerance: float, threads: int, progress: Callable[[float], None] | None,
+    interval: float | None, tolerance: float, threads: int, workers: Workers | None,
+    progress: Callable[[float], None] | None,
 ) -> tuple[Array, Array, list[str]]:  # fmt: skip
     whole_number("periods", periods, 1)
     whole_number("transient", transient, 0)
-    state = first_starts(system, start, 1)[0]
+    question = _Question(system, count, periods, transient, first_starts(system, start, 1)[0], interval, tolerance)
     mean, width = np.full((len(points), count), np.nan), np.full((len(points), count), np.nan)
-    failed: list[str] = []
     report_progress = progress or (lambda share: None)
+    failed: dict[int, str] = {}
+    found = _by_threads(question, points, threads) if workers is None else _by_workers(question, points, workers)
+    for done, (place, one) in enumerate(found, start=1):
+        if one is None:
+            failed[place] = str(points[place])
+        else:
+            mean[place], width[place] = one
+        report_progress(done / len(points))
+    return mean, width, [failed[place] for place in sorted(failed)]
 
-    def one(place: int) -> None:
-        here = system.with_parameters(points[place])
-        length = interval or here.forcing_period or usual_time(here, state, tolerance)
-        motion = TimedMap.over(here, length, tolerance=tolerance).motion(state, tilted_frame(system, count))
-        found = motion.run(transient)
-        if found.end is IntegrationEnd.REACHED:
-            found = motion.run(periods)
-        if found.end is not IntegrationEnd.REACHED:
-            failed.append(str(points[place]))
-            return
-        result, bound = average(found.growth / length), shear_bound(periods, length)
-        mean[place], width[place] = result.mean, result.half_width
-        # What lies within the bound may be 0 and only seem not to be.
-        width[place] = np.where(np.abs(result.mean) <= bound, np.fmax(width[place], bound), width[place])
 
-    with ThreadPoolExecutor(threads if system.compiled else 1) as pool:
-        waiting = [pool.submit(copy_context().run, one, place) for place in range(len(points))]
+def _by_threads(question: _Question, points: list[dict[str, float]], threads: int) -> Iterator[tuple[int, Any]]:
+    with ThreadPoolExecutor(threads if question.system.compiled else 1) as pool:
+        waiting = [pool.submit(copy_context().run, question.at, point) for point in points]
         try:
-            for done, each in enumerate(waiting, start=1):
-                each.result()
-                report_progress(done / len(points))
+            for place, each in enumerate(waiting):
+                yield place, each.result()
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
-    return mean, width, failed
+
+
+def _by_workers(question: _Question, points: list[dict[str, float]], workers: Workers) -> Iterator[tuple[int, Any]]:
+    parts = workers.parts(len(points))
+    left = len(parts)
+    for number, found in workers.each(question.at_each, ([points[k] for k in part] for part in parts)):
+        yield from zip(parts[number], found, strict=True)
+        left -= 1
+    if left:
+        keep_time()
 
 
 def _threads(threads: int | None) -> int:

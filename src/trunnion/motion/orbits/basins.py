@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,16 +13,20 @@ from trunnion.arrays import Array, Integers
 from trunnion.motion.orbits.exact_map import OscillatorMap
 from trunnion.motion.orbits.exact_orbit import PiecewiseOrbit, piecewise_orbit, refuse_unbounded
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Variable
 from trunnion.systems.piecewise_oscillator import PiecewiseOscillator
+from trunnion.waiting import keep_time
 
 LEAST, MOST, SAME = 20, 2000, 1e-9
 """Periods that a start gets at least and at most; change per period that counts as settled."""
 ONE_ATTRACTOR = 1e-5
 """Distance below which two settled states belong to one motion."""
+A_PART = 64
+"""Starts that a worker gets at least."""
 BYTES_A_START = 64.0
 """What one start holds."""
 
@@ -61,7 +67,9 @@ class Basins(Result):
         return "\n".join([f"{len(self.attractors)} attractors from {self.number.size} starts", *rows, *rest])
 
 
-def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST) -> Basins:
+def basins(
+    oscillator: PiecewiseOscillator, position: ArrayLike, velocity: ArrayLike, *, most: int = MOST, client: Any = None
+) -> Basins:
     """Basins of attraction at the oscillator's own frequency: where the motions from a grid of starts settle.
 
     Motions that repeat every forcing period are told apart; the rest (subharmonic, chaotic, unsettled) counts as −1.
@@ -72,6 +80,7 @@ def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: Array
     position : starting x (positions,), in its unit of length.
     velocity : starting x′ (velocities,), in that unit per second.
     most : forcing periods that a motion may take to settle.
+    client : a ``distributed.Client``, whose workers follow the starts instead, to the same numbers.
 
     Returns
     -------
@@ -96,7 +105,7 @@ def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: Array
         key="position, velocity", value=f"{len(x)} x {len(v)}", remedy="ask for fewer starts",
     )  # fmt: skip
     starts = np.ascontiguousarray(np.stack(np.meshgrid(x, v, indexing="ij"), axis=-1).reshape(-1, 2))
-    settled = OscillatorMap.of(oscillator).steady_from(starts, LEAST, most, SAME)
+    settled = _settled(oscillator, starts, most, workers_of_client(client))
     number = np.full(len(starts), -1, dtype=np.int64)
     found: list[PiecewiseOrbit] = []
     for i in np.flatnonzero(np.isfinite(settled[:, 0])):
@@ -109,3 +118,24 @@ def basins(oscillator: PiecewiseOscillator, position: ArrayLike, velocity: Array
             near = [len(found) - 1]
         number[i] = near[0]
     return Basins(x, v, number.reshape(len(x), len(v)), tuple(found))
+
+
+@dataclass(frozen=True)
+class _Settling:
+    oscillator: PiecewiseOscillator
+    most: int
+
+    def of(self, starts: Array) -> Array:
+        """Where motions from ``starts`` (m, 2) settle, NaN where they do not."""
+        return OscillatorMap.of(self.oscillator).steady_from(starts, LEAST, self.most, SAME)
+
+
+def _settled(oscillator: PiecewiseOscillator, starts: Array, most: int, workers: Workers | None) -> Array:
+    settling = _Settling(oscillator, most)
+    if workers is None:
+        return settling.of(starts)
+    parts = workers.parts(len(starts), A_PART)
+    found = workers.all(settling.of, (starts[part.start : part.stop] for part in parts))
+    if len(found) < len(parts):
+        keep_time()
+    return np.concatenate(found)

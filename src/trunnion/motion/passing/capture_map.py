@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +20,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.motion.passing.map_cells import KINDS, UNKNOWN, MapRequest, Request, computed_cells, map_request
 from trunnion.motion.passing.map_store import MapStore
 from trunnion.motion.passing.trials import FACTOR
+from trunnion.numerics.workers import workers_of_client
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
@@ -156,6 +158,7 @@ def capture_map(
     phases: int | ArrayLike = 8,
     tolerance: float = 1e-6,
     processes: int = 1,
+    client: Any = None,
     store: str | Path | None = None,
     within: float | None = None,
     progress: Callable[[float], None] | None = None,
@@ -175,6 +178,7 @@ def capture_map(
     phases : how many starting phases, even over half a turn and every other one half a turn on; or angles [rad].
     tolerance : error allowed per step of the finer of two runs that must end alike; the other has thirty times as much.
     processes : that compute. More than one need ``if __name__ == "__main__":`` in a script.
+    client : a ``distributed.Client``, whose workers compute the same cells instead.
     store : folder that the cells are written to in pieces, while they are computed; where it holds some of this map
         already, only the others are computed. ``capture_map_cost`` says beforehand how long a map takes.
     within : seconds of computing after which it ends with the cells that it has, which lie all over the map.
@@ -201,12 +205,13 @@ def capture_map(
     """
     asked = map_request(line, speeds, x, y, (torque, friction, scenario), drive, phases, tolerance)
     whole_number(processes, "processes", 1)
+    workers = workers_of_client(client)
     kept = None if store is None else MapStore(store, asked)
     counts = np.full((asked.cells, len(KINDS)), UNKNOWN, dtype=np.int64) if kept is None else kept.counts()
     report_progress, done = progress or (lambda share: None), int((counts[:, 0] != UNKNOWN).sum())
     report_progress(done / asked.cells)
     try:
-        for place, found in computed_cells(asked, counts, processes):
+        for place, found in computed_cells(asked, counts, processes, workers):
             counts[place] = found
             done += 1
             if kept is not None:

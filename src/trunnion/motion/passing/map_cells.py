@@ -23,6 +23,7 @@ from trunnion.errors import InputError
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import FACTOR, Trials, passes, trials_of
 from trunnion.numerics.memory import require_memory
+from trunnion.numerics.workers import Workers
 from trunnion.waiting import time_is_up
 
 Request: TypeAlias = tuple[str, float, float, int]
@@ -33,6 +34,8 @@ UNKNOWN = -1
 """Of a cell that was not computed."""
 BYTES_A_CELL = 160
 """Of a cell, with what is made of all of them."""
+TOGETHER = 8
+"""Cells that a worker elsewhere is sent at once."""
 AHEAD = 4
 """Cells that wait for each process."""
 
@@ -81,9 +84,14 @@ def map_request(
     return MapRequest(trials, (x[0], y[0]), columns, rows)
 
 
-def computed_cells(asked: MapRequest, counts: Integers, processes: int) -> Iterator[tuple[int, list[int]]]:
+def computed_cells(
+    asked: MapRequest, counts: Integers, processes: int, workers: Workers | None = None
+) -> Iterator[tuple[int, list[int]]]:
     """Cells without ``counts`` (cell, kind) as they come; none that the time limit cut short."""
     missing = (int(cell) for cell in asked.order() if counts[cell, 0] == UNKNOWN)
+    if workers is not None:
+        yield from _on_workers(asked, missing, workers)
+        return
     if processes > 1:
         yield from _in_processes(asked, missing, processes)
         return
@@ -94,6 +102,27 @@ def computed_cells(asked: MapRequest, counts: Integers, processes: int) -> Itera
         if time_is_up():
             return
         yield cell, counted_kinds(kinds)
+
+
+def _on_workers(asked: MapRequest, missing: Iterator[int], workers: Workers) -> Iterator[tuple[int, list[int]]]:
+    sent: list[list[int]] = []
+
+    def pieces() -> Iterator[list[int]]:
+        while cells := list(islice(missing, TOGETHER)):
+            sent.append(cells)
+            yield cells
+
+    for number, found in workers.each(_Cells(asked).of, pieces()):
+        yield from zip(sent[number], found, strict=True)
+
+
+@dataclass(frozen=True)
+class _Cells:
+    asked: MapRequest
+
+    def of(self, cells: Sequence[int]) -> list[list[int]]:
+        """Counts of several cells, which a worker computes in turn."""
+        return [counted_kinds(self.asked.trials.kinds(self.asked.point(cell))) for cell in cells]
 
 
 def _in_processes(asked: MapRequest, missing: Iterator[int], processes: int) -> Iterator[tuple[int, list[int]]]:

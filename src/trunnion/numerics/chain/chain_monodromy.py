@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -22,11 +23,17 @@ from trunnion.numerics.chain.long_series import integrate_long_series
 from trunnion.numerics.chain.series_driver import integrate_series
 from trunnion.numerics.chain.stages_driver import integrate_stages
 from trunnion.numerics.threads import on_threads
+from trunnion.numerics.workers import Workers, sharing
 from trunnion.waiting import keep_time
 
 MOST_STEPS = 200_000
 SMALL = 3
 """Unknowns up to which a block of lanes takes less time than starting a thread."""
+WORTH_SENDING = 3e6
+"""Lanes times the cube of their unknowns from which workers elsewhere take less time than sending takes: 0.1 s."""
+_KERNELS: dict[str, Callable[..., Any]] = {
+    "series": integrate_series, "long series": integrate_long_series, "stages": integrate_stages
+}  # fmt: skip
 SHORT = 12
 """Unknowns up to which the coefficients of all columns lie in a processor's cache."""
 
@@ -67,6 +74,11 @@ def chain_propagator(
     order, stretch = _alike_together(batch), (begin, length, tolerance, MOST_STEPS)
     series = integrate_series if n <= SHORT else integrate_long_series
     integrate = integrate_stages if has_extra(program, batch) else series
+
+    workers = sharing()
+    if workers is not None and count * (2 * n) ** 3 > WORTH_SENDING:
+        _on_workers(workers, integrate, program, batch, order, stretch, found)
+        return found
 
     def run(first: int, last: int) -> None:
         integrate(program, batch, order, first, last, *stretch, *found)
@@ -112,6 +124,47 @@ def _alike_together(batch: ChainBatch) -> Places:
         if sum(np.count_nonzero(np.diff(row[by_joints])) for row in moving) < changes / 4:
             return by_joints[np.argsort(octave[by_joints], kind="stable")]
     return np.argsort(octave, kind="stable")
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """What is integrated of any lanes: the kernel of that name, the line, and stretch, tolerance and most steps."""
+
+    kernel: str
+    program: ChainProgram
+    stretch: tuple[float, float, float, int]
+
+    def of(self, batch: ChainBatch) -> tuple[Array, Array, Array]:
+        """Propagators of lanes as they stand, their errors and traces."""
+        # What was sent may not be written to, which the kernels are not compiled for.
+        program, own = ChainProgram._make(map(np.array, self.program)), ChainBatch._make(map(np.array, batch))
+        n, count = own.stiffness.shape
+        found = np.empty((count, 2 * n, 2 * n)), np.empty(count), np.empty(count)
+        _KERNELS[self.kernel](program, own, np.arange(count), 0, count, *self.stretch, *found)
+        return found
+
+
+def _on_workers(
+    workers: Workers, integrate: Callable[..., Any], program: ChainProgram, batch: ChainBatch, order: Places,
+    stretch: tuple[float, float, float, int], found: tuple[Array, Array, Array],
+) -> None:  # fmt: skip
+    """Blocks of lanes on other machines: the same blocks, and so the same steps, as here.
+
+    Raises
+    ------
+    OutOfTime : the time was up before all were done.
+    """
+    name = next(name for name, kernel in _KERNELS.items() if kernel is integrate)
+    blocks = workers.parts(-(-len(order) // BATCH))
+    parts = [order[one.start * BATCH : one.stop * BATCH] for one in blocks]
+    count, left = len(order), len(parts)
+    own = ([np.take(row, part, axis=-1) if row.shape[-1] == count else row for row in batch] for part in parts)
+    for number, one in workers.each(_Stretch(name, program, stretch).of, map(ChainBatch._make, own)):
+        for whole, some in zip(found, one, strict=True):
+            whole[parts[number]] = some
+        left -= 1
+    if left:
+        keep_time()
 
 
 def _in_pieces(run: Callable[[int, int], None], count: int, threads: int, few: int) -> None:
