@@ -171,16 +171,17 @@ def test_a_car_rolls_back_where_the_hill_is_steeper_than_its_resistance() -> Non
     assert run.speed[-1, 1] == pytest.approx(-(climbs - rolls) / inertia * (20.0 - up), rel=1e-6)
 
 
-@pytest.mark.parametrize("kind", ["car", "fan"])
+@pytest.mark.parametrize("kind", ["car", "fan", "brake"])
 def test_a_drive_balances_what_becomes_friction_or_a_curve(kind: str) -> None:
     """It goes on at the speed it has, twisted by what it carries from the start on."""
     fan = tn.Fan(name="fan", inertia=2.0, curve=[{"speed": 0, "torque": 1}, {"speed": 60, "torque": 3}])
     car = tn.Vehicle(**CAR, rolling_resistance=0.012, drag_area=0.6)
+    brake = tn.Brake(name="brake", inertia=2.0, torque=20.0, static_torque=25.0)
     drive = tn.Disk(name="drive", inertia=1.0, drive_share=1)
-    line = tn.Driveline([drive, tn.Shaft(stiffness=1e4, damping=10.0), {"car": car, "fan": fan}[kind]])
+    line = tn.Driveline([drive, tn.Shaft(stiffness=1e4, damping=10.0), {"car": car, "fan": fan, "brake": brake}[kind]])
     run = tn.transient(line, 2.0, speed=40.0)
     np.testing.assert_allclose(run.speed, 40.0, rtol=1e-9)
-    carried = {"car": car.load.value(40.0), "fan": fan.load.value(40.0)}[kind]
+    carried = {"car": car.load.value(40.0), "fan": fan.load.value(40.0), "brake": 20.0}[kind]
     np.testing.assert_allclose(run.torque, -float(carried), rtol=1e-8)
     given = [A(on="drive", time=[0], torque=[0.0], between="steps")]
     assert tn.transient(line, 0.5, torque=given, speed=40.0).speed[-1, 0] < 40.0  # a torque instead of the share

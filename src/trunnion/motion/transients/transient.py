@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
@@ -133,7 +134,9 @@ def _balanced(line: Driveline, prepared: LineSystem, asked: Actions, speed: floa
     adds to that."""
     given = {one.on for one in asked[0]}
     machines = {name for name, e in line.parts if isinstance(e, Rotor) and e.tangent}
-    rolling = {name for name, e in line.parts if isinstance(e, Vehicle) and e.rolling_resistance}
+    rolling = {
+        name for name, e in line.parts if isinstance(e, Brake) or (isinstance(e, Vehicle) and e.rolling_resistance)
+    }
     driving = {name for name, e in line.parts if getattr(e, "drive_share", None)}
     if not (machines or rolling) or speed <= 0 or (machines | driving) & given:
         return prepared
