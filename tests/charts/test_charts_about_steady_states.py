@@ -3,7 +3,11 @@ written here: shooting with steps of Dormand and Prince, nothing of the package.
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -176,7 +180,7 @@ def test_two_hundred_points(free: bool) -> None:
     agrees(pair, chart, points, y="angle" if free else "load")
 
 
-def test_a_chart_is_read_again(tmp_path: object) -> None:
+def test_a_chart_is_read_again(tmp_path: Path) -> None:
     pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
     chart = tn.stability_chart(pair.description(), ("speed", 60.0, 130.0, 4), ("HookeJoint 2.angle", 0.1, 0.5, 3))
     path = f"{tmp_path}/chart.nc"
@@ -186,6 +190,18 @@ def test_a_chart_is_read_again(tmp_path: object) -> None:
     assert again.at(83.0, 0.31).spectral_radius == pytest.approx(chart.at(83.0, 0.31).spectral_radius, rel=1e-9)
     closer = again.zoom((70.0, 90.0, 3), (0.2, 0.3, 2))
     assert closer.at(80.0, 0.2).spectral_radius == pytest.approx(float(closer.spectral_radius[0, 1]), rel=1e-9)
+
+
+def test_a_chart_answers_in_another_process(tmp_path: Path) -> None:
+    """Compiled equations stand elsewhere there."""
+    pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
+    chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 2), ("HookeJoint 2.angle", 0.1, 0.3, 2))
+    (tmp_path / "chart").write_bytes(pickle.dumps(chart))
+    asked = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')).at(80.0, 0.2).spectral_radius)"
+    there = subprocess.run(
+        [sys.executable, "-c", asked, str(tmp_path / "chart")], capture_output=True, text=True, check=True
+    )
+    assert float(there.stdout) == pytest.approx(chart.at(80.0, 0.2).spectral_radius, rel=1e-12)
 
 
 def test_straight_lines_have_no_other_motion() -> None:
