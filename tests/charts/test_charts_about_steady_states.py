@@ -244,6 +244,18 @@ def test_the_worst_free_line_within_its_tolerances() -> None:
     assert 0.1 < found.probability < 0.9
 
 
+def test_a_free_line_that_its_tolerances_alone_bend() -> None:
+    """Straight in the middle of them: about rigid shafts its two disks would seem to run away from each other."""
+    line = tn.Driveline([
+        tn.Disk(inertia=1.0, drive_share=1.0), tn.HookeJoint(angle=0.0), tn.Shaft(stiffness=1e4, damping=20.0),
+        tn.Disk(inertia=1.0, viscous_load=0.5),
+    ])  # fmt: skip
+    angles = {"HookeJoint 1.angle": ("range", -0.1, 0.1)}
+    found = tn.tolerance_study(line, angles, speeds=[40.0], samples=256, checks=False)
+    one = tn.stability(line.replace("HookeJoint 1", angle=found.worst.values["HookeJoint 1.angle"]), 40.0)
+    assert found.probability == 1 and found.worst.growth_rate == pytest.approx(one.growth_rate, rel=2e-3)
+
+
 @pytest.mark.slow
 def test_regions_and_windows_of_a_free_line() -> None:
     pair = Pair(False, 110.0, (0.35, 0.2), viscous=0.8)
