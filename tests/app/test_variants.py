@@ -140,3 +140,43 @@ def test_only_what_has_the_same_axes_is_laid_upon_another() -> None:
     assert list(largest(modes, modes)) == []
     assert look("of variant 1: curve 3").colour == look("curve 3").colour
     assert look("of variant 1: curve 3").dash != look("of variant 0: curve 3").dash
+
+
+def test_what_a_variant_had_under_other_settings_is_not_laid_upon_the_new(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def work(made: Session, pool: Held) -> None:
+        made.show_view("orders")
+        await settled(made)
+        made.keep("")
+        made.arrange_variants(UPON)
+        await settled(made)
+        own = made.view.of(NOW).canvases
+        laid = [name for name, canvas in own.items() if canvas.others]
+        assert laid
+        pool.held.clear()
+        made.view.put("speed", 900.0)
+        old = [name for name in laid if not made.view.of(NOW).is_up_to_date(own[name])]
+        assert old
+        assert all(not own[name].others for name in old)
+        pool.held.set()
+        await settled(made)
+        assert all(own[name].others for name in laid)
+
+    on_session(work, monkeypatch)
+
+
+def test_a_verdict_whose_search_was_cancelled_is_looked_for_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def work(made: Session, pool: Held) -> None:
+        made.keep("")
+        await asyncio.sleep(0.1)
+        made.cancel()
+        await asyncio.sleep(0.1)
+        assert made.variants[0].verdict == "" and made.verdict == ("", "")
+        turn(made, "7 deg")
+        await settled(made)
+        for _ in range(400):
+            if made.variants[0].verdict and "not yet checked" not in made.variants[0].verdict:
+                break
+            await asyncio.sleep(0.05)
+        assert escape(tn.assess(tn.loads(starter("two-shaft"))).sentence) in made.variants[0].verdict
+
+    on_session(work, monkeypatch)

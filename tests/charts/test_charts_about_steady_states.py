@@ -3,7 +3,11 @@ written here: shooting with steps of Dormand and Prince, nothing of the package.
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -176,7 +180,7 @@ def test_two_hundred_points(free: bool) -> None:
     agrees(pair, chart, points, y="angle" if free else "load")
 
 
-def test_a_chart_is_read_again(tmp_path: object) -> None:
+def test_a_chart_is_read_again(tmp_path: Path) -> None:
     pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
     chart = tn.stability_chart(pair.description(), ("speed", 60.0, 130.0, 4), ("HookeJoint 2.angle", 0.1, 0.5, 3))
     path = f"{tmp_path}/chart.nc"
@@ -186,6 +190,18 @@ def test_a_chart_is_read_again(tmp_path: object) -> None:
     assert again.at(83.0, 0.31).spectral_radius == pytest.approx(chart.at(83.0, 0.31).spectral_radius, rel=1e-9)
     closer = again.zoom((70.0, 90.0, 3), (0.2, 0.3, 2))
     assert closer.at(80.0, 0.2).spectral_radius == pytest.approx(float(closer.spectral_radius[0, 1]), rel=1e-9)
+
+
+def test_a_chart_answers_in_another_process(tmp_path: Path) -> None:
+    """Compiled equations stand elsewhere there."""
+    pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
+    chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 2), ("HookeJoint 2.angle", 0.1, 0.3, 2))
+    (tmp_path / "chart").write_bytes(pickle.dumps(chart))
+    asked = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')).at(80.0, 0.2).spectral_radius)"
+    there = subprocess.run(
+        [sys.executable, "-c", asked, str(tmp_path / "chart")], capture_output=True, text=True, check=True
+    )
+    assert float(there.stdout) == pytest.approx(chart.at(80.0, 0.2).spectral_radius, rel=1e-12)
 
 
 def test_straight_lines_have_no_other_motion() -> None:
@@ -226,6 +242,18 @@ def test_the_worst_free_line_within_its_tolerances() -> None:
     growth = np.log(Pair(**{**vars(pair), **own}).radius()) * 110.0 / np.pi
     assert found.worst.growth_rate == pytest.approx(growth, rel=2e-3)
     assert 0.1 < found.probability < 0.9
+
+
+def test_a_free_line_that_its_tolerances_alone_bend() -> None:
+    """Straight in the middle of them: about rigid shafts its two disks would seem to run away from each other."""
+    line = tn.Driveline([
+        tn.Disk(inertia=1.0, drive_share=1.0), tn.HookeJoint(angle=0.0), tn.Shaft(stiffness=1e4, damping=20.0),
+        tn.Disk(inertia=1.0, viscous_load=0.5),
+    ])  # fmt: skip
+    angles = {"HookeJoint 1.angle": ("range", -0.1, 0.1)}
+    found = tn.tolerance_study(line, angles, speeds=[40.0], samples=256, checks=False)
+    one = tn.stability(line.replace("HookeJoint 1", angle=found.worst.values["HookeJoint 1.angle"]), 40.0)
+    assert found.probability == 1 and found.worst.growth_rate == pytest.approx(one.growth_rate, rel=2e-3)
 
 
 @pytest.mark.slow

@@ -175,7 +175,7 @@ class Session:
             if len(self.variants) >= MOST_KEPT:
                 remedy = "drop one first"
                 raise InputError(f"are kept already, {MOST_KEPT} at most", element="variants", remedy=remedy)
-            self._add_variant(self.document, name, self._is_room())
+            self._add_variant(self.document, name, True)
             self._line_changed()
 
         self.guarded(work)
@@ -188,7 +188,8 @@ class Session:
         name = name[:LONGEST_NAME]
         named = free_name(self.variants) if not name or name in taken else name
         key = f"kept {next(self.fresh)}"
-        self.variants.append(KeptVariant(key, named, document.toml, document.file().text, is_shown))
+        shown = is_shown and self._is_room()
+        self.variants.append(KeptVariant(key, named, document.toml, document.file().text, shown))
 
     def _variant(self, key: str) -> KeptVariant:
         return next(one for one in self.variants if one.key == key)
@@ -209,6 +210,7 @@ class Session:
     def drop(self, key: str) -> None:
         """Keep a variant no more."""
         self.variants = [one for one in self.variants if one.key != key]
+        self.known = {of: answer for of, answer in self.known.items() if of[1] != key}
         for view in self.views.values():
             view.sides.pop(key, None)
         self.guarded(self._line_changed)
@@ -235,15 +237,26 @@ class Session:
             self.beside(self._verdict_of(toml))
 
     async def _verdict_of(self, toml: str) -> None:
-        await asyncio.sleep(JUDGED_AFTER)
-        if toml not in (self.document.toml, *(one.toml for one in self.variants)):
-            return  # a slider under way
         try:
+            await asyncio.sleep(JUDGED_AFTER)
+            if toml not in (self.document.toml, *(one.toml for one in self.variants)):
+                return  # a slider under way
             found = (await self.pool.run(Job(toml, Call("tn.assess", (LINE,)), "verdict_in_short"), self)).value
         except TrunnionError as error:
             found = {"verdict": "not judged", "said": str(error)}
+        except asyncio.CancelledError:
+            self._ask_again(toml)
+            raise
         said = markup("<span data-variant='{0}'>{1}</span>", found["verdict"], found["said"])
         self.locked(partial(self._say_verdict, toml, said))
+
+    def _ask_again(self, toml: str) -> None:
+        """A search that was cancelled has no verdict; the next change of the page begins it anew."""
+        for one in self.variants:
+            if one.toml == toml:
+                one.verdict = ""
+        if self.verdict[0] == toml:
+            self.verdict = ("", "")
 
     def _say_verdict(self, toml: str, said: Html) -> None:
         for one in self.variants:
@@ -301,6 +314,7 @@ class Session:
             self.task.cancel(SUPERSEDED)
         try:
             self._expect(sides)
+            self.view.show_upon()
             self.view.downloads.object = self._links()
         except TrunnionError as error:
             self.task, self.view.downloads.object = None, ""
@@ -399,7 +413,7 @@ class Session:
             except TrunnionError as error:
                 if not step.soft:
                     raise
-                self.locked(partial(view.of(side).refuse, step, job, str(error)))
+                self.locked(partial(view.refuse, side, step, job, str(error)))
             else:
                 remarks += answer.remarks
                 if step.lasting:

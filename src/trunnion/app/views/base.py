@@ -175,6 +175,11 @@ class VariantPane(ABC, Generic[V]):
         """Whether what a kind of step shows belongs to the line and settings as they are."""
         return not self.doubt and (kind not in self.shown or self.shown[kind] in self.wanted.get(kind, ()))
 
+    def is_up_to_date(self, canvas: Canvas) -> bool:
+        """Whether a picture belongs to the line and settings as they are."""
+        kinds = [kind for kinds, panels in self.parts.items() if canvas.panel in panels for kind in kinds]
+        return not self.doubt and all(map(self.is_current, kinds))
+
     def tell(self, fate: str) -> None:
         """Stamp what is shown of another line or other settings, with what becomes of it."""
         stale = False
@@ -272,8 +277,12 @@ class View(ABC):
     def take(self, side: str, step: ViewStep, job: Job, data: Any) -> None:
         """Show what a job gave for a variant, on the axes of another one too where they are shared."""
         self.of(side).take(step, job, data)
-        if len(self.names) > 1:
-            self.show_upon()
+        self.show_upon()
+
+    def refuse(self, side: str, step: ViewStep, job: Job, sentence: str) -> None:
+        """Show that a job gave nothing for a variant, and why."""
+        self.of(side).refuse(step, job, sentence)
+        self.show_upon()
 
     def lay_upon(self, names: Mapping[str, str]) -> bool:
         """Show what variants have on the axes of the present line's pictures, or nothing of them; whether it can."""
@@ -284,13 +293,12 @@ class View(ABC):
     def show_upon(self) -> None:
         """The same anew, once a picture has changed, with how the largest values differ."""
         own, rows = self.of("now"), list[Html]()
+        sides = {name: self.of(key) for key, name in self.names.items() if key != own.variant}
         for place, canvas in own.canvases.items():
-            others = [
-                (name, self.of(key).canvases[place].own) for key, name in self.names.items() if key != own.variant
-            ]
-            known = [(name, of[0]) for name, of in others if of is not None]
+            others = ((name, side, side.canvases.get(place)) for name, side in sides.items())
+            known = [(name, of.own[0]) for name, side, of in others if of and of.own and side.is_up_to_date(of)]
             canvas.lay_upon(known)
-            if canvas.own is not None:
+            if canvas.own is not None and own.is_up_to_date(canvas):
                 rows += [row for name, one in known for row in _largest(canvas.own[0], name, one)]
         head = markup("<tr><th>largest of</th><th>variant</th><th>there</th><th>now</th><th>change</th></tr>")
         self.upon.object = markup("<table class='plain'>{}{}</table>", head, joined(rows)) if rows else ""

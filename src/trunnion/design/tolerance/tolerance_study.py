@@ -197,7 +197,8 @@ def tolerance_study(
     require_pixels(each * SCRAMBLES, len(at))
     workers = workers_of_client(client)
     lines = lines_like(
-        assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
+        assembly,
+        tables(assembly, spreads, np.array([[0.5], [0.0], [1.0]]) + np.zeros(len(spreads)), float(at[0])),
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip
     shares = sobol(len(spreads), each, seed)

@@ -43,20 +43,21 @@ class SteadyStateLines(ManyLines):
 
 
 def lines_like(assembly: Assembly, table: Array, twisted: bool, threads: int) -> ManyLines:
-    """``ManyLines`` of one line; of a free–free one with joint angles each about its own motion.
+    """``ManyLines`` of one line; of a free–free one that has joint angles at any row of ``table``, the first of which
+    is typical, each about its own motion.
 
     Raises
     ------
     InputError : as ``ManyLines.of``; springs with stages or play in a line that moves about its own motion.
     """
     if not has_periodic_base(assembly, table):
-        return ManyLines.of(assembly, table, twisted, threads)
+        return ManyLines.of(assembly, table[:1], twisted, threads)
     from trunnion.floquet.propagation.about_steady_states import pixels_of_rows
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
     require_tree(assembly, "studies of many lines do")
     refuse_dragged(assembly)
-    require_steady_base(assembly, table)
+    require_steady_base(assembly, table[:1])
     solved = SteadyStatesBySpeed(assembly.line)
     if solved.obstacle:
         raise InputError(

@@ -123,7 +123,7 @@ def _turning(name: str, rotor: Rotor, law: Excitation, factor: float, size: str)
 
 def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:
     place, table = assembly.line.index(name), assembly.table(1, abs(speed))
-    running = Running(np.abs(table[:, 0]), lambda: -assembly.own_load(place, table))
+    running = Running(np.abs(table[:, 0]), lambda: -assembly.exciting_load(place, table))
     try:
         found = complex(amplitude(law, np.array([law.largest]), running)[0])
     except InputError as error:

@@ -160,8 +160,13 @@ class FreeBalance:
         self.fastest = max(1, int(np.ceil(max(float(rate) for rate in topo.rates) * period / (2 * np.pi) - 1e-9)))
         self.fewest = max(FEWEST, 3 * self.fastest)
         self.line = LineSystem(assembly, 1.0)
-        self.address, self.weight = self.line.system.rate.address, np.ones(2 * topo.size)
+        self.weight = np.ones(2 * topo.size)
         self.rows: Rows = self._at_speeds
+
+    @property
+    def address(self) -> int:
+        """Of the compiled equations in this process: another one has it elsewhere."""
+        return self.line.system.rate.address
 
     def along(self, rows: Rows) -> FreeBalance:
         """The same of lines whose packed numbers ``rows`` reads from the values asked for, in place of speeds."""
