@@ -148,7 +148,7 @@ def test_names_cannot_leave_their_comment(tmp_path: Path) -> None:
     disks = [
         one for k, name in enumerate(names) for one in (tn.Shaft(stiffness=1e4 + k), tn.Disk(inertia=1.0, name=name))
     ]
-    line = tn.Driveline([tn.ConstantSpeed(), *disks], name="a */ int b; /* \\", operation=tn.Operation(speed=SPEED))
+    line = tn.Driveline([tn.ConstantSpeed(), *disks], name="??/ \\", operation=tn.Operation(speed=SPEED))
     agrees(line, tmp_path)
 
 
@@ -157,3 +157,11 @@ def test_without_a_speed_it_is_refused(tmp_path: Path) -> None:
         tn.export_line(feature_lines.bent(), tmp_path / "line.c", "c")
     with pytest.raises(InputError, match="a function in C does not say what it is made of"):
         tn.import_line(tmp_path / "line.c")
+
+
+def test_a_schedule_is_no_single_line(tmp_path: Path) -> None:
+    """Its angles move with the travel: the numbers as they stand would be written without a word."""
+    schedule = tn.Schedule(name="travel", travel=[0.0, 0.1], angles={"joint 2": [0.1, 0.4]})
+    line = feature_lines.bent().but(operation=tn.Operation(speed=SPEED, schedules=[schedule]))
+    with pytest.raises(InputError, match="schedule.travel: cannot be written to such a file; write one point"):
+        tn.export_line(line, tmp_path / "line.c", "c")

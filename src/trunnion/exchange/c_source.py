@@ -13,6 +13,7 @@ from trunnion.driveline.features import feature
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.errors import InputError
+from trunnion.exchange.held import schedules_refused
 
 NOT_IN_C = {
     "slip clutch": "leave it out, for the line while it sticks",
@@ -33,7 +34,7 @@ def refuse_c(line: Driveline) -> None:
     ------
     InputError : names each.
     """
-    wrong = []
+    wrong = schedules_refused(line)
     for key, remedy in NOT_IN_C.items():
         for place in feature(key).places(line):
             element, _, field = place.rpartition(".")

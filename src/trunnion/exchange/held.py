@@ -78,13 +78,20 @@ def refuse_unheld(line: Driveline) -> None:
                     remedy=REMEDIES.get(one.key, usual),
                 )
             )  # fmt: skip
-    for schedule in line.operation.schedules if line.operation else ():
-        remedy = f"write one point of it: tn.export_line(line.at_schedule({schedule.name!r}, …), …)"
-        wrong.append(
-            InputError("cannot be written to such a file", element="schedule", key=schedule.name, remedy=remedy)
-        )
+    wrong += schedules_refused(line)
     if wrong:
         raise InputError.together(wrong)
+
+
+def schedules_refused(line: Driveline) -> list[InputError]:
+    """A refusal of every schedule: a file holds one line, not a course of its numbers."""
+    return [
+        InputError(
+            "cannot be written to such a file", element="schedule", key=schedule.name,
+            remedy=f"write one point of it: tn.export_line(line.at_schedule({schedule.name!r}, …), …)",
+        )
+        for schedule in (line.operation.schedules if line.operation else ())
+    ]  # fmt: skip
 
 
 def not_written(line: Driveline) -> tuple[str, ...]:

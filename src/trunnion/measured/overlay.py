@@ -95,7 +95,8 @@ class MeasuredComparison(Result):
             return f"{text}, as predicted to {figures(100 * float(self.off[order, channel]), 2)} %"
         text += f", predicted {figures(peak / size, 4)} {unit}".rstrip() + f" at {self.words.rounded(where)}"
         if missed and abs(where - self.speed[int(predicted.argmax())]) <= 2 * known:
-            return f"{text}, between the tracked speeds, at which it stays below {figures(tracked / size, 4)} {unit}"
+            text += f", between the tracked speeds; at those up to {figures(tracked / size, 4)} {unit}".rstrip()
+            return f"{text}: {_larger(float(measured[at] / tracked) - 1)}"
         shift, low, high = top / where - 1, float(self.speed.min()), float(self.speed.max())
         ends = abs(top - low) <= known or abs(top - high) <= known or where in (low, high)
         moved = not ends and abs(top - where) > max(SAME_PEAK * where, known)
