@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from generate import api, changelog, commands, elements, messages, validation
+from generate import api, changelog, commands, elements, links, messages, validation
 
 
 def write(folder: Path) -> None:
@@ -15,3 +15,4 @@ def write(folder: Path) -> None:
     messages.write_page(folder / "messages.md")
     validation.write_page(folder / "validation.md")
     changelog.write_pages(folder)
+    links.write_page(folder / "links.md")

@@ -306,12 +306,6 @@ ROWS: dict[str, Row] = {
         set_aside=(DRAGGED,),
     ),
     "multipliers": _row(
-        refused={**_BASE, **_OTHER_SPEEDS},
-        said={**_SERIES, **QUASI_STATIC},
-        inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
-        set_aside=(DRAGGED,),
-    ),
-    "charted multipliers": _row(
         refused={key: why for key, why in (_BASE | _OTHER_SPEEDS).items() if key not in ("free start", "drive share")},
         said={**_SERIES, **QUASI_STATIC},
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
@@ -389,7 +383,6 @@ ROWS: dict[str, Row] = {
             LAG: "equations of motion have no lagging torque",
             OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
             **_NO_PATH,
-            "excitation that varies with speed or load": "its amplitude would change on the way",
         },
         said=_IN_ROWS,
         inert=_PASSIVE,

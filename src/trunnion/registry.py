@@ -66,7 +66,7 @@ ANALYSES = (
     Analysis(
         "stability_chart",
         "Stability over any two parameters, as picture and data.",
-        features="charted multipliers",
+        features="multipliers",
         pictures={"StabilityChart.plot": "trunnion.pictures.stability_chart:stability_chart"},
         command="trunnion.cli.stability:stability_chart",
         view="stability",

@@ -74,6 +74,21 @@ def case_fields(document: Document) -> dict[str, tuple[str, str]]:
     return {f"{f.label} of {g.title}": (f.text, f.message) for g in groups for f in g.fields}
 
 
+def test_a_load_case_has_a_factor_for_every_machine() -> None:
+    text = dumps(
+        tn.Driveline(
+            [tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Fan(inertia=2.0, quadratic_load=0.01, name="fan")]
+        )
+    )
+    document = Document(text)
+    document.add_load_case()
+    place = ("operation", "load_case", 0)
+    document.set_text((*place, "factors", "fan"), "1.3")
+    assert dict(document.line.operation.load_cases[0].factors) == {"fan": 1.3}
+    group = next(one for one in document.groups() if one.path == place)
+    assert [one.label for one in group.fields] == ["name", "factor on the torque of fan"]
+
+
 def test_a_load_case_has_a_field_for_its_name_and_for_every_disk() -> None:
     document = Document(starter("two-shaft"))
     document.add_load_case()

@@ -495,4 +495,4 @@ def test_beyond_the_range_every_load_case_is_looked_at_and_what_no_table_covers_
 
 def test_sentences_of_the_report_have_the_signs_of_units():
     said = with_signs("12.5 deg, 3 N*m*s/rad, 2 kg*m^2 and 300 rad/s^2 of Shaft *.damping, 5 degrees")
-    assert said == "12.5°, 3 N·m·s/rad, 2 kg·m² and 300 rad/s² of Shaft *.damping, 5 degrees"
+    assert said == "12.5°, 3 N m s/rad, 2 kg m² and 300 rad/s² of Shaft *.damping, 5 degrees"

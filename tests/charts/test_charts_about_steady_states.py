@@ -3,7 +3,11 @@ written here: shooting with steps of Dormand and Prince, nothing of the package.
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -67,7 +71,8 @@ class Pair:
         return np.concatenate([v, [first, (s * two - one) / j[1], (-two - self.load - self.viscous * v[2]) / j[2]]])
 
     def radius(self) -> float:
-        """Largest multiplier of the motion over half a turn but that of a shift in time."""
+        """Largest multiplier of the motion over half a turn but that of a shift in time, and of the speed where no
+        torque depends on it."""
         period = np.pi / self.speed
         own = slice(1, 3) if self.driven else slice(0, 3)
         places = np.r_[np.arange(3)[own], 3 + np.arange(3)[own]]
@@ -112,7 +117,7 @@ class Pair:
         n = len(places)
         matrix = ((end[:, :n] - end[:, n:])[places] / (2 * step)).astype(float)
         values = np.linalg.eigvals(matrix)
-        if not self.driven:
+        for _ in range(0 if self.driven else 1 if self.viscous else 2):
             values = np.delete(values, np.abs(values - 1).argmin())
         return float(np.abs(values).max())
 
@@ -121,7 +126,11 @@ def agrees(pair: Pair, chart: tn.StabilityChart, points: list[tuple[int, int]], 
     """``at``: which field of ``Pair`` y is."""
     period = chart.period / np.pi
     for row, column in points:
-        own = {"angle": lambda y: {"angles": (pair.angles[0], y)}, "load": lambda y: {"load": y}}[at["y"]]
+        own = {
+            "angle": lambda y: {"angles": (pair.angles[0], y)},
+            "load": lambda y: {"load": y},
+            "viscous": lambda y: {"viscous": y},
+        }[at["y"]]
         one = Pair(**{**vars(pair), "speed": float(chart.x[column]), **own(float(chart.y[row]))})
         true = one.radius() ** period
         off = abs(chart.spectral_radius[row, column] - true)
@@ -140,6 +149,13 @@ def test_a_free_line_over_speed_and_angle() -> None:
     assert here.spectral_radius == pytest.approx(one.radius() ** (chart.period / np.pi), abs=here.error_estimate + 3e-7)
     assert np.abs(here.multipliers - 1).min() == 0  # the shift in time
     assert "own periodic motion" in str(chart)
+
+
+def test_a_load_by_speed_that_comes_to_nothing() -> None:
+    """There the speed changes without end, which is no disturbance; elsewhere it counts."""
+    pair = Pair(False, 80.0, (0.3, 0.2), viscous=0.5)
+    chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 3), ("Disk 3.viscous_load", 0.0, 0.4, 3))
+    agrees(pair, chart, [(0, 0), (0, 1), (1, 1), (2, 2)], y="viscous")
 
 
 def test_a_driven_line_whose_load_twists_it_far() -> None:
@@ -164,7 +180,7 @@ def test_two_hundred_points(free: bool) -> None:
     agrees(pair, chart, points, y="angle" if free else "load")
 
 
-def test_a_chart_is_read_again(tmp_path: object) -> None:
+def test_a_chart_is_read_again(tmp_path: Path) -> None:
     pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
     chart = tn.stability_chart(pair.description(), ("speed", 60.0, 130.0, 4), ("HookeJoint 2.angle", 0.1, 0.5, 3))
     path = f"{tmp_path}/chart.nc"
@@ -174,6 +190,18 @@ def test_a_chart_is_read_again(tmp_path: object) -> None:
     assert again.at(83.0, 0.31).spectral_radius == pytest.approx(chart.at(83.0, 0.31).spectral_radius, rel=1e-9)
     closer = again.zoom((70.0, 90.0, 3), (0.2, 0.3, 2))
     assert closer.at(80.0, 0.2).spectral_radius == pytest.approx(float(closer.spectral_radius[0, 1]), rel=1e-9)
+
+
+def test_a_chart_answers_in_another_process(tmp_path: Path) -> None:
+    """Compiled equations stand elsewhere there."""
+    pair = Pair(False, 1.0, (0.35, 0.2), viscous=0.8)
+    chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 2), ("HookeJoint 2.angle", 0.1, 0.3, 2))
+    (tmp_path / "chart").write_bytes(pickle.dumps(chart))
+    asked = "import pickle, sys; print(pickle.load(open(sys.argv[1], 'rb')).at(80.0, 0.2).spectral_radius)"
+    there = subprocess.run(
+        [sys.executable, "-c", asked, str(tmp_path / "chart")], capture_output=True, text=True, check=True
+    )
+    assert float(there.stdout) == pytest.approx(chart.at(80.0, 0.2).spectral_radius, rel=1e-12)
 
 
 def test_straight_lines_have_no_other_motion() -> None:
@@ -189,3 +217,51 @@ def test_loads_that_the_drive_does_not_balance_are_refused() -> None:
     line = tn.Driveline([tn.Disk(inertia=1.3), *pair.description().elements[1:]])
     with pytest.raises(tn.InputError, match="do not balance"):
         tn.stability_chart(line, ("speed", 60.0, 130.0, 3), ("HookeJoint 2.angle", 0.1, 0.5, 3))
+
+
+def beside(pair: Pair, angle: float, by: float = 1e-5) -> tuple[float, float]:
+    """Radii just below and just above an angle of the second joint."""
+    one, other = (Pair(**{**vars(pair), "angles": (pair.angles[0], angle + part)}).radius() for part in (-by, by))
+    return one, other
+
+
+def test_the_largest_angle_of_a_free_line() -> None:
+    pair = Pair(False, 110.0, (0.35, 0.2), viscous=0.8)
+    found = tn.stable_limit(pair.description(), "HookeJoint 2.angle", [110.0], high=0.7, between=False)
+    below, above = beside(pair, float(found.limit[0]))
+    assert below < 1 < above
+    assert "own motion" in found.search and not found.complete
+
+
+def test_the_worst_free_line_within_its_tolerances() -> None:
+    pair = Pair(False, 110.0, (0.35, 0.6), viscous=0.8)
+    tolerances = {"Shaft 1.stiffness": 0.1, "HookeJoint 2.angle": 0.05}
+    found = tn.tolerance_study(pair.description(), tolerances, speeds=[110.0], samples=256, checks=False)
+    worst = found.worst.values
+    own = {"stiffness": (worst["Shaft 1.stiffness"], 6e3), "angles": (0.35, worst["HookeJoint 2.angle"])}
+    growth = np.log(Pair(**{**vars(pair), **own}).radius()) * 110.0 / np.pi
+    assert found.worst.growth_rate == pytest.approx(growth, rel=2e-3)
+    assert 0.1 < found.probability < 0.9
+
+
+@pytest.mark.slow
+def test_regions_and_windows_of_a_free_line() -> None:
+    pair = Pair(False, 110.0, (0.35, 0.2), viscous=0.8)
+    line = pair.description()
+    found = tn.tongues(line, ("speed", 104.0, 116.0), ("HookeJoint 2.angle", 0.4, 0.68), rows=3)
+    (tongue,) = found
+    for y in (tongue.y[-1], tongue.y[len(tongue.y) // 2]):
+        for edge in tongue.interval_at(float(y)):
+            if 104.0 < edge < 116.0:
+                radii = [
+                    Pair(**{**vars(pair), "speed": edge + part, "angles": (0.35, float(y))}).radius()
+                    for part in (-2e-4, 2e-4)
+                ]
+                assert min(radii) < 1 < max(radii)
+    windows = tn.stable_windows(line, "HookeJoint 2.angle", 0.4, 0.68, (108.0, 112.0), rows=3)
+    (end,) = windows.windows[:, 1]
+    grid = np.linspace(108.0, 112.0, 9)
+    assert all(Pair(**{**vars(pair), "speed": s, "angles": (0.35, end - 1e-4)}).radius() < 1 for s in grid)
+    assert any(Pair(**{**vars(pair), "speed": s, "angles": (0.35, end + 2e-2)}).radius() > 1 for s in grid)
+    damped = tn.minimum_damping(line, (108.0, 112.0), maximum=10.0, rows=3)
+    assert damped.smallest is not None

@@ -63,6 +63,15 @@ def swap(line: tn.Driveline, name: str, *new: tn.Driveline) -> tn.Driveline:
     return tn.Driveline([*line.elements[:place], *new, *line.elements[place + 1 :]])
 
 
+def swinging(share: float) -> tn.Driveline:
+    """Free–free, unstable about its own motion beside 110 rad/s; ``share`` of its middle disk in the drive."""
+    return tn.Driveline([
+        tn.Disk(inertia=1.3, drive_share=1.0), tn.HookeJoint(angle=0.35), tn.Shaft(stiffness=9e3, damping=3.0),
+        tn.Disk(inertia=0.7, drive_share=share), tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=6e3, damping=2.0),
+        tn.Disk(inertia=0.9, viscous_load=0.8),
+    ])  # fmt: skip
+
+
 def front(shaft: tn.Shaft | tn.PiecewiseShaft) -> Change:
     return lambda line: swap(line, "front", shaft)
 
@@ -249,10 +258,17 @@ def excited(change: Change) -> Change:
 
 
 OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
-    ("stability_chart", "drive share"): (
-        lambda line: put("load", load_torque=80.0)(free(line)),
-        lambda line: put("load", load_torque=80.0)(free(line)).replace("hub", drive_share=0.5),
-    ),
+    **{
+        (name, "drive share"): (
+            lambda line: put("load", load_torque=80.0)(free(line)),
+            lambda line: put("load", load_torque=80.0)(free(line)).replace("hub", drive_share=0.5),
+        )
+        for name in ("stability_chart", "stable_limit", "tolerance_study")
+    },
+    **{
+        (name, "drive share"): (lambda line: swinging(0.0), lambda line: swinging(0.5))
+        for name in ("tongues", "stable_windows", "minimum_damping")
+    },
     ("resonance_speeds", "shafts tied to two others"): (same, lambda line: tied(line, straight=False)),
     ("resonance_speeds", "closed loop"): (same, lambda line: looped(line, straight=False)),
     ("phase_forks", "centrifugal pendulum"): (same, damped_by(pendulum())),

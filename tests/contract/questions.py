@@ -188,22 +188,22 @@ QUESTIONS = {
             line, "joint 2.angle", [145.0, 150.0, 460.0, 627.0], scan=20, high=1.4, between=False
         ),
         lambda: tn.stable_limit(in_rpm(), ANGLE, [LOW, HIGH], scan=6, high=0.5),
-        quick=("load torque", "free start", "tripod joint"),
+        quick=("load torque", "tripod joint"),
     ),
     "tongues": Question(
         lambda line: tn.tongues(line, ("speed", 140.0, 150.0), ("joint 2.angle", 0.9, 1.4), rows=3),
         lambda: tn.tongues(in_rpm(), ("speed", LOW, HIGH), (ANGLE, 0.0, 0.6)),
-        quick=("load torque", "free start"),
+        quick=("load torque",),
     ),
     "stable_windows": Question(
         lambda line: tn.stable_windows(line, "joint 2.angle", 0.2, 1.4, (140.0, 150.0), rows=5),
         lambda: tn.stable_windows(in_rpm(), ANGLE, 0.0, 0.3, (LOW, HIGH)),
-        quick=("load torque", "free start"),
+        quick=("load torque",),
     ),
     "minimum_damping": Question(
         lambda line: least_damping(line, (140.0, 144.0)),
         lambda: tn.minimum_damping(in_rpm(), (LOW, HIGH)),
-        quick=("load torque", "free start"),
+        quick=("load torque",),
     ),
     "compare": Question(
         lambda line: tn.compare(line, line.replace("load", inertia=0.21), (SPEED, SPEED)),
@@ -354,6 +354,15 @@ ASK_CELL = {
         ("minimum_damping", key): lambda line: least_damping(line, TUBES, 1.05, maximum=40.0)
         for key in ("tube inertia", "bending stiffness")
     },
+    ("tongues", "drive share"): lambda line: tn.tongues(
+        line, ("speed", 104.0, 116.0), ("HookeJoint 2.angle", 0.4, 0.68), rows=3
+    ),
+    ("stable_windows", "drive share"): lambda line: tn.stable_windows(
+        line, "HookeJoint 2.angle", 0.4, 0.68, (108.0, 112.0), rows=3
+    ),
+    ("minimum_damping", "drive share"): lambda line: tn.minimum_damping(
+        line.replace("HookeJoint 2", angle=0.65), (108.0, 112.0), maximum=10.0, rows=3
+    ),
     # A stiff mesh moves where its own mode is excited.
     ("sweep", "mesh damping"): lambda line: tn.sweep(line, [2700.0, 2800.0]),
     ("minimum_damping", "loss factor"): lambda line: least_damping(line, (140.0, 150.0), 0.6, maximum=4.0),

@@ -71,6 +71,34 @@ def rotated():
     return tn.track_orders(tn.Measurement([wheel()]), [1])
 
 
+def benched(**more):
+    """A run-up of a line with a joint on a synthetic bench."""
+    joint, tube = HookeJoint(angle=0.2, name="joint"), Shaft(stiffness=2e4, damping=25.0, name="tube")
+    line = Driveline([ConstantSpeed(name="drive"), joint, tube, Disk(inertia=0.5, name="hub")])
+    return line, tn.measure(line, **({"speeds": (60.0, 90.0), "duration": 3.0, "pickups": {"hub": 30}} | more))
+
+
+def tracked(at="hub"):
+    """Order 2 of its hub, the channel said to be at ``at``."""
+    line, run = benched()
+    train = tn.PulseTrain(run.pulses[0].times, 30, "CH1", at)
+    return line, tn.track_orders(tn.Measurement([train]), [2])
+
+
+def identified(free, **more):
+    return tn.identify(*tracked(), free, **more)
+
+
+def free_and_bent():
+    """A free–free line with a joint."""
+    joint, hub = HookeJoint(angle=0.2), Disk(inertia=0.5, name="hub")
+    return Driveline([Disk(inertia=2.0), Shaft(stiffness=2e4, damping=9.0), Disk(inertia=0.3), joint, tube(), hub])
+
+
+def tube():
+    return Shaft(stiffness=2e4, damping=9.0, name="tube")
+
+
 def damped():
     """A damper at the middle of three equal disks that are free–free."""
     ends, shaft = Disk(inertia=1.0), Shaft(stiffness=100.0)
@@ -875,6 +903,25 @@ PYTHON = [
         "between = [33.0, 99.0]: is outside the recording, 0 to 19.99 s",
         "rising times",
     ),
+    (lambda: benched(duration=0.0), "duration = 0: must be positive", "in seconds"),
+    (lambda: benched(speeds=-5.0), "speeds = -5: must be positive", "tn.rpm(1500)"),
+    (lambda: benched(jitter=-1e-6), "jitter = -1e-06: must not be negative", "0 for none"),
+    (lambda: benched(missing=0.5), "missing = 0.5: must be a share below 0.2", "0.001"),
+    (lambda: benched(pickups={"hob": 30}), "pickups = 'hob': is no disk of the line", '"hub"'),
+    (lambda: benched(pickups={"hub": 1}), "pickups.hub = 1: must be a whole number", "2 or more"),
+    (lambda: benched(gauges=["tubes"]), "gauges = 'tubes': is no spring of the line", '"tube"'),
+    (lambda: tn.compare_measured(*tracked("hob")), "CH1.at = 'hob': is no disk of the line", '"hub"'),
+    (lambda: tn.compare_measured(*tracked("input")), "data: shows no place of the line that moves", 'at = "hub"'),
+    (lambda: tn.compare_measured(*tracked()).plot(channel="hub"), "channel = 'hub': is no channel", "there are CH1"),
+    (lambda: identified({"tube.stifness": (1e4, 4e4)}), "tube.stifness: is not a parameter", '"tube.stiffness"'),
+    (lambda: identified({"tube.stiffness": (4e4, 1e4)}), "tube.stiffness = (40000.0, 10000.0): must be", "free={"),
+    (lambda: identified({}), "free: must name one parameter or more", "free={"),
+    (lambda: identified({"tube.stiffness": (1e4, 4e4)}, seed=-1), "seed = -1: must be a whole number", "0 or more"),
+    (
+        lambda: tn.identify(free_and_bent(), tracked()[1], {"tube.stiffness": (1e4, 4e4)}),
+        "driveline: is free–free and has joint angles",
+        "drive its input at a constant speed",
+    ),
     (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
     (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),
     (lambda: rotated().cut(1, "weel"), "channel = 'weel': is no channel", '"wheel"'),
@@ -1285,16 +1332,6 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.transient(
-            line(Disk(inertia=1), tn.SlipClutch(torque=9.0), Disk(inertia=1), Shaft(stiffness=1e4), PUMP),
-            1.0,
-            friction=[tn.FrictionTorque(on="pump", torque=1.0)],
-            speed=9.0,
-        ),
-        "friction.on = 'pump': is not followed in a line with a slip clutch",
-        "describe the brake as a torque over time",
-    ),
-    (
         lambda: tn.safe_accelerations(free(drive_share=1), 30, 40, limit=9.0, accelerations=(1, 2), points=1),
         "points = 1: must be a whole number from 2",
         "13, say",
@@ -1323,7 +1360,7 @@ PYTHON = [
     ),
     (
         lambda: tn.stability_chart(
-            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3)]),
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
             ("speed", 30, 60, 3), ("pump.inertia", 0.4, 0.6, 3),
         ),
         "driveline: is judged about its own periodic motion, and it has stages or play besides",
@@ -1346,8 +1383,11 @@ PYTHON = [
         "leave it out",
     ),
     (
-        lambda: tn.stable_limit(free(drive_share=1), "HookeJoint 1.angle", [30, 40]),
-        "driveline: is free–free and has joint angles: it is judged about its own periodic motion",
+        lambda: tn.stable_limit(
+            tn.Driveline([*free(drive_share=1).elements, with_play(), tn.Disk(inertia=0.3, load_torque=20.0)]),
+            "HookeJoint 1.angle", [30, 40],
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
         "stability at single speeds",
     ),
     (
@@ -2135,6 +2175,18 @@ PYTHON = [
         "load case a.Shaft 1 = 1: acts on a Shaft, not on a Disk",
         "Disk 1",
     ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Disk 1": 2})])),
+        "load case a.Disk 1 = 2: is a factor on a Disk",
+        "loads = {",
+    ),
+    (
+        lambda: line(operation=Operation(load_cases=[LoadCase(name="a", factors={"Shaft 1": 2})])),
+        "load case a.Shaft 1 = 2: is not a Fan, Pump, Propeller or Generator",
+        "leave factors out",
+    ),
+    (lambda: LoadCase(name="a", factors={"fan": 0}), "load case a.fan = 0: must be positive", "0.01"),
+    (lambda: LoadCase(name="a", factors=3), "load case a.factors = 3: is not a table of factors", "fan = 1.2"),
     (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
     (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: goes over nothing", "or speed"),
     (

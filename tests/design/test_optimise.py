@@ -135,7 +135,7 @@ def test_two_aims_that_conflict_give_a_front():
     assert len(found.front) >= 4 and np.all(np.diff(found.front[:, 0]) > 0) and np.all(np.diff(found.front[:, 1]) < 0)
     for values, aim in zip(found.front_value, found.front, strict=True):
         assert aim[0] == pytest.approx(written_out(*values), rel=1e-5)
-    assert found.plot().get_xlabel() == "peak torque of spring [N·m]"
+    assert found.plot().get_xlabel() == "peak torque of spring [N m]"
     assert "the aims conflict" in str(found)
 
 

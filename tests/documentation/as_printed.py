@@ -56,8 +56,8 @@ def commands(text: str) -> Iterator[tuple[str, str]]:
         yield command, printed
 
 
-def typed(command: str) -> str:
-    """What ``trunnion`` prints; comments behind it are for the reader."""
+def typed(command: str, endings: tuple[int | None, ...] = (0, None, 1, 2)) -> str:
+    """What ``trunnion`` prints; comments behind it are for the reader. Ends as one of ``endings``."""
     from trunnion.cli import main
 
     words = shlex.split(command, comments=True)
@@ -72,7 +72,7 @@ def typed(command: str) -> str:
         ending = left.code
     finally:
         sys.argv = given
-    assert ending in (0, None, 1, 2), f"{command}: ended with {ending}"
+    assert ending in endings, f"{command}: ended with {ending}"
     return printed.getvalue()
 
 
@@ -84,6 +84,7 @@ def run(path: Path, folder: Path) -> list[str]:
     wrong = []
     before = Path.cwd()
     shutil.copytree(ROOT / "examples", folder / "examples")
+    shutil.copy(ROOT / "examples/truck.toml", folder)  # guides speak of it as the reader's own
     os.chdir(folder)
     try:
         for block in blocks:

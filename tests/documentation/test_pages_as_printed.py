@@ -7,9 +7,11 @@ from pathlib import Path
 import pytest
 from as_printed import ROOT, blocks_of, run, same
 
-LONG = ("first-hour-researcher.md", "how-do-i.md", "index.md")
+LONG = ("first-hour-researcher.md", "how-do-i.md", "index.md", "assess.md", "report.md")
 """They take more than a few seconds."""
-PAGES = ("first-hour-engineer.md", "exchange.md", *LONG)
+THEORY = tuple(f"theory/{path.name}" for path in sorted((ROOT / "docs/theory").glob("*.md")))
+OLDER = ("animation.md", "components.md", "conventions.md", "fatigue.md")
+PAGES = ("first-hour-engineer.md", "exchange.md", *THEORY, *OLDER, *LONG)
 
 
 @pytest.mark.filterwarnings("ignore::trunnion.InputRemark")

@@ -7,7 +7,6 @@ import pytest
 from scipy.optimize import brentq
 
 import trunnion as tn
-from trunnion.errors import InputError
 
 FALLING = {"torque": 40.0, "static_torque": 100.0, "stribeck_speed": 6.0}
 
@@ -89,5 +88,34 @@ def test_a_flywheel_comes_to_rest_and_is_held():
     speeds, times = np.asarray(found.data["speed"].sel(disk="flywheel")), np.asarray(found.data["time"])
     assert times[np.flatnonzero(np.abs(speeds) < 1e-6)[0]] == pytest.approx(stop, abs=0.03)
     assert np.abs(speeds[times > stop + 0.1]).max() < 1e-6
-    with pytest.raises(InputError, match=r"brake.stribeck_speed = 2: lets friction fall with the speed"):
-        tn.transient(line.replace("brake", stribeck_speed=2.0), 1.0, speed=20.0)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_friction_falls_with_the_speed_on_the_way_to_rest(way):
+    """J ω̇ = −(T_c + (T_s − T_c) e^(−ω/ω_s)): with u = e^(ω/ω_s) the time to rest is (J ω_s/T_c) ln((u₀ + r)/(1 + r)),
+    r = (T_s − T_c)/T_c. It then holds T_s, lets go above, and its heat is the kinetic energy that was there."""
+    inertia, over, slides, holds = 2.5, 4.0, 50.0, 80.0
+    brake = tn.Brake(inertia=0.5, torque=slides, static_torque=holds, stribeck_speed=over, name="brake")
+    line = tn.Driveline(
+        [
+            tn.Disk(inertia=2.0, name="flywheel"),
+            tn.Ratio(ratio=way),
+            brake,
+            tn.Shaft(stiffness=1e4),
+            tn.Disk(inertia=1e-3),
+        ]
+    )
+    whole, rest = inertia + 1e-3, (holds - slides) / slides
+    stop = whole * over / slides * np.log((np.exp(20.0 / over) + rest) / (1 + rest))
+    pushed = tn.AppliedTorque(on="flywheel", time=[0, 1.5, 2.5, 3.0], torque=[0.0, 0.0, 100.0, 100.0])
+    found = tn.transient(line, 3.0, speed=20.0, torque=[pushed])
+    times, speeds = np.asarray(found.data["time"]), np.asarray(found.data["speed"].sel(disk="flywheel"))
+    held = (times > stop + 0.02) & (times < 1.5 + 0.79)
+    assert np.abs(speeds[held]).max() < 1e-6 and held.sum() > 5
+    moving = times < stop - 0.01
+    u = (np.exp(20.0 / over) + rest) * np.exp(-times[moving] * slides / (whole * over)) - rest
+    np.testing.assert_allclose(speeds[moving], over * np.log(u), atol=2e-3)
+    assert speeds[-1] > 0.05  # above the static torque it lets go, and friction falls
+    stopped = tn.transient(line, stop + 0.2, speed=20.0)
+    assert stopped.energy.friction == pytest.approx(whole * 200.0, rel=1e-5)
+    assert stopped.energy.applied == 0.0 and stopped.energy.error < 1e-8

@@ -304,3 +304,81 @@ def test_the_speed_as_printed_is_the_balance() -> None:
         assert found.speed.tolist() == [own]
     with pytest.raises(tn.InputError, match="torques do not balance"):
         tn.order_response(by_itself, [own * (1 + 2e-4)])
+
+
+FACTORED = {
+    "fan": tn.Fan(inertia=0.8, rated_power="30 kW", rated_speed="1480 rpm", load_torque=5.0, name="load"),
+    "pump": tn.Pump(inertia=0.8, load_torque=90.0, viscous_load=0.2, name="load"),
+    "curve": tn.Pump(
+        inertia=0.8, curve=[{"speed": w, "torque": t} for w, t in ((0, 10), (100, 60), (160, 150))], name="load"
+    ),
+    "propeller": tn.Propeller(inertia=0.8, quadratic_load=0.007, damping_factor=2.7, name="load"),
+    "power": tn.Generator(inertia=0.8, power="18 kW", name="load"),
+    "kloss": tn.Generator(
+        inertia=0.8, breakdown_torque=300.0, breakdown_slip=0.15, synchronous_speed="1400 rpm", name="load"
+    ),
+    "controller": tn.Generator(inertia=0.8, gain=20.0, set_speed="1400 rpm", torque_limit=150.0, name="load"),
+}
+
+
+@pytest.mark.parametrize("name", FACTORED)
+def test_a_load_case_multiplies_the_torque_of_a_machine(name: str) -> None:
+    """By its factor at every speed, with its slope: the torque, the mean speed and a response of the same line written
+    out with a motor against a balance by Brent's method."""
+    one, factor, speeds = FACTORED[name], 0.6, np.linspace(20.0, 155.0, 7)
+    motor = tn.Motor(inertia=0.4, breakdown_torque=500.0, breakdown_slip=0.2, synchronous_speed="1500 rpm")
+    case = tn.LoadCase(name="less", factors={"load": factor})
+    shaft = tn.Shaft(stiffness=2e4, damping=3.0)
+    line = tn.Driveline([motor, shaft, one], operation=tn.Operation(load_cases=[case]))
+    loaded = line.with_load("less")
+    assert tn.loads(tn.dumps(line)) == line and loaded.elements[2].but() == loaded.elements[2]
+    np.testing.assert_allclose(loaded.elements[2].load.value(speeds), factor * one.load.value(speeds), rtol=1e-12)
+    np.testing.assert_allclose(loaded.elements[2].load.slope(speeds), factor * one.load.slope(speeds), rtol=1e-12)
+    best = [found.speed for found in tn.mean_speeds(loaded) if found.stable][-1]
+
+    def left(w: float) -> float:
+        return float(factor * one.load.value(w) + motor.load.value(w))
+
+    assert best == pytest.approx(brentq(left, 0.999 * best, 1.001 * best, xtol=1e-12), rel=1e-9)
+
+
+def test_a_limit_is_judged_under_a_factor() -> None:
+    """``assess`` finds the mean torque of the heavier case, in closed form, and its derivative by the rated power."""
+    fan = tn.Fan(inertia=3.0, rated_power="30 kW", rated_speed="1480 rpm", name="fan")
+    cases = [tn.LoadCase(name="cold air", factors={"fan": 1.25})]
+    drive = [tn.ConstantSpeed(), tn.Shaft(stiffness=2e4, damping=3.0, name="shaft"), fan]
+    line = tn.Driveline(
+        drive, operation=tn.Operation(speed="1480 rpm", load_cases=cases),
+        limits=[tn.Limit(of="shaft", max_torque=400.0)],
+    )  # fmt: skip
+    judged = next(check for check in tn.assess(line).checks if check.name == "max torque of shaft")
+    expected = 1.25 * 30e3 / (1480 * np.pi / 30)
+    assert judged.load_case == "cold air" and judged.value == pytest.approx(expected, rel=1e-9)
+    found = tn.sensitivity(line, parameters=["fan.rated_power"], of=["checks"], checks=["max torque of shaft"])
+    one = next(row for row in found.ranked("max torque of shaft") if "rated_power" in row.parameter)
+    assert one.derivative == pytest.approx(expected / 30e3, rel=1e-6)
+
+
+def test_each_load_case_is_judged_where_the_line_then_runs() -> None:
+    """A motor without a converter turns faster under less load: the torque there is the motor's, by its formula."""
+    motor = tn.Motor(inertia=0.4, breakdown_torque=500.0, breakdown_slip=0.2, synchronous_speed="1500 rpm")
+    fan = tn.Fan(inertia=3.0, rated_power="30 kW", rated_speed="1480 rpm", name="fan")
+    line = tn.Driveline(
+        [motor, tn.Shaft(stiffness=2e4, damping=3.0, name="shaft"), fan],
+        operation=tn.Operation(load_cases=[tn.LoadCase(name="dense", factors={"fan": 1.5})]),
+        limits=[tn.Limit(of="shaft", max_torque=400.0)],
+    )
+    w0 = 1500 * np.pi / 30
+
+    def drives(w: float) -> float:
+        s = 1 - w / w0
+        return 2 * 500.0 * s * 0.2 / (s**2 + 0.04)
+
+    c = 30e3 / (1480 * np.pi / 30) ** 3
+    at = brentq(lambda w: drives(w) - 1.5 * c * w**2, 0.9 * w0, w0, xtol=1e-13)
+    check = next(one for one in tn.assess(line).checks if one.name == "max torque of shaft")
+    assert check.load_case == "dense" and check.speed == pytest.approx(at, rel=1e-9)
+    assert check.value == pytest.approx(drives(at), rel=1e-8)
+    stalled = line.but(operation=tn.Operation(load_cases=[tn.LoadCase(name="jam", factors={"fan": 9.0})]))
+    assert len(tn.mean_speeds(stalled.with_load("jam"))) == 1  # it creeps, and stays judged there
+    assert next(one for one in tn.assess(stalled).checks if one.name == "max torque of shaft").load_case == "jam"

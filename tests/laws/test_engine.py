@@ -265,7 +265,7 @@ def test_its_throws_are_elements_and_it_takes_their_numbers_over():
 def test_what_it_cannot_state_dissolves_it_and_keeps_every_name():
     line = tn.Driveline([engine(gas_torque=GAS), tn.Shaft(stiffness=1e5), tn.Disk(inertia=9.0), tn.Disk(inertia=1.0)])
     assert line.names[-3:] == ("Shaft 1", "Disk 1", "Disk 2")
-    dissolved = line.replace("engine.throw 3", load_torque=5.0)
+    dissolved = line.replace("engine.throw 3", viscous_load=5.0)
     assert dissolved.names == line.names == dissolved.as_stated.names
     assert tn.loads(tn.dumps(dissolved)) == dissolved
     hung = tn.Driveline([*line.as_stated.elements, tn.Disk(inertia=1.0, after="engine", name="gear")])
@@ -359,6 +359,36 @@ def test_a_load_on_a_throw_leaves_a_misfire_its_compression():
     assert np.abs(cut.vibratory_torque / loaded.vibratory_torque - 1).max() > 0.05
     alone = tn.order_response(line.with_load("30, engine cylinder 3 misfiring"), [70.0])
     assert alone.vibratory_torque[0] == pytest.approx(loaded.vibratory_torque[2], rel=1e-12)
+
+
+def test_what_auxiliaries_take_from_a_throw_stays_with_the_engine():
+    """A load of a throw that is changed keeps the Engine, its misfire the compression, and its gas the torque that the
+    cylinders drive with, as against a pump on a shaft of its own."""
+    numbers = {"compression_ratio": 14, "charge_pressure": 2e5, "polytropic_exponent": 1.34}
+    two, speed = [curve(10e5, load=0.5), curve(60e5, load=1.0)], 70.0
+    one = engine(pressure=two, damping=300.0, **numbers, **CYLINDER)
+    low, high = one.made_of("engine")[0].excitation[0].torques
+    plain = ship(one, load=6 * (0.5 * low + 0.5 * high) / speed**2)
+    line = plain.replace("engine.throw 3", load_torque=500.0)
+    stated = line.as_stated.elements[0]
+    assert isinstance(stated, tn.Engine) and stated.throw_load_torque == (0, 0, 500.0, 0, 0, 0)
+    assert tn.loads(tn.dumps(line)) == line
+    assert line.replace("engine.throw 3", load_torque=0.0).as_stated.elements[0].throw_load_torque == ()
+    stiff = tn.Shaft(stiffness=1e13, damping=1e4, after="engine.throw 3", name="stub")
+    apart = tn.Driveline([*plain.as_stated.elements, stiff, tn.Disk(inertia=1e-6, load_torque=500.0, name="pump")])
+    for asked in ({}, {"misfiring": 2}, {"cut_out": 3}):
+        found, expected = (
+            tn.order_response(x.replace("engine", **asked) if asked else x, [speed]) for x in (line, apart)
+        )
+        other = [expected.springs.index(name) for name in found.springs]
+        np.testing.assert_allclose(found.vibratory_torque, expected.vibratory_torque[:, other], rtol=1e-5)
+    before = tn.order_response(plain, [speed]).vibratory_torque
+    assert np.abs(tn.order_response(line, [speed]).vibratory_torque / before - 1).max() > 0.01
+    rigid = tn.Driveline([engine(pressure=two, rigid=True, **CYLINDER), *plain.as_stated.elements[1:]])
+    kept = rigid.replace("engine.crankshaft", load_torque=77.7).as_stated.elements[0]
+    assert kept.rigid and kept.made_of("engine")[0].load_torque == 77.7
+    with pytest.raises(tn.InputError, match="throw_load_torque = .1.0, 2.0.: must be one for all or 6"):
+        engine(throw_load_torque=[1.0, 2.0])
 
 
 def test_a_cylinder_out_of_work_in_the_other_way_is_left_out_and_a_line_needs_springs():

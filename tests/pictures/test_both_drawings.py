@@ -51,7 +51,7 @@ def drawn(panel: Panel) -> dict[str, dict[str, list[Any]]]:
 
 
 def panel(*items: Any, x: Axis | None = None, y: Axis | None = None, **more: Any) -> Panel:
-    return Panel(x or Axis("speed", "rpm"), y or Axis("torque", "N·m"), items, **more)
+    return Panel(x or Axis("speed", "rpm"), y or Axis("torque", "N m"), items, **more)
 
 
 def axes_of(one: Panel) -> Any:
@@ -68,9 +68,9 @@ def test_lines_and_marks_stand_where_they_are_told() -> None:
     assert list(zip(sources["marks"]["x"], sources["marks"]["y"], strict=True)) == list(
         zip(X[::2], Y[::2], strict=True)
     )
-    assert axes.get_xlabel() == "speed [rpm]" and axes.get_ylabel() == "torque [N·m]"
+    assert axes.get_xlabel() == "speed [rpm]" and axes.get_ylabel() == "torque [N m]"
     made = Drawn(one).figure
-    assert (made.xaxis[0].axis_label, made.yaxis[0].axis_label) == ("speed [rpm]", "torque [N·m]")
+    assert (made.xaxis[0].axis_label, made.yaxis[0].axis_label) == ("speed [rpm]", "torque [N m]")
 
 
 def test_areas_strips_levels_and_bars() -> None:

@@ -180,7 +180,7 @@ def test_the_usual_method_of_a_line_is_one_that_bears_its_contacts() -> None:
     assert found.method == "shooting" and found.curve == "PiecewiseShaft 1" and found.outcome.ok
     axes = found.plot(unit="rpm")
     assert axes.get_xlabel() == "input speed [rpm]" and axes.lines[0].get_xdata()[0] == pytest.approx(20 * 30 / np.pi)
-    assert axes.get_ylabel() == "half peak-to-peak of the torque of PiecewiseShaft 1 [N·m]"
+    assert axes.get_ylabel() == "half peak-to-peak of the torque of PiecewiseShaft 1 [N m]"
     with pytest.raises(InputError, match='did you mean "PiecewiseShaft 1"'):
         frequency_response(staged, 20.0, 22.0, curve="PieceShaft 1")
 

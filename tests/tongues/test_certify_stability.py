@@ -505,7 +505,7 @@ def test_drawn_over_the_directions_split_most() -> None:
     axes = found.plot()
     words = [text.get_text() for text in axes.get_legend().get_texts()]
     assert words == [f"proved stable ({len(found.proved_low)} boxes)", f"left open ({len(found.undecided_low)} boxes)"]
-    assert axes.get_xlabel() == "input speed [rad/s]" and axes.get_ylabel() == "stiffness of Shaft 1 [N·m/rad]"
+    assert axes.get_xlabel() == "input speed [rad/s]" and axes.get_ylabel() == "stiffness of Shaft 1 [N m/rad]"
     assert "1 other direction" in axes.get_title(loc="left")
     line = tn.catalogue("two-shaft-cardan", angle=0.6, damping_ratio=0.002)
     unstable = tn.certify_stability(line, {"Shaft 1.stiffness": 0.01}, (1.5, 1.7))

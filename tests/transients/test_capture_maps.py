@@ -110,6 +110,10 @@ def test_the_command(tmp_path: Path) -> None:
     assert done.exit_code == 0, done.output
     assert json.loads(done.stdout)["captured"] == [[0.0, 1.0], [0.0, 1.0]]
     assert (tmp_path / "map.png").stat().st_size > 10_000
+    dry = CliRunner().invoke(app, [*asked, *angles, "--dry-run"])
+    assert dry.exit_code == 0 and json.loads(dry.stdout)["cells"] == 4, dry.output
+    none = CliRunner().invoke(app, [*asked, *angles, "--dry-run", "-o", str(tmp_path / "map.png")])
+    assert none.exit_code == 2 and "computes no map" in none.output
     wrong = CliRunner().invoke(app, [*asked, "--y", "factor:1"])
     assert wrong.exit_code == 2 and "is no range of factors" in wrong.output
 

@@ -140,12 +140,115 @@ def test_a_torque_that_jumps_over_a_level_crosses_it() -> None:
     assert ended.outcome.kind == "crossed" and ended.end == 1.0
 
 
-def test_rolling_resistance_drives_no_vehicle_backwards() -> None:
-    car = tn.Vehicle(name="car", mass=1500.0, wheel_radius=0.3, rolling_resistance=0.012)
-    tyre = tn.Tyre(name="tyre", stiffness=1e4, damping=100.0)
-    coasting = tn.Driveline([tn.Disk(name="wheel", inertia=2.0), tyre, car])
-    slows = 0.012 * 1500 * 9.80665 * 0.3 / (1500 * 0.3**2 + 2.0)
-    run = tn.transient(coasting, 60.0, speed=10.0)
-    assert run.outcome.kind == "rolls back" and run.end == pytest.approx(10 / slows, rel=1e-2)
-    assert tn.transient(coasting, 5.0, speed=0.0).outcome.kind == "rolls back"
-    assert tn.transient(coasting, 5.0, speed=10.0).outcome.kind == "reached"
+CAR = {"name": "car", "mass": 1500.0, "wheel_radius": 0.3}
+G = 9.80665
+
+
+def rolled(**car: float) -> tuple[tn.Driveline, float, float, float]:
+    """A car behind a shaft, its whole inertia, and what climbs and rolls against it [N m]."""
+    made = tn.Vehicle(**CAR, **car)
+    grade = car.get("grade", 0.0)
+    weight = 1500.0 * G * 0.3 / np.sqrt(1 + grade**2)
+    line = tn.Driveline([tn.Disk(name="motor", inertia=0.5), tn.Shaft(stiffness=2e4, damping=40.0), made])
+    return line, 1500.0 * 0.09 + 0.5, weight * grade, weight * car.get("rolling_resistance", 0.0)
+
+
+def test_a_car_rolls_out_and_stands() -> None:
+    line, inertia, climbs, rolls = rolled(rolling_resistance=0.012, grade=0.004)
+    run = tn.transient(line, 30.0, speed=10.0)
+    slows = (climbs + rolls) / inertia
+    assert run.outcome.kind == "reached" and abs(run.speed[-1]).max() < 1e-6
+    assert run.angle[-1, 1] == pytest.approx(10.0**2 / (2 * slows), rel=1e-5)
+    assert run.energy.friction == pytest.approx(rolls * 10.0**2 / (2 * slows), rel=1e-5)
+    assert run.energy.error < 1e-8
+    assert abs(tn.transient(line, 5.0, speed=0.0).angle).max() < 1e-4  # nothing pushes it backwards
+
+
+def test_a_car_rolls_back_where_the_hill_is_steeper_than_its_resistance() -> None:
+    line, inertia, climbs, rolls = rolled(rolling_resistance=0.012, grade=0.05)
+    run = tn.transient(line, 20.0, speed=5.0)
+    up = 5.0 * inertia / (climbs + rolls)
+    assert run.speed[-1, 1] == pytest.approx(-(climbs - rolls) / inertia * (20.0 - up), rel=1e-6)
+
+
+@pytest.mark.parametrize("kind", ["car", "fan", "brake"])
+def test_a_drive_balances_what_becomes_friction_or_a_curve(kind: str) -> None:
+    """It goes on at the speed it has, twisted by what it carries from the start on."""
+    fan = tn.Fan(name="fan", inertia=2.0, curve=[{"speed": 0, "torque": 1}, {"speed": 60, "torque": 3}])
+    car = tn.Vehicle(**CAR, rolling_resistance=0.012, drag_area=0.6)
+    brake = tn.Brake(name="brake", inertia=2.0, torque=20.0, static_torque=25.0)
+    drive = tn.Disk(name="drive", inertia=1.0, drive_share=1)
+    line = tn.Driveline([drive, tn.Shaft(stiffness=1e4, damping=10.0), {"car": car, "fan": fan, "brake": brake}[kind]])
+    run = tn.transient(line, 2.0, speed=40.0)
+    np.testing.assert_allclose(run.speed, 40.0, rtol=1e-9)
+    carried = {"car": car.load.value(40.0), "fan": fan.load.value(40.0), "brake": 20.0}[kind]
+    np.testing.assert_allclose(run.torque, -float(carried), rtol=1e-8)
+    given = [A(on="drive", time=[0], torque=[0.0], between="steps")]
+    assert tn.transient(line, 0.5, torque=given, speed=40.0).speed[-1, 0] < 40.0  # a torque instead of the share
+    passed = tn.passing(line, (40.0, 41.0), torque=[A(on="drive", time=[0], torque=[500.0], between="steps")])
+    assert passed.passes
+
+
+def dragged(
+    one: float, other: float, capacity: float, rubs: float, times: list[float], torques: list[float]
+) -> tuple[float, float]:
+    """Last speeds of a motor, a slip clutch and a load with dry friction under torques in steps, from rest, by straight
+    lines of speed from one event to the next."""
+    v, w = 0.0, 0.0
+    for torque, length in zip(torques, np.diff(times), strict=False):
+        left = float(length)
+        while left > 1e-13:
+            slip = v - w
+            together = (torque - np.sign(w or torque) * rubs) / (one + other)
+            if w == 0 and abs(torque) <= rubs:
+                together = 0.0
+            carried = torque if w == 0 and together == 0 else other * together + np.sign(w or torque) * rubs
+            if slip == 0 and abs(carried) <= capacity:
+                a = b = together
+            else:
+                push = capacity * np.sign(slip or carried)
+                a = (torque - push) / one
+                b = (push - np.sign(w or push) * rubs) / other if w or abs(push) > rubs else 0.0
+            ends = [left]
+            if slip * (a - b) < 0:
+                ends.append(-slip / (a - b))
+            if w * b < 0:
+                ends.append(-w / b)
+            step = min(ends)
+            v, w = v + a * step, w + b * step
+            if len(ends) > 1 and step < left:
+                if slip * (a - b) < 0 and step == -slip / (a - b):
+                    v = w
+                else:
+                    w, v = 0.0, (0.0 if slip == 0 and a == b else v)
+            left -= step
+    return v, w
+
+
+def test_friction_beside_a_slip_clutch() -> None:
+    rng = np.random.default_rng(5)
+    stood = slid = 0
+    for _ in range(30):
+        one, other, capacity, rubs = (float(x) for x in rng.uniform((0.3, 0.3, 5, 2), (3, 3, 30, 25)))
+        times = [0.0, *np.sort(rng.uniform(0.1, 2.0, 4)).tolist(), 2.5]
+        torques = (rng.uniform(-80, 80, 5) * rng.integers(0, 2, 5)).tolist()
+        act = A(on="motor", time=times, torque=[*torques, 0.0], between="steps")
+        rub = F(on="load", torque=rubs)
+        run = tn.transient(clutched(one, other, capacity), 2.5, torque=[act], friction=[rub], speed=0.0)
+        known = dragged(one, other, capacity, rubs, times, torques)
+        assert run.outcome.kind == "reached", run.outcome
+        np.testing.assert_allclose(run.speed[-1], known, rtol=1e-7, atol=1e-7)
+        assert run.energy.error < 1e-8
+        stood += known[1] == 0
+        slid += known[0] != known[1]
+    assert stood > 3 and slid > 3
+
+
+def test_a_clutch_between_two_that_are_braked() -> None:
+    """Brakes keep both ends at rest; once the motor's is gone the clutch carries what the load's bears."""
+    brakes = [F(on="motor", torque=50.0), F(on="load", torque=20.0)]
+    act = A(on="motor", time=[0.0, 1.0], torque=[0.0, 40.0])
+    run = tn.transient(clutched(1.0, 2.0, 30.0), 1.0, torque=[act], friction=brakes, speed=0.0)
+    assert run.outcome.kind == "reached" and abs(run.speed).max() == 0
+    on = run.then(1.0, torque=[A(on="motor", time=[0.0], torque=[25.0], between="steps")], friction=brakes[1:])
+    assert on.speed[-1].tolist() == pytest.approx([5.0 / 3.0, 5.0 / 3.0], rel=1e-8)

@@ -79,7 +79,7 @@ def _movement(one: Movement, span: float | None) -> dict[str, Any]:
         "start": float(one.time[0]), "end": float(one.time[-1]), "frames": len(one.time), "repeats": one.repeats,
         "growth": None if one.growth is None else [one.growth.real, one.growth.imag], "span": followed,
         "arbitrary": one.arbitrary, "factor": one.factor, "slow": float(slow), "springs": one.torque.shape[1],
-        "most": float(f"{np.abs(one.torque).max(initial=0.0):.3g}"), "unit": "N·m a rad" if one.arbitrary else "N·m",
+        "most": float(f"{np.abs(one.torque).max(initial=0.0):.3g}"), "unit": "N m a rad" if one.arbitrary else "N m",
         "rigid": _series(one.rigid), "deviation": _moving(one.deviation), "torque": _moving(one.torque),
     }  # fmt: skip
 

@@ -82,6 +82,11 @@ def assessment(result: Any) -> Plain:
     }
 
 
+def verdict_in_short(result: Any) -> Plain:
+    """Verdict and what binds."""
+    return {"verdict": str(result.verdict), "said": result.sentence}
+
+
 def _rule(check: Any) -> str:
     """Name, formula, source and inputs of a check, those that it has."""
     parts = [check.rule.name, check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]
@@ -187,8 +192,8 @@ def worst(result: Any, unit: str) -> Plain:
     share = most / np.array(limits)
     k = int(np.nanargmax(share)) if np.isfinite(share).any() else int(most.argmax())
     name, at = result.springs[k], Words(unit).speed(float(result.speed[int(peak[:, k].argmax())]))
-    of = f" of {limits[k]:.5g} N·m allowed ({share[k]:.0%})" if np.isfinite(share[k]) else ""
-    said = f"{name}: {most[k]:.5g} N·m{of} at {at}, of {len(result.speed)} speeds looked at, the line as stated"
+    of = f" of {limits[k]:.5g} N m allowed ({share[k]:.0%})" if np.isfinite(share[k]) else ""
+    said = f"{name}: {most[k]:.5g} N m{of} at {at}, of {len(result.speed)} speeds looked at, the line as stated"
     return {"picture": orders.torque_by_order(result, spring=name, unit=unit), "said": said}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -132,16 +133,19 @@ def capture_map(
     """
     acting, driver = _acting(line, scenario), drive or None
     if dry_run:
-        return CommandOutput(
-            tn.capture_map_cost(
-                line, (from_, to), x, y, scenario=acting, drive=driver, phases=phases, processes=processes
-            )
+        cost = tn.capture_map_cost(
+            line, (from_, to), x, y, scenario=acting, drive=driver, phases=phases, processes=processes
         )
+        return CommandOutput(cost, files=lambda stem: [], save=_nothing_to_draw)
     found = tn.capture_map(
         line, (from_, to), x, y, scenario=acting, drive=driver, phases=phases, processes=processes,
         store=store or None, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit), outcome=found.outcome)
+
+
+def _nothing_to_draw(path: Path) -> Path:
+    raise InputError("computes no map", key="--dry-run", remedy=f"leave out -o {path.name}, or --dry-run")
 
 
 def _content(found: Transient, unit: str) -> dict[str, Any]:

@@ -76,6 +76,8 @@ class AppliedTorque(Record):
     what: ClassVar[str] = "torque"
     below: ClassVar[bool] = False
     """Whether the first value lasts below the points, as that of a machine's curve does from standstill on."""
+    rubs: ClassVar[bool] = False
+    """Whether it is a part of a friction, which its work belongs to."""
     example: ClassVar[str] = 'on = "motor", time = ["0 s", "1 s"] and torque = ["0 N*m", "80 N*m"]'
 
     on: str = Field(description="name of the disk that it acts on")

@@ -16,7 +16,8 @@ from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of
-from trunnion.driveline.operation import Operation
+from trunnion.driveline.machines import Machine
+from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.remarks import remarks
 from trunnion.driveline.scenarios import Scenario, Scenarios, wrong_scenarios
@@ -152,23 +153,38 @@ class Driveline(ElementChain):
         raise InputError("is not a scenario of this driveline", key="scenario", value=name, remedy=remedy)
 
     def with_load(self, case: str) -> Driveline:
-        """The same line under the torques of one of its load cases; disks not named there keep theirs.
+        """The same line under the torques of one of its load cases; disks and machines not named there keep theirs.
 
         Or with one cylinder out of work: "engine cylinder 3 misfiring", "engine cylinder 3 cut out", also after the
         name of a load case and a comma.
         """
         loads, silent = self.loads_of(case), self._silent_in(case)
-        # the cylinder first: a load on a throw dissolves its Engine
+        factors = self.factors_of(case)
         line = self.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else self
-        return line.but(elements=[e.but(load_torque=loads[n]) if n in loads else e for n, e in line.parts])
+        elements = [e.but(load_torque=loads[n]) if n in loads else e for n, e in line.parts]
+        return line.but(
+            elements=[
+                e.with_torque_times(factors[n]) if n in factors and isinstance(e, Machine) else e
+                for n, e in zip(line.names, elements, strict=True)
+            ]
+        )
 
     def loads_of(self, case: str) -> dict[str, float]:
         """Load torques [N m] by disk of one of its load cases; none of one that only puts a cylinder out of work."""
+        found = self._load_case_in(case)
+        return {name: float(torque) for name, torque in found.loads.items()} if found else {}  # type: ignore[arg-type]
+
+    def factors_of(self, case: str) -> dict[str, float]:
+        """Factors on the torques of machines, by name, likewise."""
+        found = self._load_case_in(case)
+        return {name: float(factor) for name, factor in found.factors.items()} if found else {}  # type: ignore[arg-type]
+
+    def _load_case_in(self, case: str) -> LoadCase | None:
         known, operation = self._silent, self.operation or Operation()
         if case in known and case not in [one.name for one in operation.load_cases]:
-            return {}
+            return None
         base = next((case.removesuffix(f", {one}") for one in known if case.endswith(f", {one}")), case)
-        return {name: float(torque) for name, torque in operation.load_case(base).loads.items()}  # type: ignore[arg-type]
+        return operation.load_case(base)
 
     @property
     def cases(self) -> tuple[str, ...]:
@@ -289,14 +305,25 @@ def _wrong_wheels(line: Driveline) -> Iterator[InputError]:
 
 def _wrong_loads(line: Driveline) -> Iterator[InputError]:
     disks = [n for n, e in line.parts if isinstance(e, Loaded)]
+    machines = [n for n, e in line.parts if isinstance(e, Machine) and e.torque_keys]
     for case in line.operation.load_cases if line.operation else ():
+        where = f"load case {case.name}"
         for name, torque in case.loads.items():
             if name not in disks:
-                problem = "is not a Disk of this driveline"
+                problem, remedy = "is not a Disk of this driveline", nearest(name, disks)
                 if name in line.names:
                     problem = f"acts on a {line.elements[line.index(name)].kind}, not on a Disk"
-                where = f"load case {case.name}"
-                yield InputError(problem, element=where, key=name, value=torque, remedy=nearest(name, disks))
+                if name in machines:
+                    remedy = f'write factors = {{ "{name}" = 1.2 }}, say: times its torque over speed'
+                yield InputError(problem, element=where, key=name, value=torque, remedy=remedy)
+        for name, factor in case.factors.items():
+            if name not in machines:
+                problem = "is not a Fan, Pump, Propeller or Generator of this driveline"
+                remedy = nearest(name, machines) if machines else "leave factors out"
+                if name in disks:
+                    problem = "is a factor on a Disk, whose torque is stated by itself"
+                    remedy = f'write loads = {{ "{name}" = "250 N*m" }}, say'
+                yield InputError(problem, element=where, key=name, value=factor, remedy=remedy)
 
 
 def _wrong_schedules(line: Driveline) -> Iterator[InputError]:

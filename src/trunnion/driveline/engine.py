@@ -34,6 +34,7 @@ from trunnion.driveline.quantities import (
     OneOrSeveral,
     Pressure,
     Stiffness,
+    Torque,
     optional,
     shown,
 )
@@ -135,6 +136,8 @@ class Engine(Composite):
     crankcase_pressure : behind the piston [Pa].
     orders : highest order of gas torques from curves, and of inertia torques.
     drive_share : of the engine, as of a Disk; its throws share it evenly.
+    throw_load_torque : what a pump or another auxiliary takes from a throw [N m], positive where it resists; one for
+        all or one for each. Cylinders drive it besides: gas torques stay those of the drive share.
     misfiring : number of a cylinder that does not fire, and whose gas is compressed and expands again.
     cut_out : number of a cylinder without any gas torque.
     compression : pressure in a cylinder that does not fire; or else
@@ -205,6 +208,10 @@ class Engine(Composite):
     drive_share: Dimensionless = optional(
         default=0.0, description="share of the power that balances the loads, in a line without a ConstantSpeed"
     )
+    throw_load_torque: Annotated[OneOrSeveral[Torque], BeforeValidator(_one_or_each("40 N*m"))] = optional(
+        default=(), description="what auxiliaries take from a throw; one for all, or one for each",
+        json_schema_extra=_also_one,
+    )  # fmt: skip
     misfiring: WholeNumber = Field(default=None, description="number of the cylinder that does not fire")
     cut_out: WholeNumber = Field(default=None, description="number of the cylinder without gas torque")
     compression: PressureCurves = optional(default=(), description="pressure in a cylinder that does not fire")
@@ -273,6 +280,9 @@ class Engine(Composite):
                 what = "throw" if key == "throw_inertia" else "shaft between two throws"
                 problem = f"must be one for all or {count}, one for each {what}"
                 raise InputError(problem, key=key, value=len(values))
+        if len(self.throw_load_torque) > 1 and len(self.throw_load_torque) != self.throws:
+            problem = f"must be one for all or {self.throws}, one for each throw"
+            raise InputError(problem, key="throw_load_torque", value=len(self.throw_load_torque))
         positive(self, "loss_factor_frequency")
         not_negative(self, "damping", "loss_factor", "drive_share")
         if self.loss_factor is not None and self.damping:
@@ -442,9 +452,11 @@ class Engine(Composite):
     def made_of(self, name: str) -> tuple[Element, ...]:
         """Disks and the Shafts between them."""
         inertias = self._each(self.throw_inertia, self.throws)
+        loads = self._each(self.throw_load_torque or (0.0,), self.throws)
         if self.rigid:
             every = tuple(range(1, len(self.firing_order) + 1))
-            return (self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, self.after),)
+            crank = self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, sum(loads), self.after)
+            return (crank,)
         found: list[Element] = []
         share, stiffnesses = self.drive_share / self.throws, self.stiffnesses if self.throws > 1 else ()
         for j, (inertia, cylinders) in enumerate(zip(inertias, self.on_throws, strict=True), start=1):
@@ -456,7 +468,7 @@ class Engine(Composite):
                     )
                 )  # fmt: skip
             after = self.after if j == 1 else None
-            found.append(self._throw(f"{name}.throw {j}", inertia, cylinders, share, after))
+            found.append(self._throw(f"{name}.throw {j}", inertia, cylinders, share, loads[j - 1], after))
         return tuple(found)
 
     def refitted(self, name: str, elements: Sequence[Element]) -> Self | None:
@@ -464,13 +476,20 @@ class Engine(Composite):
         inertias = self._each(self.throw_inertia, self.throws)
         own = [one for one in self.made_of(name) if isinstance(one, Disk)]
         disks = [one for one in elements if isinstance(one, Disk)]
-        if self.rigid or any(one.inertia is None for one in disks):
+        if any(one.inertia is None for one in disks):
             return None
-        moved = [
-            was if new.inertia == old.inertia else was + float(new.inertia or 0) - float(old.inertia or 0)
-            for was, new, old in zip(inertias, disks, own, strict=True)
-        ]
-        changes: dict[str, Any] = {"throw_inertia": _short(moved)}
+        changes: dict[str, Any] = {}
+        if self.rigid:
+            changes["throw_load_torque"] = (float(disks[0].load_torque), *[0.0] * (self.throws - 1))
+        else:
+            moved = [
+                was if new.inertia == old.inertia else was + float(new.inertia or 0) - float(old.inertia or 0)
+                for was, new, old in zip(inertias, disks, own, strict=True)
+            ]
+            changes["throw_inertia"] = _short(moved)
+            if any(new.load_torque != old.load_torque for new, old in zip(disks, own, strict=True)):
+                loads = [float(one.load_torque) for one in disks]
+                changes["throw_load_torque"] = _short(loads) if any(loads) else ()
         stiffnesses = [float(one.stiffness or 0) for one in elements if isinstance(one, Shaft)]
         if stiffnesses and tuple(stiffnesses) != self.stiffnesses:
             changes |= dict.fromkeys((*CRANK, "journal_bore", "pin_bore", "shear_modulus", "stiffness_formula"))
@@ -485,7 +504,9 @@ class Engine(Composite):
     def _each(self, values: Sequence[float], count: int) -> tuple[float, ...]:
         return tuple(values) * count if len(values) == 1 else tuple(values)
 
-    def _throw(self, name: str, inertia: float, cylinders: Sequence[int], share: float, after: str | None) -> Disk:
+    def _throw(
+        self, name: str, inertia: float, cylinders: Sequence[int], share: float, load: float, after: str | None
+    ) -> Disk:
         masses, mean = _masses(self)
         silent = {self.misfiring, self.cut_out} & set(cylinders)
         gas, angles = _gas(self), [self.firing_angles[c - 1] for c in cylinders]
@@ -504,7 +525,7 @@ class Engine(Composite):
                 found += [one.but(phase=one.phase - float(one.order or 0) * angle) for one in own]
             shakes = {"excitation": tuple(found)}
         return Disk(
-            name=name, after=after, inertia=inertia + many * mean, drive_share=share,
+            name=name, after=after, inertia=inertia + many * mean, drive_share=share, load_torque=load,
             **{key: value for key, value in shakes.items() if value},
         )  # fmt: skip
 

@@ -407,6 +407,7 @@ NOT_FEATURES = {
     ),
     "LoadCase.name": "a label",
     "LoadCase.loads": "line.with_load(case) puts them into load_torque",
+    "LoadCase.factors": "line.with_load(case) multiplies the torques of machines by them",
 }
 
 

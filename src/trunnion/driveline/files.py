@@ -534,7 +534,10 @@ def _operation_blocks(operation: Operation) -> list[str]:
     blocks += [_block("[[operation.switched_off]]", _table(one)) for one in operation.switched_off]
     for case in operation.load_cases:
         blocks.append(_block("[[operation.load_case]]", {"name": case.name}))
-        blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
+        if case.loads or not case.factors:
+            blocks.append(_block("[operation.load_case.loads]", dict(case.loads)))
+        if case.factors:
+            blocks.append(_block("[operation.load_case.factors]", dict(case.factors)))
     blocks += [_block("[[operation.duty]]", _table(one, speed_unit=unit)) for one in operation.duty]
     blocks += [_block("[[operation.passage]]", _table(one, speed_unit=unit)) for one in operation.passages]
     for one in operation.schedules:

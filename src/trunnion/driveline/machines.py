@@ -54,6 +54,8 @@ class Machine(Rotor):
     """The keys of each way to state its torque, of which one is stated."""
     beside: ClassVar[tuple[str, ...]] = ()
     """A way by itself that may also go beside others, ``curve`` aside."""
+    torque_keys: ClassVar[tuple[str, ...]] = ()
+    """Numbers that all of its torque is proportional to, ``curve`` aside."""
 
     inertia: Inertia = Field(description="of all that turns with its shaft")
     curve: Curve = optional(default=(), description="points of its torque over its speed")
@@ -92,6 +94,13 @@ class Machine(Rotor):
     def table(self) -> TableCurve:
         """The curve through its points."""
         return table_curve(self.curve)
+
+    def with_torque_times(self, factor: float) -> Self:
+        """The same with ``factor`` times its torque at every speed."""
+        changes: dict[str, Any] = {key: factor * getattr(self, key) for key in self.torque_keys if getattr(self, key)}
+        if self.curve:
+            changes["curve"] = [one.but(torque=factor * one.torque) for one in self.curve]
+        return self.but(**changes)
 
 
 class ElectricMachine(Machine):
@@ -258,6 +267,8 @@ class Generator(ElectricMachine):
     example: ClassVar[str] = 'power = "30 kW"'
     ways: ClassVar[tuple[tuple[str, ...], ...]] = (("power",), ("curve",), KLOSS, ("gain", "set_speed", "torque_limit"))
 
+    torque_keys: ClassVar[tuple[str, ...]] = ("power", "breakdown_torque", "gain", "torque_limit")
+
     power: Maybe[Power] = optional(default=None, description="taken at any speed by its converter")
 
     @model_validator(mode="after")
@@ -290,6 +301,7 @@ class Consumer(Machine):
 
     example: ClassVar[str] = 'rated_power = "30 kW" and rated_speed = "1480 rpm"'
     beside: ClassVar[tuple[str, ...]] = ("load_torque",)
+    torque_keys: ClassVar[tuple[str, ...]] = ("rated_power", "load_torque", "viscous_load", "quadratic_load")
     ways: ClassVar[tuple[tuple[str, ...], ...]] = (
         ("rated_power", "rated_speed"), ("quadratic_load", "viscous_load"), ("load_torque",), ("curve",)
     )  # fmt: skip

@@ -13,9 +13,11 @@ from trunnion.driveline.duty import ROUNDING, Duty, SpeedPassage
 from trunnion.driveline.quantities import (
     ANGLE,
     DEGREE,
+    RATIO,
     SPEED,
     TORQUE,
     Angle,
+    Dimensionless,
     Maybe,
     MaybeRange,
     QuantityKind,
@@ -63,6 +65,16 @@ AngleRange = Annotated[tuple[Angle, Angle], _READ_ANGLES, _ANGLES_SCHEMA]
 _TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }')
 
 
+def _factor(value: object) -> float:
+    found = parse(value, RATIO)
+    if not found > 0:
+        raise InputError("must be positive", remedy="write 0.01, say, for a machine that hardly takes any torque")
+    return found
+
+
+_FACTORS = by_name(_factor, "is not a table of factors", "write factors = { fan = 1.2 }")
+
+
 Duties = Annotated[TableList[Duty], BeforeValidator(listed(Duty, "duty"))]
 
 
@@ -74,18 +86,30 @@ class LoadCase(Named):
     name : what it is called.
     loads : load torque [N m] by the name of the Disk it acts on; positive resists rotation. Disks that are
         not named keep their own.
+    factors : by the name of a Fan, Pump, Propeller or Generator, what its torque is multiplied by at every speed.
 
     >>> LoadCase(name="uphill", loads={"wheel": "400 N*m"}).loads["wheel"]
     400.0
+    >>> LoadCase(name="half load", factors={"generator": 0.5}).factors["generator"]
+    0.5
     """
 
     what: ClassVar[str] = "load case"
     example: ClassVar[str] = 'name = "full load" and loads = { "Disk 2" = "250 N*m" }'
 
     name: Name = Field(description="what the load case is called")
-    loads: Annotated[dict[str, Torque], BeforeValidator(_TORQUES)] = Field(
-        description="load torque by the name of the Disk; positive resists rotation"
+    loads: Annotated[dict[str, Torque], BeforeValidator(_TORQUES)] = optional(
+        default={}, description="load torque by the name of the Disk; positive resists rotation"
     )
+    factors: Annotated[dict[str, Dimensionless], BeforeValidator(_FACTORS)] = optional(
+        default={}, description="on the torque of a Fan, Pump, Propeller or Generator, by its name"
+    )
+
+    @model_validator(mode="after")
+    def _loads_something(self) -> Self:
+        if not {"loads", "factors"} & self.model_fields_set:
+            raise InputError("is missing", key="loads", remedy=f"write {self.example}, or factors = {{ fan = 1.2 }}")
+        return self
 
 
 class Operation(Record):

@@ -27,7 +27,7 @@ from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.coupling_tables import table_stiffness
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
-from trunnion.equations.loads import mean_load, mean_loads, own_load, static_torque, station_loads
+from trunnion.equations.loads import exciting_load, mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.slip_capacity import refuse_slipping
@@ -111,13 +111,13 @@ class Assembly:
     def _derived(self) -> dict[Callable[[Assembly], Any], Any]:
         return {}
 
-    def own_load(self, place: int, table: Array) -> Array:
-        """Mean torque (case,) [N m] that the element at a place resists with; the last is kept, as every harmonic of an
-        element may ask for it."""
+    def exciting_load(self, place: int, table: Array) -> Array:
+        """Mean torque (case,) [N m] that the excitation of the element at a place goes by; the last is kept, as every
+        harmonic of an element may ask for it."""
         content = table.tobytes()
         known = self._last_loads.get(place)  # one value, as threads may ask at once
         if known is None or known[0] != content:
-            known = content, own_load(self.topology, self.packed.column, table, place)
+            known = content, exciting_load(self.topology, self.packed.column, table, place)
             self._last_loads[place] = known
         return known[1]
 

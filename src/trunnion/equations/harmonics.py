@@ -122,7 +122,7 @@ class DiskTorque(LineHarmonic):
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
         speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
-        return Running(speed, lambda: -assembly.own_load(self.element, table))
+        return Running(speed, lambda: -assembly.exciting_load(self.element, table))
 
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         s = self.station

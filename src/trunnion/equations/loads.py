@@ -14,7 +14,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.driveline.elements import Loaded, Rotor
+from trunnion.driveline.elements import Disk, Loaded, Rotor
 from trunnion.driveline.machines import ElectricMachine, Motor
 from trunnion.driveline.parts import Numbers
 from trunnion.driveline.quantities import SPEED, TORQUE, shown
@@ -182,6 +182,24 @@ def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
 
 def own_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
     """Mean torque (case,) [N m] that the element at a place of the line resists with, its share of the drive in it."""
+    own, driven = _own_and_driven(topo, column, table, place)
+    return np.asarray(own + driven)
+
+
+def exciting_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
+    """The same, as tables and shares of its excitation go by it.
+
+    Cylinders that drive by a share do so whatever else hangs on their throw: of these it is that share alone.
+    """
+    rotor = next(rotor for (_, i), (_, rotor) in zip(topo.disks, topo.rotors, strict=True) if i == place)
+    own, driven = _own_and_driven(topo, column, table, place)
+    if not (isinstance(rotor, Disk) and (rotor.firing_angles or rotor.part_of is not None)):
+        return np.asarray(own + driven)
+    return np.asarray(np.where(table[:, column(place, "drive_share")] > 0, driven, own + driven))
+
+
+def _own_and_driven(topo: Topology, column: Column, table: Array, place: int) -> tuple[Array, Array]:
+    """What an element resists with by itself, and minus what it drives with by its share (case,) [N m]."""
     station, rotor = next((s, rotor) for (s, i), (_, rotor) in zip(topo.disks, topo.rotors, strict=True) if i == place)
     turning = table[:, 0] * abs(topo.mean_speeds[station])
     found = rotor.load_of(_numbers(column, table, place))
@@ -190,8 +208,8 @@ def own_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
     if topo.free and (at := column(place, "drive_share")) >= 0 and table[:, at].any():
         share = given_shares(topo, column, table)
         torque = drive_torques(topo, share, load_at_input(topo, column, table))[:, station]
-        own = own + torque * table[:, at] / np.where(share[:, station] > 0, share[:, station], 1.0)
-    return np.asarray(own)
+        return np.asarray(own), torque * table[:, at] / np.where(share[:, station] > 0, share[:, station], 1.0)
+    return np.asarray(own), np.zeros_like(turning)
 
 
 def mean_loads(topo: Topology, column: Column, table: Array) -> Array:

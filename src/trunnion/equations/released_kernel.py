@@ -246,7 +246,8 @@ def effects(p, scratch, n, count, alpha, slip, without, mutual):
 
 @njit(cache=True, nogil=True)
 def solved(stage, torque, without, mutual, number):
-    """Put the torques of those that stick into ``torque``, those of the others being there (elimination in place)."""
+    """Put the torques of those that stick into ``torque``, those of the others being there (elimination in place).
+    Between two that friction keeps at rest nothing tells what a clutch carries: it is none, and they stand alone."""
     a, b, which = np.empty((MOST, MOST)), np.empty(MOST), np.empty(MOST, dtype=np.int64)
     m = 0
     for c in range(number):
@@ -261,16 +262,16 @@ def solved(stage, torque, without, mutual, number):
                 b[row] -= mutual[c, e] * torque[e]
         for column in range(m):
             a[row, column] = mutual[c, which[column]]
-    for k in range(m):  # A is positive definite
+    for k in range(m):  # A is positive definite, but for what stands on both sides
         for row in range(k + 1, m):
-            f = a[row, k] / a[k, k]
+            f = a[row, k] / a[k, k] if a[k, k] != 0.0 else 0.0
             for column in range(k, m):
                 a[row, column] -= f * a[k, column]
             b[row] -= f * b[k]
     for k in range(m - 1, -1, -1):
         for column in range(k + 1, m):
             b[k] -= a[k, column] * torque[which[column]]
-        torque[which[k]] = b[k] / a[k, k]
+        torque[which[k]] = b[k] / a[k, k] if a[k, k] != 0.0 else 0.0
 
 
 @njit(cache=True, nogil=True)
@@ -310,14 +311,17 @@ def rates(t, x, p, regime, out):
         sliding(t, p, first, number, stage, slip, torque)
         solved(stage, torque, without, mutual, number)
         r, inertia, shaft = scratch + 2 * count, scratch + 5 * count, scratch + 5 * count + 7 * n
+        pulled = scratch + 5 * count + 3 * n
         for c in range(number):
             e = int(p[first + c * PER_CLUTCH + OF])
             q = compliance + e * PER_COMPLIANCE
             i, j = int(p[q + NEAR_COORDINATE]), int(p[q + FAR_COORDINATE])
             p[shaft + e] = torque[c]
             out[n + j] -= torque[c] / p[inertia + j]
+            p[pulled + j] -= torque[c]
             if i >= 0:
                 out[n + i] += p[r + int(p[q + NEAR])] * torque[c] / p[inertia + i]
+                p[pulled + i] += p[r + int(p[q + NEAR])] * torque[c]
     swing(p, scratch, n, count, alpha, out)
     return 0
 

@@ -4,8 +4,9 @@
     windowed   m = Σ w_i a_i / Σ w_i,   w(u) = exp(−1/(u(1−u))),   u = (i + ½)/N
 
 The plain mean is the better one of a chaotic series. On a quasi-periodic series its error falls as 1/N only,
-while that of the windowed mean falls faster than any power (Das, Sander, Yorke, Physica D 2017, "Quantitative
-quasiperiodicity"). Each batch is averaged both ways, and the way whose batches agree much better is taken.
+while that of the windowed mean falls faster than any power (Das, Saiki, Sander, Yorke, Nonlinearity 30, 2017,
+"Quantitative quasiperiodicity"). Each batch is averaged both ways, and the way whose batches agree much better is
+taken.
 """
 
 from __future__ import annotations

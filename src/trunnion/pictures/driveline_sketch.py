@@ -498,7 +498,7 @@ def _numbers(axes: Axes, place: _ElementPlace, size: float, between: bool) -> No
     elif isinstance(element, GEARS):
         text = f"i {element.speed_ratio:.4g}"
     elif load := getattr(element, "load_torque", 0.0):
-        text = f"load\n{load:.4g} N·m"
+        text = f"load\n{load:.4g} N m"
     elif isinstance(element, ConstantSpeed):
         text = "Ω"
     elif isinstance(element, Engine) and len(element.firing_order) > 1:

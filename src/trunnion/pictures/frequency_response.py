@@ -57,7 +57,7 @@ def branch(result: PeriodicBranch, *, curve: str = "", unit: str = "", jumps: bo
     items += _jumps([(at * across.factor, left, end) for at, left, end in leaps if end is not None], "jump")
     torque = result.curve_unit == "N*m"
     name = result.curves[i]
-    up = Axis(f"torque of {name}, peak to peak", "N·m", 0.0) if torque else Axis(f"{name}, peak to peak", "", 0.0)
+    up = Axis(f"torque of {name}, peak to peak", "N m", 0.0) if torque else Axis(f"{name}, peak to peak", "", 0.0)
     return single(axis_of(across), up, items, height=4.4)
 
 
@@ -159,7 +159,7 @@ def _followed(found: Mapping[str, Any]) -> tuple[str, str, str]:
     followed: Any = getattr(detail, "branch", detail)
     curve = getattr(first, "curve", "x")
     if getattr(followed, "curve_unit", "") == "N*m":
-        return "input speed" if followed.label == "speed" else followed.label, f"the torque of {curve}", "N·m"
+        return "input speed" if followed.label == "speed" else followed.label, f"the torque of {curve}", "N m"
     return "frequency ω", curve, ""
 
 
@@ -208,7 +208,7 @@ def line_sweeps(found: Sequence[LineSweep], *, spring: str = "", unit: str | Non
     for one in found:
         items += _swept(one, one.value * speed_factor(unit), one.swing_of(name), one.contact_of(name))
     across = Axis("speed" if line.independent_variable == "speed" else "frequency", unit)
-    return _of_sweeps(items, across, Axis(f"torque of {name}, peak to peak", "N·m", 0.0), f"contact of {name}, sweep")
+    return _of_sweeps(items, across, Axis(f"torque of {name}, peak to peak", "N m", 0.0), f"contact of {name}, sweep")
 
 
 def _swept(one: Sweep, x: Array, size: Array, contact: Sequence[str]) -> list[Item]:

@@ -27,7 +27,7 @@ def kinetostatics(result: Kinetostatics, *, unit: str | None = None) -> Picture:
     """Speeds, accelerations, torques and secondary couples over the input angle."""
     names, ratio, acceleration, torque = _shafts(result)
     percent = 100 * (ratio - 1)
-    factor, torque_unit = _scale(torque, "N·m")
+    factor, torque_unit = _scale(torque, "N m")
     alike = _alike(names, np.stack([percent, acceleration, torque], axis=1))
     geared = bool(np.any(np.abs(result.shaft_ratio) != 1))
     referring = "torque referred to the drive" if geared else "torque passed on"
@@ -73,7 +73,7 @@ def paper(result: Kinetostatics) -> Picture:
         ),
         _panel(result, _curves(result, alike, result.speed * speed_factor(unit)), "angular speed", unit),
         _panel(result, _curves(result, alike, result.acceleration), "angular acceleration", "rad/s²"),
-        _panel(result, _curves(result, alike, result.transmitted), "torque passed on", "N·m"),
+        _panel(result, _curves(result, alike, result.transmitted), "torque passed on", "N m"),
     ]  # fmt: skip
     panels[1] = replace(panels[1], key="centre", key_title="b, c, d")
     panels = [replace(panel, title=letter) for letter, panel in zip("abcd", panels, strict=True)]
@@ -135,7 +135,7 @@ def _shafts(result: Kinetostatics) -> tuple[tuple[str, ...], Array, Array, Array
 
 
 def _couples(result: Kinetostatics) -> tuple[Axis, list[Line]]:
-    return _of_vectors(result, result.forks, result.secondary_couple, "secondary couple on fork", "N·m")
+    return _of_vectors(result, result.forks, result.secondary_couple, "secondary couple on fork", "N m")
 
 
 def _of_vectors(

@@ -49,7 +49,7 @@ MOST_ORDERS = 16
 """Orders of a comparison drawn, the largest of them."""
 BAR = 0.38
 ORDER = Axis("order", "cycles per turn of the input")
-TORQUES = Axis("torque", "N·m")
+TORQUES = Axis("torque", "N m")
 
 
 def history(result: SystemSimulation, *, states: tuple[str, ...] = ()) -> Picture:
@@ -160,7 +160,7 @@ def period(result: PeriodicResponse, *, unit: str = "") -> Picture:
     end = 360.0 * MOST_TURNS if part else float(degrees[-1])
     remark = f"{result.verdict} periodic motion at {Words(unit or result.unit).speed(result.speed)}"
     remark += f", {MOST_TURNS} turns of the {result.turns:g} of its period" if part else ""
-    up = Axis("torque about its mean", "N·m") if about else TORQUES
+    up = Axis("torque about its mean", "N m") if about else TORQUES
     return single(Axis("input angle", "°", 0.0, end), up, items, height=4.2, remark=remark)
 
 
@@ -179,7 +179,7 @@ def orders(result: PeriodicResponse, *, highest: float = 12.0) -> Picture:
         for i, name in enumerate(result.shafts)
     ]
     top = float(amplitude.max()) if amplitude.size else 1.0
-    up = Axis("torque amplitude", "N·m")
+    up = Axis("torque amplitude", "N m")
     across = Axis(ORDER.words, ORDER.unit, 0.0, highest + gap / 2)
     return single(across, up.logarithmic(top / DECADES, 2 * top) if top > 0 else up, items, height=4.0)
 
@@ -200,7 +200,7 @@ def map_of_orders(
     amplitude = found.amplitude[:, 1:, i]
     top = max(float(amplitude.max()), 1e-300)
     least, order = top / 10**MAP_DECADES, np.argsort(x)
-    colours = Colours(f"torque amplitude of {found.shafts[i]} [N·m]", "amplitude", least, top, "log")
+    colours = Colours(f"torque amplitude of {found.shafts[i]} [N m]", "amplitude", least, top, "log")
     mesh = ColouredGrid(x[order], found.order[1:], np.maximum(amplitude[order].T, least), colours)
     across = Axis("input speed", unit) if varies else Axis("time", "s")
     return single(across, ORDER, [mesh], height=4.6, grid="")
@@ -226,7 +226,7 @@ def run_up(result: RunUp, *, shaft: str = "", unit: str = "") -> Picture:
     items += [
         Level(float(result.inertia_torque[i]), "accelerates", "accelerates what is behind it"),
         Line(result.speed * factor, result.largest[:, i], "turns", "largest in each turn"),
-        Points([at * factor], [peak], "top", f"{peak:.4g} N·m at {words.rounded(at)}"),
+        Points([at * factor], [peak], "top", f"{peak:.4g} N m at {words.rounded(at)}"),
     ]
     asked = result.schedule
     remark = f"{words.ends(asked.first, asked.last)} at {words.acceleration(asked.acceleration)}"
@@ -234,7 +234,7 @@ def run_up(result: RunUp, *, shaft: str = "", unit: str = "") -> Picture:
         hung = result.ending.hung_speed
         remark += f": {result.ending.kind} at {words.about(hung)}"
         items.append(Level(hung * factor, "hangs", "where it hangs", "x"))
-    up = Axis(f"largest torque of {result.shafts[i]}", "N·m", 0.0)
+    up = Axis(f"largest torque of {result.shafts[i]}", "N m", 0.0)
     return single(Axis("input speed", unit), up, items, remark=remark)
 
 
@@ -266,5 +266,5 @@ def linearity(check: LinearityCheck, *, spring: str | None = None, unit: str | N
     at = Words(unit or check.unit).speed(check.speed)
     apart = f"apart by {100 * check.relative_difference[s]:.2g} % of the largest order"
     across = Axis(ORDER.words, ORDER.unit, names=[f"{check.order[k]:.4g}" for k in drawn])
-    up = Axis(f"torque of {check.springs[s]}", "N·m")
+    up = Axis(f"torque of {check.springs[s]}", "N m")
     return single(across, up, items, height=3.9, title=f"{at}: {words}, {apart}", key="inside", grid="")

@@ -86,7 +86,7 @@ def torque_by_order(
         items.append(Line(x, peak, "largest", "largest torque, mean and all"))
         largest = max(largest, float(np.nanmax(np.nan_to_num(peak), initial=0.0)))
     items += _beyond_the_linear_range(x, result)
-    up = Axis("vibratory torque", "N·m")
+    up = Axis("vibratory torque", "N m")
     if largest > 0:
         up = up.logarithmic(low / 2, 2 * max([largest, *known.values()]))
     return over_speed(x, unit, up, items, operating, title=result.springs[column])
@@ -114,7 +114,7 @@ def wave(result: OrderResponse, *, spring: str | None = None, unit: str | None =
     title = f"torque of {name} over one period at {Words(unit or result.unit).speed(form.speed)}"
     items = [Line(1e3 * form.time, form.torque[:, column], curve(0), name)]
     across = Axis("time", "ms", 0.0, 1e3 * float(form.time[-1]))
-    return single(across, Axis("torque", "N·m"), items, height=3.6, title=title, key="")
+    return single(across, Axis("torque", "N m"), items, height=3.6, title=title, key="")
 
 
 def speed_sweep(sweep: SpeedSweep, *, unit: str = "", operating: Operation | None = None) -> Picture:
@@ -131,7 +131,7 @@ def speed_sweep(sweep: SpeedSweep, *, unit: str = "", operating: Operation | Non
     items += stretches(x, ~sweep.linear, "indication", f"a joint's input {INDICATION}")
     known = size[np.isfinite(size)]
     largest = float(known.max(initial=0.0))
-    up = Axis("torque amplitude", "N·m")
+    up = Axis("torque amplitude", "N m")
     if largest > 0:
         up = up.logarithmic(max(float(known.min()), largest / 10**SHOWN) / 1.5, 2.0 * largest)
     return over_speed(x, unit, up, items, operating)

@@ -17,7 +17,7 @@ from trunnion.results.words import Words
 
 
 def printed(quantity: str) -> str:
-    """A number with its unit, or a unit alone, as a page prints it: "−3 N·m", "rad/s²"."""
+    """A number with its unit, or a unit alone, as a page prints it: "−3 N m", "rad/s²"."""
     return signs(quantity).replace("-", "−")
 
 

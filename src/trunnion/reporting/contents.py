@@ -183,7 +183,7 @@ def _torque_findings(sweep: SpeedSweep, seen: Overview) -> Iterator[Finding]:
     at, most = Words(seen.unit).rounded(float(sweep.speed[i])), float(f"{trusted[i, j]:.3g}")
     yield Finding(
         Gravity.NOTE,
-        f"Where linear theory holds, torques swing by up to ±{most:.10g} N*m, in {sweep.shafts[j]} at {at}.",
+        f"Where linear theory holds, torques swing by up to ±{most:.10g} N m, in {sweep.shafts[j]} at {at}.",
     )
     beyond = ~sweep.linear
     if beyond.any():

@@ -158,7 +158,7 @@ def response_findings(
         operation = assembly.line.operation
         loads = "under the loads as described " if operation and operation.load_cases else ""
         said = (
-            f"{said}: {loads}the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N*m at "
+            f"{said}: {loads}the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N m at "
             f"{words.rounded(at)}, {raised[which, shaft]:.2g} times its median over the range."
         )
     yield Finding(Gravity.CAUTION, said)

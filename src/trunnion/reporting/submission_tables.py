@@ -123,9 +123,9 @@ def mass_table(contents: SubmissionContents) -> Table:
         {
             "no.": i,
             "mass": row.name,
-            "inertia [kg·m²]": row.inertia,
+            "inertia [kg m²]": row.inertia,
             "speed over the input's": row.speed_ratio,
-            "referred to the input [kg·m²]": row.referred,
+            "referred to the input [kg m²]": row.referred,
         }
         for i, row in enumerate(masses(contents.seen.assembly), start=1)
     )
@@ -137,9 +137,9 @@ def spring_table(contents: SubmissionContents) -> Table:
         {
             "spring": row.name,
             "between": f"{row.between[0]} – {row.between[1]}",
-            "stiffness [kN·m/rad]": row.stiffness / 1e3,
-            "referred to the input [kN·m/rad]": row.referred / 1e3,
-            "damping [N·m·s/rad]": row.damping,
+            "stiffness [kN m/rad]": row.stiffness / 1e3,
+            "referred to the input [kN m/rad]": row.referred / 1e3,
+            "damping [N m s/rad]": row.damping,
             "loss factor": row.loss,
             "smallest diameter [mm]": 1e3 * row.diameter,
         }
@@ -155,7 +155,7 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
         {
             "mass": row.name,
             "relative amplitude": float(amplitude),
-            "J ω² θ [N·m]": milli * float(torque),
+            "J ω² θ [N m]": milli * float(torque),
         }
         for row, amplitude, torque in zip(listed, mode.amplitude, mode.inertia_torque, strict=True)
     ]
@@ -163,7 +163,7 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
     in_springs = [
         {
             "spring": row.name,
-            "torque [N·m]": milli * float(torque),
+            "torque [N m]": milli * float(torque),
             "node": f"at {100 * at[row.name]:.0f} % of its twist" if row.name in at else "",
         }
         for row, torque in zip(springs(contents.seen.assembly), mode.torque, strict=True)
@@ -202,12 +202,12 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
 def _size(one: Excitation) -> str:
     """The amplitude of an excitation in words."""
     if one.amplitude is not None:
-        return f"{four(one.amplitude)} N·m"
+        return f"{four(one.amplitude)} N m"
     if one.quadratic_amplitude is not None:
-        return f"{four(one.quadratic_amplitude)} N·m·s² times ω²"
+        return f"{four(one.quadratic_amplitude)} N m s² times ω²"
     if one.share is not None:
         return f"{four(100 * one.share)} % of the mean torque"
-    return f"table of {len(one.amplitudes)} points up to {four(one.largest)} N·m"
+    return f"table of {len(one.amplitudes)} points up to {four(one.largest)} N m"
 
 
 def engines(contents: SubmissionContents) -> Table | None:
@@ -244,7 +244,7 @@ def powers(contents: SubmissionContents) -> Table:
             **({"load case": one.case or "as described"} if several else {}),
             f"input speed [{words.unit}]": one.speed * words.factor,
             "in": one.spring,
-            "mean torque [N·m]": one.torque,
+            "mean torque [N m]": one.torque,
             "power [kW]": one.power / 1e3,
         }
         for one in contents.powers
@@ -257,14 +257,14 @@ def shafts(contents: SubmissionContents) -> Table:
     return Table.of(
         {
             "spring": one.spring,
-            "vibratory [N·m]": one.vibratory.value,
+            "vibratory [N m]": one.vibratory.value,
             f"at [{words.unit}]": one.vibratory.speed * words.factor,
             "leading order": one.leading,
-            "limit of it [N·m]": _limit(contents, one.spring, VIBRATORY, "vibratory_torque"),
+            "limit of it [N m]": _limit(contents, one.spring, VIBRATORY, "vibratory_torque"),
             "vibratory stress [MPa]": one.stress / 1e6,
-            "peak [N·m]": one.peak.value,
+            "peak [N m]": one.peak.value,
             f"peak at [{words.unit}]": one.peak.speed * words.factor,
-            "limit of peak [N·m]": _limit(contents, one.spring, PEAK, "maximum_torque"),
+            "limit of peak [N m]": _limit(contents, one.spring, PEAK, "maximum_torque"),
             **({"load case": one.peak.case or "as described"} if several else {}),
         }
         for one in contents.shafts
@@ -292,8 +292,8 @@ def misfires(contents: SubmissionContents) -> Table:
         top = worst.vibratory[s]
         return {
             "spring": spring,
-            "all firing [N·m]": contents.firing[s].value,
-            "one misfiring [N·m]": top.value,
+            "all firing [N m]": contents.firing[s].value,
+            "one misfiring [N m]": top.value,
             "worst": worst.cylinder,
             f"at [{words.unit}]": top.speed * words.factor,
         }

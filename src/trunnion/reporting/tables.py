@@ -21,7 +21,7 @@ from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
-from trunnion.results.units import figures, signs
+from trunnion.results.units import figures, range_words, signs
 from trunnion.results.words import Words
 
 MOST_RESONANCES = 30
@@ -115,8 +115,8 @@ def _listed(values: tuple[object, ...], kind: QuantityKind | None) -> str:
 
 
 def with_signs(sentence: str) -> str:
-    """A sentence with the signs of units, "N·m", "kg·m²" and "5°"; stars in names stay."""
-    squared = re.sub(r"(?<=[ms])\^2\b", "²", re.sub(r"(?<=[Ngtm])\*(?=[ms](?:\b|\^))", "·", sentence))
+    """A sentence with the signs of units, "N m", "kg m²" and "5°"; stars in names stay."""
+    squared = re.sub(r"(?<=[ms])\^2\b", "²", re.sub(r"(?<=[Ngtm])[*·](?=[ms](?:\b|[\^²]))", " ", sentence))
     return re.sub(r"(?<=[0-9]) deg\b", "°", squared)
 
 
@@ -246,9 +246,9 @@ def torques(contents: Contents, unit: str) -> Table | None:
         known = bool(np.any(sweep.linear))
         row = {
             "shaft": name,
-            "mean, operating [N·m]": mean,
-            "amplitude, operating [N·m]": amplitude,
-            "largest amplitude [N·m]": trusted[most, j] if known else np.nan,
+            "mean, operating [N m]": mean,
+            "amplitude, operating [N m]": amplitude,
+            "largest amplitude [N m]": trusted[most, j] if known else np.nan,
             f"at [{unit}]": sweep.speed[most] * Words(unit).factor if known else np.nan,
         }
         rows.append(row)
@@ -270,9 +270,9 @@ def _of_motion(motion: LoadedMotion) -> dict[str, object]:
         "about zero twist [1/s]": linear.zero_twist.growth_rate if linear else np.nan,
         "about static twist [1/s]": linear.static_twist.growth_rate if linear else np.nan,
         "most loaded shaft": response.shafts[worst],
-        "mean torque [N·m]": response.torque_mean[worst],
-        "peak to peak [N·m]": response.torque_peak_to_peak[worst],
-        "by linear theory [N·m]": linear.linear_torque_peak_to_peak[worst] if linear else np.nan,
+        "mean torque [N m]": response.torque_mean[worst],
+        "peak to peak [N m]": response.torque_peak_to_peak[worst],
+        "by linear theory [N m]": linear.linear_torque_peak_to_peak[worst] if linear else np.nan,
     }
 
 
@@ -314,7 +314,7 @@ def operation(contents: Contents, unit: str) -> Table:
     """Where the line runs."""
     seen, factor = contents.overview, Words(unit).factor
     low, high = seen.speed_range
-    rows = [("speed range", f"{four(low * factor)} to {four(high * factor)} {unit}")]
+    rows = [("speed range", f"{range_words(four(low * factor), four(high * factor))} {unit}")]
     if seen.operation.speed:
         rows.insert(0, ("operating speed", f"{four(seen.operation.speed * factor)} {unit}"))
     if seen.chart is not None:
@@ -322,5 +322,5 @@ def operation(contents: Contents, unit: str) -> Table:
         rows.append(("joint angles examined", f"{four(first)} to {four(last)}°"))
     for name, element in zip(seen.line.names, seen.line.elements, strict=True):
         if torque := getattr(element, "load_torque", 0.0):
-            rows.append((f"load torque on {name}", f"{four(torque)} N·m"))
+            rows.append((f"load torque on {name}", f"{four(torque)} N m"))
     return Table(("", ""), tuple(rows))

@@ -70,4 +70,5 @@ def _per_second(unit: str) -> str:
 
 def rounded_span(low: float, high: float, unit: str, between: str = "to") -> str:
     """``300 to 2400 rpm``: four figures each."""
-    return f"{figures(low * speed_factor(unit))} {between} {rounded_speed(high, unit)}"
+    first, last = figures(low * speed_factor(unit)), rounded_speed(high, unit)
+    return last if last == f"{first} {unit}" else f"{first} {between} {last}"

@@ -8,8 +8,13 @@ from trunnion.driveline.quantities import KINDS, SPEED, shown
 
 
 def signs(text: str) -> str:
-    """A unit, or a number with its unit, as a page prints it: "N·m", "kg·m²"."""
-    return text.replace("*", "·").replace("^2", "²").replace("^3", "³")
+    """A unit, or a number with its unit, as a page prints it: "N m", "kg m²"."""
+    return text.replace("*", " ").replace("^2", "²").replace("^3", "³")
+
+
+def range_words(low: str, high: str, between: str = "to") -> str:
+    """ "40 to 60"; one where both ends print alike."""
+    return low if low == high else f"{low} {between} {high}"
 
 
 def with_unit(text: str, unit: str) -> str:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trunnion.results import speeds
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.results.stretches import ranges_in_words
-from trunnion.results.units import angle_words, figures, in_words, order_words
+from trunnion.results.units import angle_words, figures, in_words, order_words, range_words
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Words:
 
     def ends(self, low: float, high: float) -> str:
         """ "300 rpm to 2400 rpm"."""
-        return f"{self.speed(low)} to {self.speed(high)}"
+        return range_words(self.speed(low), self.speed(high))
 
     def span(self, low: float, high: float, between: str = "to") -> str:
         """ "300 to 2400 rpm": four figures each."""

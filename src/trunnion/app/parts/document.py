@@ -20,6 +20,7 @@ import tomli_w
 
 from trunnion.app.parts.form import (
     ANGLES,
+    FACTORS,
     LISTS,
     LOAD_CASE,
     LOADS,
@@ -132,7 +133,9 @@ class Document:
                         return  # what is not there need not be taken away
                     owner[key] = [] if isinstance(following, int) else {}
                 owner = owner[key]
-            value = text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,)) else _read(text)
+            value = (
+                text.strip() if last in _WORDS and path[-2:-1] not in ((LOADS,), (ANGLES,), (FACTORS,)) else _read(text)
+            )
             if isinstance(owner, dict) and not text.strip():
                 owner.pop(last, None)
             elif text.strip() and isinstance(owner, list) and isinstance(last, int) and last >= len(owner):
@@ -358,7 +361,7 @@ def _spoken_of(data: dict[str, Any]) -> set[str]:
     found |= {str(one[key]) for one in data.get("element", []) for key in ("after", "to") if key in one}
     for section in (LOAD_CASE, SCHEDULE):
         for one in _listed(data, ("operation", section)):
-            for key in (LOADS, ANGLES) if isinstance(one, dict) else ():
+            for key in (LOADS, ANGLES, FACTORS) if isinstance(one, dict) else ():
                 found |= set(one.get(key) or {})
     return found
 

@@ -21,7 +21,7 @@ Path = tuple[str | int, ...]
 _PLACE = re.compile(r"\(element ([0-9]+)\)$|^element ([0-9]+)$")
 _WHOLE = {"name": None, "description": None, "damping_ratio": RATIO, "damping_ratio_frequency": SPEED}
 _EXAMPLE_SPEEDS = {"rpm": "1500 rpm", "Hz": "25 Hz", "rad/s": "157 rad/s"}
-LOAD_CASE, LOADS, LOAD_KIND = "load_case", "loads", "load case"
+LOAD_CASE, LOADS, FACTORS, LOAD_KIND = "load_case", "loads", "factors", "load case"
 SCHEDULE, ANGLES = "schedule", "angles"
 LISTS: tuple[tuple[str, ...], ...] = (
     ("element",), ("limit",), ("operation", LOAD_CASE), ("operation", SCHEDULE), ("operation", "switched_off"),
@@ -89,10 +89,10 @@ def form(data: Mapping[str, Any], problems: Iterable[InputError]) -> tuple[Field
     """Everything that can be edited; what concerns no group is said of the whole."""
     left = _OpenErrors(problems)
     elements, operation = data.get("element", []), data.get("operation", {})
-    names, disks = names_of(elements), disks_of(elements)
+    names, loaded = names_of(elements), (disks_of(elements), machines_of(elements))
     groups = [_whole(data, left), _document(data.get("document", {}), left), _operation(operation, left)]
     groups += [_switched_off(i, one, left) for i, one in enumerate(operation.get(SWITCHED_OFF, []))]
-    groups += [_load_case(i, case, disks, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
+    groups += [_load_case(i, case, *loaded, left) for i, case in enumerate(operation.get(LOAD_CASE, []))]
     groups += [_schedule(i, table, elements, left) for i, table in enumerate(operation.get(SCHEDULE, []))]
     groups += [_element(i, table, names[i], left) for i, table in enumerate(elements)]
     groups += [_limit(i, table, left) for i, table in enumerate(data.get("limit", []))]
@@ -158,8 +158,8 @@ def _switched_off(place: int, table: Any, left: _OpenErrors) -> FieldGroup:
     return FieldGroup(path, f"{OFF_KIND}: {rule}", OFF_KIND, fields, (), left.rest(owners))
 
 
-def _load_case(place: int, table: Any, disks: Sequence[str], left: _OpenErrors) -> FieldGroup:
-    """A field for every disk; an empty one leaves the disk its own torque."""
+def _load_case(place: int, table: Any, disks: Sequence[str], machines: Sequence[str], left: _OpenErrors) -> FieldGroup:
+    """A field for every disk and machine; an empty one leaves it its own torque."""
     path: Path = ("operation", LOAD_CASE, place)
     table = table if isinstance(table, dict) else {}
     name, stated = str(table.get("name", "")), table.get(LOADS)
@@ -169,6 +169,11 @@ def _load_case(place: int, table: Any, disks: Sequence[str], left: _OpenErrors) 
     for disk in dict.fromkeys([*disks, *loads]):
         text = text_of(loads.get(disk, ""), TORQUE)
         fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", left.said(owners, disk)))
+    factors = table.get(FACTORS) if isinstance(table.get(FACTORS), dict) else {}
+    for one in dict.fromkeys([*machines, *(factors or {})]):
+        text = text_of((factors or {}).get(one, ""), RATIO)
+        what = f"factor on the torque of {one}"
+        fields.append(Field((*path, FACTORS, one), what, text, "as it is", left.said(owners, one)))
     return FieldGroup(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
 
 
@@ -265,6 +270,12 @@ def joints_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
 def disks_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
     """Names of the elements that a load acts on."""
     return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") in ("Disk", "Vehicle")]
+
+
+def machines_of(tables: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Names of the machines on whose torque a load case can put a factor."""
+    kinds = [name for name, kind in KINDS.items() if getattr(kind, "torque_keys", ())]
+    return [n for n, t in zip(names_of(tables), tables, strict=True) if t.get("type") in kinds]
 
 
 def _owns(error: InputError, owners: tuple[Any, ...]) -> bool:

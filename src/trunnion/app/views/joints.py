@@ -94,7 +94,7 @@ class JointsView(View):
 
     fields = {
         "speed": lambda: optional("Speed", start=0.0, width=150),
-        "torque": lambda: number("Torque at the output [N·m]", 100.0, width=190),
+        "torque": lambda: number("Torque at the output [N m]", 100.0, width=190),
         "turn": lambda: slider("Input turned by [deg]", 0, 360, 5),
         "shaft": lambda: select("Fork offset of", options=[]),
         "side": lambda: number("Angle in side view [deg]", 0.0, width=170),

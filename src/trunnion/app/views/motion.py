@@ -109,7 +109,7 @@ class _MotionPane(VariantPane["MotionView"]):
             self.found = {}
         self.found[step.name] = data
         done = [name for name in asked if name in self.found]
-        across, up = Axis("input speed", unit_of(self.line)[0]), Axis("half peak-to-peak torque", "N·m", 0.0)
+        across, up = Axis("input speed", unit_of(self.line)[0]), Axis("half peak-to-peak torque", "N m", 0.0)
         title = f"vibration of {self.view.settings['spring']} by every method"
         self.picture.show(single(across, up, [i for name in done for i in self.found[name]["items"]], title=title))
         self.text.object = joined(pre(f"{asked[name]}\n{self.found[name]['text']}") for name in done)

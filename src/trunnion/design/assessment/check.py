@@ -14,6 +14,7 @@ from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.response_curve import ResponseCurve
 from trunnion.driveline.rules import RULES
 from trunnion.results.fields import computed, internal, labelled, variable
+from trunnion.results.units import range_words
 
 
 class Status(Enum):
@@ -84,7 +85,7 @@ class Check:
     @computed(variable(words="input speeds [rad/s] that it was judged over", name="covered"))
     def covered_in_words(self) -> str:
         """ "10 to 100, 120 to 200", in rad/s."""
-        return ", ".join(f"{low:.6g} to {high:.6g}" for low, high in self.covered)
+        return ", ".join(range_words(f"{low:.6g}", f"{high:.6g}") for low, high in self.covered)
 
     @property
     def judged(self) -> bool:

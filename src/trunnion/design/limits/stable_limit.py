@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,10 +27,11 @@ from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.charts.building import family_for, strategy_named
-from trunnion.floquet.charts.stability_chart import Task, family_of_chart
+from trunnion.floquet.charts.stability_chart import ABOUT_STEADY_STATES, Task, family_of_chart
 from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.region import NODES, PIECES, Region, patched, turned, unpatched
 from trunnion.floquet.tongues.rows import TongueRow, unknown_row, unstable_intervals
+from trunnion.floquet.tongues.rows_by_collisions import SAMPLED_WORDS, sampled_rows
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
 from trunnion.floquet.tongues.windows import StableWindows, stable_windows
 from trunnion.results.chart import StabilityChart, require_pixels
@@ -56,6 +58,7 @@ def stable_limit(
     between: bool = True,
     scan: int = SCAN,
     tolerance: float = PATCH_TOLERANCE,
+    about_steady_state: bool = False,
     within: float | None = None,
     progress: Progress | None = None,
 ) -> StableLimit:
@@ -72,6 +75,7 @@ def stable_limit(
         ``stable_windows``); False for the speeds alone.
     scan : steps of the grid on which the limits of the description are compared.
     tolerance : of the patches that tell where to look; edges are solved for by themselves.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     within : seconds that it may take; the limit is unknown at speeds that were not reached, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -103,7 +107,10 @@ def stable_limit(
     ends = float(speed.min()), float(speed.max())
     if ends[0] == ends[1]:
         ends = ends[0] * (1 - ASIDE), ends[1] * (1 + ASIDE)
-    task = task_of(assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit")
+    task = task_of(
+        assembly, (parameter, low, high), ("speed", *ends), None, True, "stable_limit",
+        about_steady_state=about_steady_state,
+    )  # fmt: skip
     workers = os.cpu_count() or 1
     region = _region(task, len(speed), tolerance, workers, lambda s: report_progress(0.6 * s))
     at = np.unique(np.clip(speed, task.y.values[0], task.y.values[-1]))
@@ -126,6 +133,7 @@ def stable_limit(
                 high,
                 ends,
                 margin=margin,
+                about_steady_state=about_steady_state,
                 progress=lambda s: report_progress(end + (1 - end) * s),
             )
     except OutOfTime as error:
@@ -145,6 +153,11 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
     speeds : inside the chart's x axis [rad/s]; those outside are moved to its nearest end.
     own : add the chart's own speeds.
     """
+    if chart.way == ABOUT_STEADY_STATES:
+        raise InputError(
+            "is about the line's own motion and has no patches to search", element="chart",
+            remedy="ask stable_limit of the line",
+        )  # fmt: skip
     if chart.x_label != "speed" or chart.line is None or chart.function is None or min(len(chart.x), len(chart.y)) < 2:
         raise InputError("needs a chart of a driveline with the speed along x", element="chart")
     own_family, workers = family_of_chart(chart), os.cpu_count() or 1
@@ -162,7 +175,7 @@ def limit_of_chart(chart: StabilityChart, speeds: ArrayLike = (), *, own: bool =
 
 def _region(task: Task, speeds: int, tolerance: float, workers: int, report_progress: Progress) -> Region:
     """The box to search; few rows of a long line cost less than one patch of its matrices."""
-    if 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
+    if not task.family.analytic or 2 * task.family.size > MOST and speeds * NODES * PIECES < NODES**2:
         return unpatched(task.family, task.x.values, task.y.values, workers)
     return patched(task.family, task.x.values, task.y.values, tolerance, workers, report_progress)
 
@@ -170,8 +183,9 @@ def _region(task: Task, speeds: int, tolerance: float, workers: int, report_prog
 def _rows(region: Region, speed: Array) -> list[TongueRow]:
     """Unstable ranges of the parameter at every speed (speed,)."""
     rows: list[TongueRow] = []
+    search = partial(unstable_intervals, region) if region.family.analytic else sampled_rows(region)
     for start in range(0, len(speed), AT_ONCE):
-        rows += unstable_intervals(region, region.family.to_patch(speed[start : start + AT_ONCE], False))
+        rows += search(region.family.to_patch(speed[start : start + AT_ONCE], False))
     return rows
 
 
@@ -231,6 +245,8 @@ def _result(
 
 
 def _search_words(region: Region) -> str:
+    if not region.family.analytic:
+        return f"stability about the line's own motion: values of the parameter {SAMPLED_WORDS}"
     if not region.by_coefficients:
         few = "more than three unknowns have no boundary functions that could be searched completely"
         return f"stability sampled along the parameter, edges solved for: {few}, so narrow ranges may be missing"

@@ -215,12 +215,18 @@ def _growth(case: LoadCaseResponse, speed: float, directions: Sequence[Direction
 
 
 def _under_load(case: LoadCaseResponse, one: Direction) -> Direction:
-    """A direction that leaves alone what the load case itself states."""
+    """A direction that leaves alone what the load case itself states, and moves what it multiplies by its factor."""
     line, labels = case.assembly.line, case.assembly.packed.labels
     if not case.name:
         return one
     stated = {f"{disk}.load_torque" for disk in line.loads_of(case.name)}
-    return one.but(column for column, label in enumerate(labels) if label in stated)
+    factors = {
+        f"{name}.{key}": factor
+        for name, factor in line.factors_of(case.name).items()
+        for key in getattr(line.elements[line.index(name)], "torque_keys", ())
+    }
+    kept = one.but(column for column, label in enumerate(labels) if label in stated)
+    return kept.times({column: factors[label] for column, label in enumerate(labels) if label in factors})
 
 
 def _of(subject: AssessmentInput, case: LoadCaseResponse, line: Driveline) -> tuple[AssessmentInput, LoadCaseResponse]:

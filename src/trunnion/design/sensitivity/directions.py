@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,6 +34,11 @@ class Direction:
         """The same, leaving some columns alone."""
         kept = np.where(np.isin(self.columns.index, list(columns)), 0.0, self.columns.slope)
         return replace(self, columns=replace(self.columns, slope=kept))
+
+    def times(self, factors: Mapping[int, float]) -> Direction:
+        """The same where some columns move by a factor of what they do as described."""
+        by = np.array([factors.get(int(column), 1.0) for column in self.columns.index])
+        return replace(self, columns=replace(self.columns, slope=self.columns.slope * by))
 
     def moved(self, table: Array, share: Array | float) -> None:
         """Move the rows of ``table`` (rows, columns) by shares of the size."""

@@ -35,6 +35,7 @@ from trunnion.floquet.tolerance.spread import (
     tables,
     values_in_words,
 )
+from trunnion.floquet.tolerance.steady_state_lines import SteadyStateLines, lines_like
 from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.chart import require_pixels
 from trunnion.results.drawing import Axes, drawing
@@ -166,7 +167,7 @@ def tolerance_study(
     statically_twisted : as in ``stability``.
     threads : default one per core.
     client : a ``distributed.Client``, whose workers judge the same lines instead, in pieces of 32 768 lines at one
-        speed and of one line by the checks.
+        speed and of one line by the checks; free–free lines with joint angles are judged here.
     within : seconds that it may take; the lines judged until then are counted, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -195,13 +196,15 @@ def tolerance_study(
     each = 1 << int(np.ceil(np.log2(samples / SCRAMBLES)))
     require_pixels(each * SCRAMBLES, len(at))
     workers = workers_of_client(client)
-    lines = ManyLines.of(
+    lines = lines_like(
         assembly, tables(assembly, spreads, np.full((1, len(spreads)), 0.5), float(at[0])),
         statically_twisted, threads or os.cpu_count() or 1,
     )  # fmt: skip
     shares = sobol(len(spreads), each, seed)
     report_progress = progress or (lambda share: None)
-    growth, verdict, ended = _judged(lines, spreads, shares, at, report_progress, workers)
+    growth, verdict, ended = _judged(
+        lines, spreads, shares, at, report_progress, None if isinstance(lines, SteadyStateLines) else workers
+    )
     shares = shares[: growth.shape[1]]
     fine = np.isin(verdict, (Verdict.STABLE, Verdict.MARGINAL))
     stable, at_each = fine.all(axis=0), fine.mean(axis=1)

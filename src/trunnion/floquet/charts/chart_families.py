@@ -70,6 +70,11 @@ class ChartFamily(Protocol):
         """How many multipliers that are exactly 1 are to be set aside, as ``Stability.set_aside``."""
         return 0
 
+    @property
+    def analytic(self) -> bool:
+        """Whether what decides stability is an analytic function of both parameters."""
+        return True
+
     def matrices(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """Monodromy matrices (points, m, m), their errors and ∫ tr(M⁻¹C) dτ (points,)."""
 

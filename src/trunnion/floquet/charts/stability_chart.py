@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,7 +24,6 @@ from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import (
     has_joint_angles,
     has_periodic_base,
-    refuse_periodic_base,
     require_steady_base,
     require_tree,
 )
@@ -50,6 +49,9 @@ from trunnion.numerics.workers import shared_with, workers_of_client
 from trunnion.results.chart import ChartPoint, StabilityChart, is_log, require_pixels
 from trunnion.results.verdict import Verdict
 from trunnion.systems.family import PeriodicLinearFamily
+
+if TYPE_CHECKING:
+    from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 
 Progress = Callable[[float], None]
 ABOUT_STEADY_STATES = "periodic steady states"
@@ -112,8 +114,7 @@ def stability_chart(
     require_pixels(*(_points_of(request) for request in (x, y)))
     workers = workers_of_client(client)
     if isinstance(line, PeriodicLinearFamily):
-        if about_steady_state:
-            raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+        require_no_steady_state(about_steady_state)
     elif about_steady_state or _always_about_steady_state(assemble(line), x, y):
         return _about_steady_states(assemble(line), x, y, speed, tolerance, progress or (lambda share: None))
     task = chart_task(line, x, y, speed, statically_twisted, numpy_only=not compiling_pays())
@@ -139,14 +140,29 @@ def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisReques
     return has_periodic_base(assembly, corners)
 
 
-def _about_steady_states(
-    assembly: Assembly,
-    x: AxisRequest,
-    y: AxisRequest,
-    speed: float | str | None,
-    tolerance: float,
-    report_progress: Progress,
-) -> StabilityChart:
+def require_no_steady_state(about_steady_state: bool) -> None:
+    """Refuse the motion of a driveline to a family of one's own."""
+    if about_steady_state:
+        raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+
+
+def _steady_state_task(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None, analysis: str
+) -> Task:
+    """What is to be searched about the line's own motion."""
+    across, up, said, base, own = _own_axes(assembly, x, y, speed)
+    from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
+
+    family = SteadyStateFamily.about(assembly, across, up, base, own)
+    left = (finding.sentence for finding in left_out(analysis, assembly.line))
+    remarks = (*said, "judged about the line's own periodic motion, without its excitations", *left)
+    return Task(family, across, up, None if np.isnan(base) else base, assembly.line, remarks)
+
+
+def _own_axes(
+    assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None
+) -> tuple[ChartAxis, ChartAxis, list[str], float, SteadyStateChart]:
+    """As ``_axes_of``, and the motions over both axes."""
     require_period(assembly.line, assembly.topology)
     across, up, said, base = _axes_of(assembly, x, y, speed)
     if not has_joint_angles(assembly, _corners(assembly, across, up, base)):
@@ -156,7 +172,18 @@ def _about_steady_states(
         )  # fmt: skip
     from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 
-    chart = SteadyStateChart.of(assembly, _request(across), _request(up), base)
+    return across, up, said, base, SteadyStateChart.of(assembly, _request(across), _request(up), base)
+
+
+def _about_steady_states(
+    assembly: Assembly,
+    x: AxisRequest,
+    y: AxisRequest,
+    speed: float | str | None,
+    tolerance: float,
+    report_progress: Progress,
+) -> StabilityChart:
+    across, up, said, base, chart = _own_axes(assembly, x, y, speed)
     found = chart.pixels(across.values, up.values, lambda share: report_progress(0.95 * share))
     check = chart.check(found, across.values, up.values)
     report_progress(1.0)
@@ -259,17 +286,22 @@ def chart_task(
     analysis: str = "stability_chart",
     *,
     numpy_only: bool = False,
+    about_steady_state: bool = False,
 ) -> Task:
     """A line or family over two of its parameters, checked; ``analysis`` is whose row of the features table speaks.
 
-    ``numpy_only``: nothing is compiled for it, where the line suits that.
+    ``numpy_only``: nothing is compiled for it, where the line suits that. ``about_steady_state`` as of
+    ``stability_chart``.
 
     Raises
     ------
     InputError : see ``stability_chart``.
     """
     if not isinstance(line, PeriodicLinearFamily):
+        if about_steady_state or _always_about_steady_state(assemble(line), x, y):
+            return _steady_state_task(assemble(line), x, y, speed, analysis)
         return _line_task(line, x, y, speed, twisted, analysis, numpy_only)
+    require_no_steady_state(about_steady_state)
     if speed is not None:
         raise InputError("belongs to drivelines", key="speed", value=speed, remedy="a family has its own parameters")
     return _user_task(line, x, y)
@@ -287,11 +319,6 @@ def _line_task(
     assembly = assemble(line)
     require_period(assembly.line, assembly.topology)
     across, up, clipped, base = _axes_of(assembly, x, y, speed)
-    refuse_periodic_base(
-        assembly,
-        "ask stability at single speeds, or put a ConstantSpeed in front for a chart",
-        bends=across.is_joint_angle or up.is_joint_angle,
-    )
     corners = _corners(assembly, across, up, base)
     require_steady_base(assembly, corners)
     require_tree(assembly, "charts do")

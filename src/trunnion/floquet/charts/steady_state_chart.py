@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -102,23 +101,20 @@ class SteadyStateChart:
         self.y.columns.put(table, y)
         return table
 
-    @cached_property
-    def _by_speed(self) -> bool:
-        """Whether any torque depends on the speed anywhere on the chart."""
-        table = self.table(*(part.ravel() for part in np.meshgrid(self.x.values, self.y.values)))
-        co = self.unexcited.balance.line.untwisted(table)
-        return self.unexcited.by_speed or bool(co.viscous.any() or co.quadratic.any())
+    def curve(self, y: float) -> SteadyStateCurve:
+        """The motions of one row, of which nothing is known yet."""
+        balance = self.unexcited.balance.along(lambda value: self.table(value, np.full(len(value), y)))
+        return SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])))
 
     def row(self, x: Array, y: float) -> SteadyStateRow:
         """The motions and multipliers at ``x`` (points,), rising, of one row."""
         keep_time()
-        balance = self.unexcited.balance.along(lambda value: self.table(value, np.full(len(value), y)))
-        curve = SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])), self._by_speed)
+        curve, size = self.curve(y), 2 * len(self.unexcited.balance.turn)
         curve.broken = breaks(curve, x, between=False)
         motions = slopes_along(curve, x)
         found = multipliers_about(motions)
         critical = np.where(found.critical.imag < 0, found.critical.conj(), found.critical)
-        every = np.full((len(x), 2 * len(balance.turn)), np.nan, dtype=complex)
+        every = np.full((len(x), size), np.nan, dtype=complex)
         known = np.flatnonzero(np.isfinite(found.radius))
         if len(known):
             left = motions.beside_neutral(known, found.matrix[known])

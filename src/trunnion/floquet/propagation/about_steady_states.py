@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.equations.first_order import fastest_cycles, steps_that_see
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.results.verdict import Verdict, verdicts
-from trunnion.steady.free.periodic_steady_states import SteadyStateSlopes
+from trunnion.steady.free.free_balance import FreeBalance
+from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, SteadyStateSlopes, slopes_along
 
 
 @dataclass(frozen=True)
@@ -46,3 +47,21 @@ def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) ->
         matrix[there] = found.matrix
     code = np.where(np.isfinite(radius), verdicts(radius, error, motions.undamped), Verdict.FAILED)
     return SteadyStateMultipliers(radius, error, critical, code.astype(np.int8), matrix)
+
+
+def pixels_of_rows(balance: FreeBalance, table: Array, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
+    """Of lines that lie anywhere, rows of packed numbers (line, column): about the motion that rigid shafts lead to,
+    else that of a line nearby in the table.
+
+    Critical multipliers are those with a positive imaginary part.
+    """
+
+    def rows(value: Array) -> Array:
+        """Between two lines the way from one to the other, along which a motion is followed."""
+        before = np.clip(np.floor(value).astype(int), 0, max(len(table) - 2, 0))
+        share = (value - before)[:, None]
+        return np.asarray(table[before] * (1 - share) + table[np.minimum(before + 1, len(table) - 1)] * share)
+
+    curve = SteadyStateCurve(balance.along(rows), (0.0, float(len(table) - 1)))
+    found = multipliers_about(slopes_along(curve, np.arange(len(table), dtype=float)), tolerance=tolerance)
+    return replace(found, critical=np.where(found.critical.imag < 0, found.critical.conj(), found.critical))

@@ -77,8 +77,9 @@ class UnstableRanges:
         return left
 
 
-def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> UnstableRanges:
-    """Of a line that joints or meshes vary; ``judge``: its stability at speeds (speed,).
+def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS, swing: float | None = None) -> UnstableRanges:
+    """Of a line that joints or meshes vary; ``judge``: its stability at speeds (speed,); ``swing``: how far the inputs
+    of joints swing at most [rad], where that is known.
 
     Raises
     ------
@@ -90,7 +91,7 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS) -> Unstab
         low = high
     even = np.linspace(low, high, points)
     octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
-    met, damping, width = exponent_collisions(span, low, high)
+    met, damping, width = exponent_collisions(span, low, high, swing)
     lost = np.array([at for gap in span.lost for at in (gap.low, (gap.low + gap.high) / 2, gap.high)])
     along = judge(np.unique(np.concatenate([even, octaves, met, lost[(lost >= low) & (lost <= high)]])))
     along = _beside_met(along, judge, met, damping, width, (low, high))
@@ -119,13 +120,13 @@ def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
     return slow, (Gap(max(slow, span.low), least, why),), begin
 
 
-def exponent_collisions(span: Span, low: float, high: float) -> tuple[Array, Array, Array]:
+def exponent_collisions(span: Span, low: float, high: float, swing: float | None = None) -> tuple[Array, Array, Array]:
     """Speeds (meeting,) at which two exponents meet, the decay of the slower mode [1/s] there, and half of the stretch
-    [rad/s] over which they can grow."""
+    [rad/s] over which they can grow; ``swing`` as of ``unstable_ranges``."""
     modes, none = Modes.of(span), np.zeros(0)
     if not modes.value.shape[1] or low >= high or not span.assembly.topology.rates:
         return none, none, none
-    fed = min(_nonuniformity(span) + _swing(span), 1.0)
+    fed = min(_nonuniformity(span) + (_swing(span) if swing is None else swing), 1.0)
     sides = ExponentOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
     every = {step / sides.turns: k for step, k in offsets(rates, ORDERS[min(len(rates), 2) - 1]).items() if step > 0}

@@ -70,6 +70,8 @@ class Region:
     @property
     def by_coefficients(self) -> bool:
         """Whether the patches hold coefficients (of a stiff line those of its largest multipliers), or matrices."""
+        if not self.family.analytic:
+            return False
         if self.function.patches:
             return all(len(patch.error) - 1 <= MOST for patch in self.function.patches)
         return 2 * self.family.size <= MOST

@@ -8,25 +8,34 @@ what it finds. Tips are solved for as of any other rows.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Flags
 from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, exponent_collisions, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.floquet.tongues.boundary_traces import Search
 from trunnion.floquet.tongues.region import Region
-from trunnion.floquet.tongues.rows import BY_ROWS, OPEN_ERROR, TongueRow, kind_of
+from trunnion.floquet.tongues.rows import BY_ROWS, OPEN_ERROR, TongueRow, kind_of, settled
 from trunnion.results.verdict import Verdict
 
 RISES = 0.02
 """Growth is largest on a level where it rises by this share of itself above that beside."""
+SAMPLES = 49
+"""Places of a row along a parameter that is no speed."""
 WORDS = (
     "were searched at an even grid of speeds and at every meeting of two Floquet exponents that joints and meshes can "
     "open: a heuristic, so narrow regions may be missing"
+)
+
+
+SAMPLED_WORDS = (
+    f"were sampled at {SAMPLES} places and looked at closely where growth is largest: a heuristic, so narrow "
+    "regions may be missing"
 )
 
 
@@ -41,22 +50,34 @@ class RowFamily:
         low, high = self.family.x.values[[0, -1]].tolist()
         return Span(self.family.assembly, low, high, lambda table: self.family.y.columns.put(table, y))
 
-    def judged(self, span: Span, speed: Array) -> StabilityOverSpeed:
-        """Stability at speeds (speed,) of a row."""
+    def judged(self, span: Span, y: float, speed: Array) -> StabilityOverSpeed:
+        """Stability at speeds (speed,) of the row at ``y``."""
+        if isinstance(self.family, SteadyStateFamily):
+            self.family.row(y)
+            found = self.family.in_numpy(speed, np.full(len(speed), y))
+            assert found is not None
+            with np.errstate(divide="ignore"):
+                growth = np.asarray(np.log(found.radius) * speed / self.family.period)
+            return StabilityOverSpeed(
+                speed, found.radius, found.error, found.critical, found.verdict, growth, self.family.period
+            )
         twisted = self.family.statically_twisted
         return stability_along(self.family.assembly, speed, statically_twisted=twisted, table=span.table(speed))
 
     def unstable(self, y: float) -> UnstableRanges:
         """Unstable speeds of the row at ``y``."""
         span = self.span(y)
-        return unstable_ranges(span, lambda speed: self.judged(span, speed))
+        return unstable_ranges(span, lambda speed: self.judged(span, y, speed), swing=self._swing(y))
 
     def met(self, y: float) -> tuple[Array, Array]:
         """Speeds (collisions,) of the row at ``y`` at which two exponents meet that may open, and growth rates
         there."""
         span = self.span(y)
-        speed = np.unique(exponent_collisions(span, span.start, span.high)[0])
-        return speed, self.judged(span, speed).growth_rate if len(speed) else np.zeros(0)
+        speed = np.unique(exponent_collisions(span, span.start, span.high, self._swing(y))[0])
+        return speed, self.judged(span, y, speed).growth_rate if len(speed) else np.zeros(0)
+
+    def _swing(self, y: float) -> float | None:
+        return self.family.swing(y) if isinstance(self.family, SteadyStateFamily) else None
 
 
 def rows_by_collisions(region: Region, family: LineFamily) -> Search:
@@ -68,6 +89,34 @@ def rows_by_collisions(region: Region, family: LineFamily) -> Search:
         return [_row(family, float(own), along.unstable(float(y))) for own, y in zip(v, region.y(v), strict=True)]
 
     return search
+
+
+def sampled_rows(region: Region) -> Search:
+    """The search of rows along any parameter, looked at in ``SAMPLES`` even places and closely where ρ is largest."""
+    places = np.linspace(region.box.u0, region.box.u1, SAMPLES)
+
+    def search(v: Array) -> list[TongueRow]:
+        v = np.atleast_1d(np.asarray(v, dtype=float))
+        found = region.judged(np.tile(places, len(v)), np.repeat(v, len(places)))
+        over = (found.radius - 1 - found.error).reshape(len(v), len(places))
+        row, change = np.nonzero((over[:, :-1] > 0) != (over[:, 1:] > 0))
+        height = np.where(np.isfinite(over), over, -np.inf)
+        inner = height[:, 1:-1]
+        top_row, top = np.nonzero((inner <= 0) & (inner >= height[:, :-2]) & (inner >= height[:, 2:]))
+        marks = row, (places[change] + places[change + 1]) / 2
+        inside, peak = np.nonzero(over > 0)
+        close = top_row, np.stack([places[top], places[top + 2]], axis=1)
+        rows = settled(region, v, marks, (inside, places[peak]), close)
+        return [_with_unknown(one, own, places) for one, own in zip(rows, np.isfinite(over), strict=True)]
+
+    return search
+
+
+def _with_unknown(row: TongueRow, known: Flags, places: Array) -> TongueRow:
+    """With stretches beside places of which nothing is known."""
+    lost = np.flatnonzero(~known)
+    ends = np.stack([places[np.maximum(lost - 1, 0)], places[np.minimum(lost + 1, len(places) - 1)]], axis=1)
+    return replace(row, unknown=np.concatenate([row.unknown.reshape(-1, 2), ends]))
 
 
 def tops(v: Array, met: list[tuple[Array, Array]]) -> Array:

@@ -17,17 +17,20 @@ from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
-from trunnion.errors import InputError
+from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.stability_chart import Task, chart_task
+from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
+from trunnion.floquet.stability.stability import stability
 from trunnion.floquet.tongues.boundary_traces import HALVINGS, BoundaryTrace, Search, joined
 from trunnion.floquet.tongues.from_resonances import followed, in_words
 from trunnion.floquet.tongues.levels import levels_of, own_value
 from trunnion.floquet.tongues.naming import resonances
-from trunnion.floquet.tongues.region import FAINT, Region, patched
+from trunnion.floquet.tongues.region import FAINT, Region, patched, unpatched
 from trunnion.floquet.tongues.result import Tongue, Tongues, Unknown
 from trunnion.floquet.tongues.ridges import ridge
 from trunnion.floquet.tongues.rows import InstabilityKind, TongueRow, unstable_intervals
+from trunnion.floquet.tongues.rows_by_collisions import SAMPLED_WORDS, WORDS, rows_by_collisions, sampled_rows
 from trunnion.floquet.tongues.shapes import ClosedTrace, lost, shapes
 from trunnion.modes.resonance_speeds import Resonance
 from trunnion.results.quantity_axes import QuantityAxis
@@ -53,6 +56,7 @@ def tongues(
     speed: float | str | None = None,
     rows: int = ROWS,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     threads: int | None = None,
     progress: Progress | None = None,
 ) -> Tongues:
@@ -66,11 +70,13 @@ def tongues(
     speed : input speed [rad/s] where neither axis is the speed; default the operating speed of the file.
     rows : values of y searched to begin with, more where tongues are born, close or meet.
     statically_twisted : as in ``stability``.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     threads : default one per core.
     progress : called as progress(share done).
 
     Up to three unknowns every row is searched completely: every change of stability is a zero of one of three analytic
-    functions, and their zeros on a row are all found. Longer lines are sampled. ``search`` in the result says which.
+    functions, and their zeros on a row are all found. Longer lines are sampled, and so are those that are judged about
+    their own motion. ``search`` in the result says which.
 
     Raises
     ------
@@ -87,11 +93,14 @@ def tongues(
     """
     if isinstance(rows, bool) or not isinstance(rows, int | np.integer) or rows < 3:
         raise InputError("must be a whole number, 3 or more", key="rows", value=rows)
-    task = task_of(line, x, y, speed, statically_twisted, "tongues")
+    task = task_of(line, x, y, speed, statically_twisted, "tongues", about_steady_state=about_steady_state)
     workers, report_progress = threads or os.cpu_count() or 1, progress or (lambda share: None)
-    region = patched(
-        task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: report_progress(0.3 * s)
-    )
+    if task.family.analytic:
+        region = patched(
+            task.family, task.x.values, task.y.values, PATCH_TOLERANCE, workers, lambda s: report_progress(0.3 * s)
+        )
+    else:
+        region = unpatched(task.family, task.x.values, task.y.values, workers)
     own = own_value(task.family.assembly, task.y) if isinstance(task.family, LineFamily) else None
     levels = np.sort(task.family.to_patch(levels_of(task.y, int(rows), own), False))
     search, said = _search(region)
@@ -157,13 +166,15 @@ def task_of(
     speed: float | str | None,
     twisted: bool,
     analysis: str,
+    *,
+    about_steady_state: bool = False,
 ) -> Task:
     """What is to be searched, checked; ranges are ``(parameter, low, high)``."""
     for key, request in (("x", x), ("y", y)):
         if isinstance(request, str) or not isinstance(request, Sequence) or len(request) != 3:
             remedy = f'write {key}=("speed", 10, 200)'
             raise InputError("must be (parameter, low, high)", key=key, value=request, remedy=remedy)
-    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis)
+    return chart_task(line, (*x, 2), (*y, 2), speed, twisted, analysis, about_steady_state=about_steady_state)
 
 
 def rows_in_words(region: Region, apart: str) -> str:
@@ -226,6 +237,10 @@ def _open_words(open_ends: tuple[Unknown, ...], up: QuantityAxis) -> str:
 def _search(region: Region) -> tuple[Search, Said]:
     """How rows are searched, and what there is to say of it when tongues are known."""
     alone = ""
+    if isinstance(region.family, SteadyStateFamily):
+        rows = rows_by_collisions(region, region.family) if region.family.x.is_speed else sampled_rows(region)
+        words = WORDS if region.family.x.is_speed else SAMPLED_WORDS
+        return rows, lambda apart, traces: f"{apart} {words}"
     if not region.by_coefficients:
         found = followed(region)
         if found is not None:
@@ -332,9 +347,24 @@ def _names(region: Region, shapes: list[ClosedTrace]) -> list[Resonance | None]:
     """The resonance of each tongue, at its tip where it has one."""
     if not isinstance(region.family, LineFamily) or not shapes:
         return [None] * len(shapes)
+    if isinstance(region.family, SteadyStateFamily):
+        return [_own_name(region, region.family, shape) for shape in shapes]
     begins = np.array([s.tips[0] or s.tips[1] or (s.trace.intervals[0].inside, s.trace.intervals[0].v) for s in shapes])
     kinds = np.array([s.trace.intervals[0 if s.tips[0] or not s.tips[1] else -1].kind for s in shapes])
     return resonances(region.family, region.x(begins[:, 0]), region.y(begins[:, 1]), kinds, region.threads)
+
+
+def _own_name(region: Region, family: SteadyStateFamily, shape: ClosedTrace) -> Resonance | None:
+    """The resonance of a region about the line's own motion, as ``stability`` names it where a free–free line grows."""
+    assembly, first = family.assembly, shape.trace.intervals[0]
+    if not assembly.topology.free:
+        return None
+    x, y = region.x(np.array([first.inside])), region.y(np.array([first.v]))
+    row = family.table(x, y)[0]
+    try:
+        return stability(assembly.packed.line_at(row), float(row[0])).resonance
+    except ComputationError:
+        return None
 
 
 def _numbered(found: list[Tongue]) -> tuple[Tongue, ...]:

@@ -124,7 +124,7 @@ def _completely(task: Task, family: LineFamily) -> bool:
     """Whether the box is patched, in which rows and columns are searched for every zero: of short lines whose shafts
     are not so stiff that a slow turn spans many of their cycles, which takes minutes."""
     slowest = float(np.min(task.x.values))
-    return 2 * family.size <= MOST and slowest >= QUICK_TURNS * lowest_speed(family.assembly)
+    return family.analytic and 2 * family.size <= MOST and slowest >= QUICK_TURNS * lowest_speed(family.assembly)
 
 
 def _ways(task: Task, family: LineFamily, levels: Array, report_progress: Callable[[float], None]) -> _SearchAxes:

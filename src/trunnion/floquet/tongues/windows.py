@@ -143,6 +143,7 @@ def stable_windows(
     margin: float = 0.0,
     rows: int | None = None,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     within: float | None = None,
     progress: Progress | None = None,
 ) -> StableWindows:
@@ -156,6 +157,7 @@ def stable_windows(
     margin : share by which the speeds are widened at either end, 0.1 for 10 %.
     rows : values of the parameter searched to begin with; by default 65, of lines of more than three unknowns 17.
     statically_twisted : as in ``stability``.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     within : seconds that it may take; no window is claimed then that no column confirmed, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -177,7 +179,10 @@ def stable_windows(
     assembly = assemble(line)
     refuse_pendulums(assembly.line, NOT_ALIKE)
     span = (asked[0] * (1 - margin), asked[1] * (1 + margin))
-    task = task_of(assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues")
+    task = task_of(
+        assembly, ("speed", *span), (parameter, low, high), None, statically_twisted, "tongues",
+        about_steady_state=about_steady_state,
+    )  # fmt: skip
     found, columns, ended = searched(
         task, None if rows is None else whole_number(rows, "rows", 3), progress or (lambda share: None)
     )
@@ -201,6 +206,7 @@ def minimum_damping(
     maximum: float = 100.0,
     margin: float = 0.0,
     rows: int | None = None,
+    about_steady_state: bool = False,
     within: float | None = None,
     progress: Progress | None = None,
 ) -> StableWindows:
@@ -215,6 +221,7 @@ def minimum_damping(
     maximum : the largest value of it, in its unit (1 is what the line has where it is a factor).
     margin : share by which the speeds are widened at either end, as of ``stable_windows``.
     rows : values of the damping searched to begin with, as of ``stable_windows``.
+    about_steady_state : about the line's own periodic motion, as in ``stability_chart``.
     within : seconds that it may take, as of ``stable_windows``.
     progress : called as progress(share done).
 
@@ -238,7 +245,8 @@ def minimum_damping(
     if not 0 < one_number(maximum, "maximum", "100, say") < np.inf:
         raise InputError("must be positive and finite", key="maximum", value=maximum, remedy="100, say")
     return stable_windows(
-        assembly, chosen, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows, progress=progress
+        assembly, chosen, 1e-6 * maximum, maximum, speeds, margin=margin, rows=rows,
+        about_steady_state=about_steady_state, progress=progress,
     )  # fmt: skip
 
 

@@ -20,7 +20,7 @@ from trunnion.results.units import figures
 
 TWO_SIDED = 1.959963984540054
 """Standard deviations of an interval that holds 95 %."""
-PRINTED = {"torque": "N·m", "acceleration": "rad/s²", "speed": "rad/s"}
+PRINTED = {"torque": "N m", "acceleration": "rad/s²", "speed": "rad/s"}
 """Units of kinds of channels, but for rotations."""
 
 

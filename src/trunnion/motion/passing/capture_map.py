@@ -109,7 +109,7 @@ class CaptureMap(Result):
         yield (
             f"capture on the way from {rounded_speed(self.first, self.unit)} to {rounded_speed(self.last, self.unit)} "
             f"over {along.said(self.x)} and {up.said(self.y)}, {len(self.x)} × {len(self.y)} cells, "
-            f"{len(self.phases)} starting phases each"
+            f"{counted(len(self.phases), 'starting phase')} each"
         )
         if known.any():
             often, ever = int((self.share[known] >= 0.5).sum()), int((self.share[known] > 0).sum())

@@ -35,9 +35,10 @@ from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.passing.start import begun_line, ends_of, lasting
 from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.strongest_order import strongest_order
+from trunnion.motion.transients.place import Place
 from trunnion.motion.transients.prepare import Actions, follow, require_begun, stepper_of
 from trunnion.motion.transients.result import Transient
-from trunnion.motion.transients.stepping import Place, Stepper
+from trunnion.motion.transients.stepping import Stepper
 from trunnion.numerics.integration.integration import MOST_STEPS
 from trunnion.steady.shooting.integration_outcomes import OUT_OF_TIME
 from trunnion.waiting import keeps_time, time_is_up

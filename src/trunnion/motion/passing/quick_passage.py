@@ -24,7 +24,7 @@ LOOKS = 32
 
 def is_quick(stepper: Stepper) -> bool:
     """Whether a line and what acts on it has no switch but knots of torques over time or over speed."""
-    switches = stepper.line.system.regimes is not None or stepper.groups or stepper.rolling or stepper.crossings
+    switches = stepper.line.system.regimes is not None or stepper.groups or stepper.crossings
     return bool(stepper.free and not switches and all(_plain(one) for one in stepper.torques))
 
 

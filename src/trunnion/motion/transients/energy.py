@@ -18,7 +18,7 @@ from trunnion.arrays import Array
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.equations.stage_laws import has_stages, stage_law
-from trunnion.motion.transients.stepping import Piece
+from trunnion.motion.transients.place import Piece
 
 NODES = 6
 _GAUSS, _WEIGHTS = np.polynomial.legendre.leggauss(NODES)
@@ -123,18 +123,18 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
     own = applied_torques(piece, times, angle, speed)
     places = [one.station for one in piece.acting]
     power = own * speed[:, places]
-    count = len(piece.torques)
+    rubs = np.array([getattr(one.stated, "rubs", True) for one in piece.acting], dtype=bool)
     near = [c.near for c in topo.compliances]
     far = [topo.reference[c.far_group] for c in topo.compliances]
     given = motion.torque * (speed[:, far] - speed[:, near])
     at_input = -(motion.torque * speed[:, near])[:, prescribed[near]].sum(axis=1)
     at_input += (motion.torque * speed[:, far])[:, prescribed[far]].sum(axis=1)
     works = {
-        "applied": power[:, :count].sum(axis=1),
+        "applied": power[:, ~rubs].sum(axis=1),
         "excitation": _excitation(piece, times, angle, speed),
         "input": at_input,
         "loads": (load * speed)[:, moves].sum(axis=1),
-        "friction": -power[:, count:].sum(axis=1),
+        "friction": -power[:, rubs].sum(axis=1),
     }
     ends = run.time_of_state[[0, -1]]
     last, moving = line.moving(ends, run.state[[0, -1]], numbers, run.regime[[0, -1]])

@@ -13,8 +13,9 @@ import numpy as np
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.brakes import Brake
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.elements import Disk
+from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.machines import ElectricMachine, Generator, Machine, Motor, Propeller
+from trunnion.driveline.vehicle import Vehicle
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.loads import own_load
 from trunnion.errors import InputError
@@ -24,6 +25,12 @@ class CurveFromRest(AppliedTorque):
     """The curve of a machine from standstill on: backwards it has the torque of standstill."""
 
     below: ClassVar[bool] = True
+
+
+class LessFriction(AppliedTorque):
+    """What friction that falls with the speed lacks of its torque at rest; its work is friction's."""
+
+    rubs: ClassVar[bool] = True
 
 
 SPAN = 1e3
@@ -49,11 +56,16 @@ def without_curves(
     """
     machines = {name: one for name, one in line.parts if isinstance(one, Machine) and one.tangent}
     brakes = {name: one for name, one in line.parts if isinstance(one, Brake)}
-    if not machines and not brakes:
+    rolling = {name: one for name, one in line.parts if isinstance(one, Vehicle) and one.rolling_resistance}
+    if not machines and not brakes and not rolling:
         return line, (), ()
-    torques: list[AppliedTorque] = []
+    torques, unshared = _shares(line, speed, driven)
     frictions: list[FrictionTorque] = []
-    disks: dict[str, Disk] = {}
+    disks: dict[str, Rotor] = dict(unshared)
+    for name, car in rolling.items():
+        rolls, climbs = (one.load.value(0.0) for one in (car, car.but(rolling_resistance=0.0)))
+        frictions.append(FrictionTorque(on=name, torque=float(rolls - climbs)))
+        disks[name] = disks.get(name, car).but(rolling_resistance=0.0, name=name)
     for name, machine in machines.items():
         _refuse(name, machine)
         if name not in driven:
@@ -64,14 +76,40 @@ def without_curves(
             name=name, inertia=machine.moment_of_inertia, excitation=machine.excitation, after=machine.after
         )
     for name, brake in brakes.items():
-        _refuse_falling(name, brake)
-        if brake.torque or brake.static_torque:
+        if brake.stribeck_speed is not None:
+            assert brake.static_torque is not None
+            frictions.append(FrictionTorque(on=name, torque=brake.static_torque))
+            torques.append(_falling(name, brake))
+        elif brake.torque or brake.static_torque:
             frictions.append(FrictionTorque(on=name, torque=brake.torque, static=brake.static_torque))
         disks[name] = Disk(name=name, inertia=brake.inertia, excitation=brake.excitation, after=brake.after)
     # Names that count disks would shift by those that come in.
     named = [one if one.name else one.but(name=name) if isinstance(one, Disk) else one for name, one in line.parts]
     elements = [disks.get(name, one) for name, one in zip(line.names, named, strict=True)]
     return line.but(elements=elements), tuple(torques), tuple(frictions)
+
+
+def _shares(line: Driveline, speed: float, driven: frozenset[str]) -> tuple[list[AppliedTorque], dict[str, Rotor]]:
+    """What disks with a drive_share give at the start, as torques that last, and these disks without their share: loads
+    that become torques or friction would no longer be counted in what they balance."""
+    assembly = assemble(line)
+    topo, column = assembly.topology, assembly.packed.column
+    sharing = {
+        name: one for name, one in line.parts
+        if isinstance(one, Rotor) and getattr(one, "drive_share", None) and name not in driven
+        and not isinstance(one, Machine)
+    }  # fmt: skip
+    if not sharing or not topo.free:
+        return [], {}
+    table = assembly.table(1, max(speed, 0.0))
+    alone = table.copy()
+    for name in sharing:
+        alone[:, column(line.index(name), "drive_share")] = 0.0
+    torques = []
+    for name in sharing:
+        own, load = (float(own_load(topo, column, one, line.index(name))[0]) for one in (table, alone))
+        torques.append(AppliedTorque(on=name, time=[0.0], torque=[load - own], between="steps", hold=True))
+    return torques, {name: one.but(drive_share=None, name=name) for name, one in sharing.items()}
 
 
 def _at_rest(machine: Machine) -> float:
@@ -81,12 +119,15 @@ def _at_rest(machine: Machine) -> float:
     return max(float(machine.table.torques[0]), 0.0)
 
 
-def _refuse_falling(name: str, brake: Brake) -> None:
-    if brake.stribeck_speed is not None:
-        raise InputError(
-            "lets friction fall with the speed, which is not followed here", element=name, key="stribeck_speed",
-            value=brake.stribeck_speed, remedy="leave it out: friction then falls at once from static_torque to torque",
-        )  # fmt: skip
+def _falling(name: str, brake: Brake) -> AppliedTorque:
+    """How much friction is below its static torque T_s, in the sense of ω: (T_s − T_c)(1 − e^(−|ω|/ω_s)), nothing
+    at rest, where T_s holds.
+
+    With t = tanh(ω/2ω_s) that is (T_s − T_c) 2t/(1 + |t|), which has no kink for the integration to stop at.
+    """
+    assert brake.static_torque is not None and brake.stribeck_speed is not None
+    less, t = brake.static_torque - brake.torque, f"tanh(speed/{2 * brake.stribeck_speed!r})"
+    return LessFriction(on=name, formula=f"{2 * less!r}*{t}/(1 + sqrt({t}^2))")
 
 
 def _refuse(name: str, machine: Machine) -> None:

@@ -17,8 +17,10 @@ from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
+from trunnion.motion.transients.excited import without_varying
 from trunnion.motion.transients.machines import without_curves
-from trunnion.motion.transients.stepping import Found, Place, Stepper
+from trunnion.motion.transients.place import Found, Place
+from trunnion.motion.transients.stepping import Stepper
 from trunnion.numerics.integration.integration import MOST_STEPS
 
 if TYPE_CHECKING:
@@ -57,7 +59,10 @@ def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Drivelin
         refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
+    given = {one.on for one in asked[0]} | {one.on for one in asked[1]}
+    line, excited = without_varying(line, given, speed)
     given = {one.on for one in asked[0]}
+    asked = ((*asked[0], *excited), *asked[1:])
     sharing = [name for name, e in line.parts if isinstance(e, Rotor) and bool(getattr(e, "drive_share", False))]
     replaced = [name for name in sharing if name in given]
     if not replaced:
@@ -135,12 +140,6 @@ def stepper_of(
     """
     if not (np.isfinite(tolerance) and 1e-15 <= tolerance < 1):
         raise InputError("must lie between 1e-15 and 1", key="tolerance", value=tolerance, remedy="1e-9, say")
-    if asked[1] and prepared.clutches:
-        raise InputError(
-            "is not followed in a line with a slip clutch", element="friction", key="on", value=asked[1][0].on,
-            remedy="describe the brake as a torque over time (a machine's curve with no torque at standstill), or the "
-            "slip clutch as a Clutch",
-        )  # fmt: skip
     torques = placed_torques(prepared.assembly, asked[0])
     frictions = placed_frictions(prepared.assembly, asked[1])
     return Stepper(

@@ -21,8 +21,8 @@ from trunnion.features import left_out
 from trunnion.motion.simulation.input_rotation import InputRotation
 from trunnion.motion.simulation.simulate import positive_time
 from trunnion.motion.transients.energy import EnergyBalance, applied_torques, energy_balance, station_angles
+from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.motion.transients.prepare import Actions, follow, prepared_line
-from trunnion.motion.transients.stepping import LOCATED, Found, Piece, Place
 from trunnion.numerics.curves import Extremes, extremes_in
 from trunnion.numerics.integration.integration import MOST_STEPS
 from trunnion.results.drawing import Axes, drawing

@@ -13,22 +13,23 @@ what it is asked for.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Array, Integers
+from trunnion.arrays import Array
 from trunnion.driveline.quantities import SPEED
 from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
-from trunnion.driveline.vehicle import Vehicle
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
+from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed
@@ -61,55 +62,10 @@ CHECKS, EXCESS = 16, 1e-6
 SIDE = 1e-3
 """Share of its change in a short time below which what a kink switches by counts as zero."""
 
-LOCATED = -1
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a motion stands.
-
-    time [s]; angle [rad], speed [rad/s] and acceleration [rad/s²] of the rotation that it is observed from; state (2n +
-    sliders,) and regime, ``LOCATED`` where the state tells it; ``senses``: in which way the groups with friction turn,
-    by their first station, 0 where they stand.
-    """
-
-    time: float
-    state: Array
-    angle: float = 0.0
-    speed: float = 0.0
-    acceleration: float = 0.0
-    regime: int = LOCATED
-    senses: dict[int, float] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A stretch without a switch: the steps taken, and the numbers that the right-hand side read."""
-
-    line: LineSystem
-    trajectory: Trajectory
-    numbers: Array
-    torques: tuple[PlacedTorque, ...]
-    frictions: tuple[PlacedFriction, ...]
-
-    def regime_at(self, times: Array) -> Integers:
-        """In which the line was at times (m,)."""
-        run = self.trajectory
-        return run.regime[np.minimum(np.searchsorted(run.start[1:], times, side="right"), len(run.regime) - 1)]
-
-    @property
-    def acting(self) -> tuple[PlacedTorque | PlacedFriction, ...]:
-        """All that acts, in the order of the numbers."""
-        return (*self.torques, *self.frictions)
-
-
-class Found(NamedTuple):
-    """What became of a run."""
-
-    pieces: list[Piece]
-    place: Place
-    outcome: Outcome
-    crossed: list[tuple[float, str]]
+LONGEST_FORMULA = 100
+"""Characters that a sentence shows of a formula."""
+MOST_JUDGED = 6
+"""Groups at rest and clutches that stick, which are judged together."""
 
 
 class _Watched(NamedTuple):
@@ -171,10 +127,6 @@ class Stepper:
         n, reach = self.topo.size, [slider.reach for slider in line.sliders]
         weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
         self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
-        self.rolling = [
-            (name, station) for station, place in self.topo.disks for name, e in (line.assembly.line.parts[place],)
-            if isinstance(e, Vehicle) and e.rolling_resistance
-        ]  # fmt: skip
         self.called = [one.called for one in self.torques if one.called is not None]
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
@@ -192,8 +144,6 @@ class Stepper:
         crossed: list[tuple[float, str]] = []
         steps, guess, carried = 0, 0.0, np.zeros(0)
         while True:
-            if pieces and (beyond := self._rolls_back(place)):
-                return Found(pieces, place, beyond, crossed)
             if beyond := self._beyond(place):
                 return Found(pieces, place, beyond, crossed)
             if place.time >= end:
@@ -275,7 +225,9 @@ class Stepper:
             found = [one.value(place.time + later, speed, angle + later * speed) for later in (0.0, soon)]
             if np.isfinite(found).all():
                 continue
-            said = "its function" if one.stated.formula is None else f"the formula {one.stated.formula!r}"
+            written = str(one.stated.formula)
+            short = written if len(written) <= LONGEST_FORMULA else f"{written[:LONGEST_FORMULA]}..."
+            said = "its function" if one.stated.formula is None else f"the formula {short!r}"
             words = (
                 f"stopped at t = {place.time:.6g} s, where {said} of the torque on {one.stated.on} gives no finite "
                 f"number (its speed is {about_speed(speed, self.unit)}, its angle {angle:.6g} rad); look for roots, "
@@ -322,23 +274,9 @@ class Stepper:
                         span = f"{low:.6g} to {high:.6g} rad"
                     words = (
                         f"stopped at t = {place.time:.6g} s: the {axis.variable} of {one.stated.on} leaves its table "
-                        f"of torques, which goes from {span}; extend it, or write hold = true"
+                        f"of torques or amplitudes, which goes from {span}; extend it, or write hold = true"
                     )
                     return Outcome(False, "beyond the table", words)
-        return None
-
-    def _rolls_back(self, place: Place) -> Outcome | None:
-        """The outcome of a run in which a vehicle turns back: its rolling resistance, a torque against its sense of
-        rotation like a weight, would drive it there."""
-        self._write_course(place)
-        for name, station in self.rolling:
-            speed = self._of_station(place, station)[1] * np.sign(self.topo.mean_speeds[station])
-            if speed < -LATER * self.usual:
-                words = (
-                    f"stopped at t = {place.time:.6g} s: {name} comes to rest or rolls back, where its "
-                    "rolling_resistance would drive it; end the run before, or leave that out and brake it by friction"
-                )
-                return Outcome(False, "rolls back", words)
         return None
 
     # The rotation that goes with the line.
@@ -443,26 +381,93 @@ class Stepper:
             soon = min(soon, SHORT / self.fastest)
         place = replace(place, senses={first: way for first, way in place.senses.items() if first in self.groups})
         self._write_course(place)
-        for first, several in self.groups.items():
-            known = place.senses.get(first)
-            if not any(one.stated.at_rest and any(one.share(place.time)) for one in several):
-                senses = {key: sense for key, sense in place.senses.items() if key != first}
-                place = replace(place, senses=senses)  # nothing rubs yet
-                continue
-            if known is None:
-                speed = self._of_station(place, first)[1]
-                known = float(np.sign(speed)) if abs(speed) > EQUAL * max(self.usual, abs(place.speed)) else 0.0
-            place = replace(place, senses={**place.senses, first: known})
-            if known == 0.0:
-                place = self._settle(place, first, soon)
+        if self.line.clutches and self.groups:
+            return self._jointly(place, soon)
+        place = self._groups_settled(place, soon)
         return self._slipping(place, soon) if self.line.clutches else place
+
+    def _jointly(self, place: Place, soon: float) -> Place:
+        """The same place, where groups that are at rest and clutches that stick are judged together, for what one of
+        them bears is asked for by the others: the state with the fewest that let go in which each does what it can."""
+        place = self._senses_known(place)
+        standing, sticking = [first for first, sense in place.senses.items() if sense == 0.0], self._sticking(place)
+        for first in standing:
+            place = self._at_rest(place, first)
+        if len(standing) + len(sticking) <= MOST_JUDGED:
+            ways = [*product((0.0, 1.0, -1.0), repeat=len(standing) + len(sticking))]
+            for way in sorted(ways, key=lambda one: sum(map(abs, one))):
+                senses = dict(zip(standing, way, strict=False))
+                slips = dict(zip(sticking, way[len(standing) :], strict=True))
+                if (found := self._possible(place, senses, slips, soon)) is not None:
+                    return found
+        return self._slipping(self._groups_settled(place, soon), soon)
+
+    def _possible(self, place: Place, senses: dict[int, float], slips: dict[int, float], soon: float) -> Place | None:
+        """The place where groups at rest stand (0) or set off and clutches stick (0) or slip the ways given, if what
+        acts makes them do just that."""
+        strides = {c: self._regimes.clutches[c].stride for c in slips}
+        regime = place.regime + sum(
+            ((SLIPS_ON if way > 0 else SLIPS_BACK) - STICKS) * strides[c] for c, way in slips.items() if way
+        )
+        there = replace(place, senses={**place.senses, **senses}, regime=regime)
+        self._write(there)
+        rates = self._rates(there)
+        n, usual = self.topo.size, EQUAL * self.usual / soon
+        later = replace(there, time=there.time + soon, state=there.state + soon * rates)
+        for first, way in senses.items():
+            if way == 0.0:
+                pulled, (bears, _) = self._pull(there, first)
+                if abs(pulled) > bears * (1 + EQUAL):
+                    return None
+            else:
+                gained = rates[n + int(self.topo.unknown_of[first])]
+                if not way * (gained + self.topo.mean_speeds[first] * there.acceleration) > usual:
+                    return None
+        for c, way in slips.items():
+            if way == 0.0:
+                carried, most = self._carried(there, c)
+                if abs(carried) > most * (1 + EQUAL):
+                    return None
+            elif not way * (self._slip(later, c) - self._slip(there, c)) / soon > usual:
+                return None
+        return there
+
+    def _slip(self, place: Place, clutch: int) -> float:
+        """Slip [rad/s] of a clutch."""
+        self._rates(place)
+        core, (first, _, _, scratch) = self.core, map(int, self.core.places(self.numbers))
+        at = first + self.line.clutches[clutch].compliance * core.PER_COMPLIANCE
+        near, far = (scratch + len(self.topo.stations) + int(self.numbers[at + end]) for end in (core.NEAR, core.FAR))
+        return float(self.numbers[far] - self.numbers[near])
+
+    def _senses_known(self, place: Place) -> Place:
+        """The same place, with the sense of every group that something rubs on, 0 where it is at rest."""
+        senses = dict(place.senses)
+        for first, several in self.groups.items():
+            if not any(one.stated.at_rest and any(one.share(place.time)) for one in several):
+                senses.pop(first, None)  # nothing rubs yet
+            elif first not in senses:
+                speed = self._of_station(place, first)[1]
+                senses[first] = float(np.sign(speed)) if abs(speed) > EQUAL * max(self.usual, abs(place.speed)) else 0.0
+        return replace(place, senses=senses)
+
+    def _at_rest(self, place: Place, first: int) -> Place:
+        """The same place, where a group has no speed at all."""
+        state = place.state.copy()
+        state[self.topo.size + int(self.topo.unknown_of[first])] = -self.topo.mean_speeds[first] * place.speed
+        return replace(place, state=state, senses={**place.senses, first: 0.0})
+
+    def _groups_settled(self, place: Place, soon: float) -> Place:
+        """The same place, where groups with friction stand or set off, each by itself."""
+        place = self._senses_known(place)
+        for first, sense in place.senses.items():
+            if sense == 0.0:
+                place = self._settle(place, first, soon)
+        return place
 
     def _settle(self, place: Place, first: int, soon: float) -> Place:
         """A group at rest: it stands, or sets off the way it is pulled."""
-        i = int(self.topo.unknown_of[first])
-        state = place.state.copy()
-        state[self.topo.size + i] = -self.topo.mean_speeds[first] * place.speed
-        place = replace(place, state=state, senses={**place.senses, first: 0.0})
+        place = self._at_rest(place, first)
         self._write(place)
 
         def asked(at: Place) -> tuple[float, float]:
@@ -586,10 +591,6 @@ class Stepper:
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
                 found.append(_Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
-        for _, station in self.rolling:
-            level = (0.0, -2 * LATER * self.usual, 0.0, 0.0, 0.0)
-            sense = float(np.sign(self.topo.mean_speeds[station]))
-            found.append(_Watched(core.STATION_SPEED, station, sense, level, -1, True, lambda at: at))
         if self.mean_speed is not None:
             level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
             found.append(_Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))

@@ -10,19 +10,21 @@ from numpy.typing import ArrayLike
 
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.arguments import one_number, one_speed
+from trunnion.driveline.brakes import Brake
 from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.operating_speed import operating_speed
 from trunnion.driveline.scenarios import LevelCrossing, Scenario
+from trunnion.driveline.vehicle import Vehicle
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
+from trunnion.motion.transients.place import Place
 from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others, require_begun
 from trunnion.motion.transients.result import Transient
-from trunnion.motion.transients.stepping import Place
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE
 from trunnion.waiting import keeps_time
 
@@ -112,7 +114,8 @@ def transient(
             "is prescribed by a ConstantSpeed and must be positive", key="speed", value=begin,
             remedy="leave out the ConstantSpeed, so that the line starts by its torques",
         )  # fmt: skip
-    sharing = [name for name, e in prepared.assembly.line.parts if getattr(e, "drive_share", None)]
+    given = {one.on for one in asked[0]}
+    sharing = [name for name, e in description.parts if getattr(e, "drive_share", None) and name not in given]
     if begin < 0 and sharing:
         raise InputError(
             "gives what balances the loads in the line's sense of rotation, and not backwards", element=sharing[0],
@@ -129,8 +132,13 @@ def transient(
 def _balanced(line: Driveline, prepared: LineSystem, asked: Actions, speed: float) -> LineSystem:
     """The line with what balances its loads at the start: its machines by their curves, unless a torque on any of them
     adds to that."""
+    given = {one.on for one in asked[0]}
     machines = {name for name, e in line.parts if isinstance(e, Rotor) and e.tangent}
-    if not machines or speed <= 0 or machines & {one.on for one in asked[0]}:
+    rolling = {
+        name for name, e in line.parts if isinstance(e, Brake) or (isinstance(e, Vehicle) and e.rolling_resistance)
+    }
+    driving = {name for name, e in line.parts if getattr(e, "drive_share", None)}
+    if not (machines or rolling) or speed <= 0 or (machines | driving) & given:
         return prepared
     return line_system(line, speed, leaves=True, slips=True, linearised=True)
 

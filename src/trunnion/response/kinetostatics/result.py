@@ -32,6 +32,7 @@ from trunnion.results.drawing import Figure, drawing
 from trunnion.results.fields import attribute, computed, coordinate, declared, internal, labelled, variable
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.results.result import Result
+from trunnion.results.units import range_words
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.writing import written_whole
 
@@ -282,8 +283,9 @@ def _output(r: Kinetostatics) -> list[str]:
     output = "output" if len(r.branches) == 1 else f"output {r.branch}"
     if not r.irregularity:
         return [f"  {output} turns uniformly at {low:.5f} of the input speed"]
+    turned = range_words(f"{low:.5f}", f"{high:.5f}")
     return [
-        f"  {output} speed over input speed {low:.5f} to {high:.5f}: irregularity {r.irregularity:.5g}, as one "
+        f"  {output} speed over input speed {turned}: irregularity {r.irregularity:.5g}, as one "
         f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",
         f"  {output} leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
         f"acceleration {r.peak_acceleration:.5g} rad/s^2",
@@ -294,7 +296,7 @@ def _torques(r: Kinetostatics) -> list[str]:
     if not np.any(r.drive_torque):
         return ["  no torque: no Disk has a load and no output_torque is given"]
     low, high = extremes(r.drive_torque)
-    line = f"  drive torque {low:.6g} to {high:.6g} N*m"
+    line = f"  drive torque {range_words(f'{low:.6g}', f'{high:.6g}')} N m"
     if np.any(r.power_loss):
         line += f"; joint friction leaves an efficiency of {r.efficiency:.5f}"
     return [line]

@@ -22,7 +22,9 @@ from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
+from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
@@ -137,7 +139,7 @@ class SteadyStates:
 
     @cached_property
     def _drive(self) -> Array:
-        """What one N m of the drives at the input changes of the numbers, (case, number) or the same for all."""
+        """What one N m of the drives at the input changes of the numbers (case, number)."""
         return self.balance.drive_of(self.table)
 
 
@@ -158,8 +160,13 @@ class FreeBalance:
         self.fastest = max(1, int(np.ceil(max(float(rate) for rate in topo.rates) * period / (2 * np.pi) - 1e-9)))
         self.fewest = max(FEWEST, 3 * self.fastest)
         self.line = LineSystem(assembly, 1.0)
-        self.address, self.weight = self.line.system.rate.address, np.ones(2 * topo.size)
+        self.weight = np.ones(2 * topo.size)
         self.rows: Rows = self._at_speeds
+
+    @property
+    def address(self) -> int:
+        """Of the compiled equations in this process: another one has it elsewhere."""
+        return self.line.system.rate.address
 
     def along(self, rows: Rows) -> FreeBalance:
         """The same of lines whose packed numbers ``rows`` reads from the values asked for, in place of speeds."""
@@ -168,17 +175,18 @@ class FreeBalance:
         return other
 
     def drive_of(self, table: Array) -> Array:
-        """What one N m of the drives at the input changes of the numbers: (case, number), or (number,) of a line whose
-        speed alone changes."""
-        own = self.assembly.table(1, 1.0)[0]
-        if (table[:, 1:] == own[1:]).all():
-            return self._own_drive
-        return np.stack([self.line.numbers(row, drive=1.0) - self.line.numbers(row) for row in table])
+        """What one N m of the drives at the input changes of the numbers (case, number): constant loads of stations."""
+        topo, core = self.assembly.topology, kernel()
+        torques = drive_torques(topo, drive_places(topo, self.assembly.packed.column, table), np.ones(len(table)))
+        found = np.zeros((len(table), self._many))
+        stations = core.HEAD + core.PER_STATION * np.arange(len(topo.stations)) + core.LOAD
+        found[:, stations] = torques * np.sign(topo.mean_speeds)
+        return found
 
     @cached_property
-    def _own_drive(self) -> Array:
-        row = self.assembly.table(1, 1.0)[0]
-        return self.line.numbers(row, drive=1.0) - self.line.numbers(row)
+    def _many(self) -> int:
+        """Numbers of a line."""
+        return len(self.line.numbers(self.assembly.table(1, 1.0)[0]))
 
     def numbers(self, table: Array, co: LineCoefficients) -> Array:
         """What the compiled equations read (case, number)."""

@@ -64,8 +64,8 @@ class SteadyStateSlopes:
 
     solved, value: what knows the motions, and where; found (value,); period [rad of input angle]; slopes: Fourier
     coefficients (value, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (value,
-    2n): the disturbances that shift the phase of a free–free line, and that change its speed where no torque depends on
-    it (else None).
+    2n): the disturbances that shift the phase of a free–free line, and that change its speed; by_speed (value,):
+    whether a torque depends on that, so that it counts.
     """
 
     solved: SteadyStateCurve
@@ -74,7 +74,8 @@ class SteadyStateSlopes:
     period: float
     slopes: Complex
     shift: Array
-    drift: Array | None
+    drift: Array
+    by_speed: Flags
     undamped: Flags
 
     def rates(self, which: Places, tau: Array) -> Array:
@@ -98,12 +99,14 @@ class SteadyStateSlopes:
         left = np.full((len(matrix), matrix.shape[1] - 1, matrix.shape[2] - 1), np.nan)
         rest = np.linalg.qr(self.shift[which][finite][:, :, None], mode="complete")[0][:, :, 1:]
         left[finite] = rest.transpose(0, 2, 1) @ matrix[finite] @ rest
-        if self.drift is not None:
-            direction = (self.drift[which][finite][:, None] @ rest)[:, 0]
-            several = real_positive(np.linalg.eigvals(left[finite]).astype(complex)).sum(axis=1) > 1
-            grows = [self.speed_grows(i) if one else None for i, one in zip(which[finite], several, strict=True)]
-            parts = zip(left[finite], direction, grows, strict=True)
-            left[finite] = np.array([_deflated(*part) for part in parts]).reshape(left[finite].shape)
+        neutral = ~self.by_speed[which[finite]]
+        if neutral.any():
+            own, cases = np.flatnonzero(finite)[neutral], which[finite][neutral]
+            direction = (self.drift[cases][:, None] @ rest[neutral])[:, 0]
+            several = real_positive(np.linalg.eigvals(left[own]).astype(complex)).sum(axis=1) > 1
+            grows = [self.speed_grows(i) if one else None for i, one in zip(cases, several, strict=True)]
+            parts = zip(left[own], direction, grows, strict=True)
+            left[own] = np.array([_deflated(*part) for part in parts]).reshape(left[own].shape)
         return left
 
     def speed_grows(self, i: int) -> bool | None:
@@ -147,7 +150,8 @@ def slopes_along(solved: SteadyStateCurve, values: Array) -> SteadyStateSlopes:
         balance.period,
         slopes,
         shift,
-        None if solved.by_speed else drift,
+        drift,
+        solved.by_speed(motions.table),
         np.abs(damping) * balance.period < 1e-12 * n,
     )
 
@@ -222,16 +226,21 @@ def apart(one: Array, other: Array) -> float:
 class SteadyStateCurve:
     """The motions along one parameter, each value solved once. Phases count from zero rotation of the input."""
 
-    def __init__(self, balance: FreeBalance, ends: tuple[float, float], by_speed: bool) -> None:
-        """``ends`` : lowest and highest value; ``by_speed``: whether any torque depends on the speed."""
-        self.balance, self.ends, self._depends_on_speed = balance, ends, by_speed
+    def __init__(self, balance: FreeBalance, ends: tuple[float, float]) -> None:
+        """``ends`` : lowest and highest value."""
+        self._balance, self.ends = balance, ends
         self.known: dict[float, KnownSteadyState] = {}
         self.broken: tuple[Break, ...] = ()
 
     @property
-    def by_speed(self) -> bool:
-        """Whether any torque depends on the speed."""
-        return self._depends_on_speed
+    def balance(self) -> FreeBalance:
+        """What solves them."""
+        return self._balance
+
+    def by_speed(self, table: Array) -> Flags:
+        """Whether any torque depends on the speed at rows of packed numbers (case,)."""
+        co = self.balance.line.untwisted(table)
+        return np.asarray(co.viscous.any(axis=1) | co.quadratic.any(axis=1))
 
     def at_all(self, speeds: Array) -> SteadyStates:
         """The motions at all ``speeds`` [rad/s], with as many harmonics as the one that needs most."""
@@ -380,10 +389,9 @@ class SteadyStatesBySpeed(SteadyStateCurve):
             self.unexcited, 2 * np.pi * float(require_period(self.unexcited.line, self.unexcited.topology))
         )
 
-    @property
-    def by_speed(self) -> bool:
-        """Whether any torque depends on the speed."""
-        return loaded_by_speed(self.unexcited)
+    def by_speed(self, table: Array) -> Flags:
+        """Whether any torque depends on the speed (case,)."""
+        return np.full(len(table), loaded_by_speed(self.unexcited))
 
     def _aside(self, value: float) -> Array:
         return value * AWAY
