@@ -14,6 +14,7 @@ from studies.asked import BATCH, CALLS, data_of, grid, line, stated
 
 import trunnion as tn
 import trunnion.writing as writing
+from trunnion.studies import store as store_module
 from trunnion.studies.points import StudyQuestion
 from trunnion.studies.result import read
 from trunnion.studies.store import Store, _sealed
@@ -286,3 +287,29 @@ def test_words_and_paths_into_results(tmp_path) -> None:
         assert found.quantity("binding.name")[k] == own.binding.name
         assert found.quantity("checks[0].margin")[k] == pytest.approx(own.checks[0].margin, nan_ok=True)
         assert found.quantity("low")[k] == 0.5
+
+
+def test_nothing_known_at_any_point_of_a_shard(tmp_path: Path) -> None:
+    """Points that all failed, and a word that is nothing at all of them, are kept as such: read back and resumed."""
+    parameters = [{"path": "Disk 2.inertia", "values": [-1.0, -2.0, 1.0]}]
+    asked = stated(tmp_path / "a.zarr", ["frequency[0]"], analysis="natural_frequencies", parameter=parameters, block=1)
+    asked["parameter"].append({"path": "Shaft 1.stiffness", "values": [1.0, 2.0]})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(store_module, "SHARD", 2)
+        found = tn.study(asked, line=line(), workers=0)
+        assert found.failed == 4 and found.done == 2 and len(list((tmp_path / "a.zarr/part-0/shards").iterdir())) == 3
+        again = tn.study(asked, line=line(), workers=0, verify=True)
+    assert np.array_equal(found.quantity("frequency[0]"), again.quantity("frequency[0]"), equal_nan=True)
+    assert again.failures == found.failures and np.isnan(again.quantity("frequency[0]")[:4]).all()
+
+
+def test_what_is_nothing_at_some_points_is_told_by_the_others(tmp_path: Path) -> None:
+    """Stable points have no resonance: what names one is a word all the same."""
+    parameters = [grid(3)[0], {"path": "speed", "values": [0.9, 1.0, 1.62]}]
+    asked = stated(tmp_path / "a.zarr", ["resonance.name"], parameter=parameters)
+    found = tn.study(asked, line=line(), workers=0)
+    names = found.quantity("resonance.name").tolist()
+    assert found.failed == 0 and len(set(names)) > 1, found.failures
+    for angle, speed, name in zip(found.parameter("HookeJoint 1.angle"), found.parameter("speed"), names, strict=True):
+        known = tn.stability(line().replace("HookeJoint 1", angle=float(angle)), float(speed)).resonance
+        assert name == ("" if known is None else known.name)

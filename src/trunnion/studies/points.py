@@ -29,7 +29,7 @@ from trunnion.floquet.tolerance.many_lines import UNKNOWN, ManyLines
 from trunnion.numerics.versions import computed_by
 from trunnion.registry import ANALYSES
 from trunnion.results.verdict import Verdict
-from trunnion.studies.quantities import StudyQuantity
+from trunnion.studies.quantities import StudyQuantity, followed
 
 MISSING, DONE, FAILED = 0, 1, 2
 """What is known of a point."""
@@ -246,6 +246,17 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
         raise InputError(problem, element="arguments", key=SPEED, value=arguments["speed"], remedy="leave it out")
 
 
+def _kinds(
+    quantities: tuple[str, ...], result: object, before: tuple[StudyQuantity, ...]
+) -> tuple[StudyQuantity, ...]:  # fmt: skip
+    """Quantities as ``result`` has them; those that are nothing there as results ``before`` had them."""
+    known = {one.path: one for one in before}
+    return tuple(
+        known[path] if path in known and followed(result, path)[0] is None else StudyQuantity.of(path, result)
+        for path in quantities
+    )
+
+
 def question_of(
     line: Driveline, analysis: str, arguments: Mapping[str, Any], quantities: tuple[str, ...],
     paths: tuple[str, ...], tried: Array,
@@ -259,6 +270,7 @@ def question_of(
     """
     bare = StudyQuestion(dumps(line), analysis, dict(arguments), ())
     refused: Exception | None = None
+    kinds: tuple[StudyQuantity, ...] = ()
     for value in tried:
         try:
             result = bare.result(paths, value)
@@ -268,7 +280,10 @@ def question_of(
         except (TypeError, ValueError) as error:
             raise InputError(f"are not taken by {analysis} ({short(str(error), 120)})", element="study",
                              key="arguments", remedy="see the signature of the analysis") from None  # fmt: skip
-        kinds = tuple(StudyQuantity.of(path, result) for path in quantities)
+        if all(followed(result, path)[0] is not None for path in quantities):
+            return StudyQuestion(bare.line_text, analysis, bare.arguments, _kinds(quantities, result, kinds))
+        kinds = _kinds(quantities, result, kinds)
+    if kinds:  # what is nothing at all of them is a number that is not known
         return StudyQuestion(bare.line_text, analysis, bare.arguments, kinds)
     if isinstance(refused, InputError):
         raise InputError(f"fails at each of {len(tried)} points tried: {refused}", key="analysis", value=analysis,

@@ -82,7 +82,7 @@ class StudyQuantity:
         """
         value = followed(result, self.path)[0]
         if self.kind == "word":
-            return str(value)
+            return "" if value is None else str(value)
         if value is None:
             return float("nan")
         if isinstance(value, Enum) and not isinstance(value, IntEnum):

@@ -1,0 +1,149 @@
+"""What a study costs beside its points: engine and store at tasks of a second, a second worker, points of the batch.
+
+    python benchmarks/studies.py overhead [tasks] [seconds]
+    python benchmarks/studies.py workers [points]
+    python benchmarks/studies.py batch [points]
+    python benchmarks/studies.py memory [points] [points]
+
+Times are processor time unless they are called elapsed: other work on the machine does not change them.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from time import perf_counter, process_time, sleep, thread_time
+from typing import Any
+
+import trunnion as tn
+from trunnion.studies.points import DONE, StudyQuestion
+from trunnion.studies.runner import workers_here
+
+EVERY = 0.05
+"""Seconds between two looks at what processes hold."""
+
+
+def line() -> tn.Driveline:
+    """Two shafts with a joint between."""
+    parts = tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0), tn.HookeJoint(angle=0.2)
+    return tn.Driveline([tn.ConstantSpeed(), *parts, tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0)])
+
+
+def asked(store: Path, quantities: list[str], points: int, **more: Any) -> dict[str, Any]:
+    """A grid of about so many points of angle and speed."""
+    side = max(int(round(points**0.5)), 1)
+    grid = [
+        {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "40 deg", "points": points // side},
+        {"path": "speed", "low": 0.4, "high": 2.0, "points": side},
+    ]
+    study = {"line": "", "analysis": "stability", "quantities": quantities, "store": str(store), "parameter": grid}
+    return {**study, **more}
+
+
+def overhead(tasks: int = 60, seconds: float = 1.0) -> None:
+    """Blocks that take a second of processor time, and what client, scheduler and store take beside them."""
+    spent: list[float] = []
+
+    def busy(self: StudyQuestion, paths: tuple[str, ...], values: Any) -> Any:
+        begun = thread_time()
+        while thread_time() - begun < seconds:
+            pass
+        room = self._room(len(values))
+        room.status[:] = DONE
+        for column in room.values.values():
+            column[:] = 1.0
+        spent.append(thread_time() - begun)
+        return room
+
+    import distributed
+
+    before, StudyQuestion.evaluated = StudyQuestion.evaluated, busy  # type: ignore[method-assign]
+    try:
+        with (
+            tempfile.TemporaryDirectory() as folder,
+            distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client,
+        ):
+            begun, elapsed = process_time(), perf_counter()
+            study = asked(Path(folder) / "a.zarr", ["growth_rate", "liouville_defect"], tasks * 16, block=16)
+            tn.study(study, line=line(), client=client)
+            whole = process_time() - begun
+            elapsed = perf_counter() - elapsed
+    finally:
+        StudyQuestion.evaluated = before  # type: ignore[method-assign]
+    beside = whole - sum(spent)
+    print(f"{len(spent)} blocks of {sum(spent) / len(spent):.3f} s, {elapsed:.0f} s elapsed")
+    share = 100 * beside / sum(spent)
+    print(f"  client, scheduler, worker and store: {beside:.2f} s beside {sum(spent):.1f} s, {share:.2f} %")
+
+
+def workers(points: int = 4000) -> None:
+    """Calls one by one, on one worker and on two; elapsed, and processor time of the points."""
+    for count in (1, 2, 2, 1):
+        with tempfile.TemporaryDirectory() as folder, workers_here(count, dashboard=None) as client:
+            question = asked(Path(folder) / "warm.zarr", ["growth_rate", "liouville_defect"], 64, block=4)
+            tn.study(question, line=line(), client=client)  # whatever compiles or loads
+            client.run(_used)
+            before, begun = sum(client.run(_used).values()), perf_counter()
+            study = asked(Path(folder) / "a.zarr", ["growth_rate", "liouville_defect"], points, block=64)
+            tn.study(study, line=line(), client=client)
+            elapsed, used = perf_counter() - begun, sum(client.run(_used).values()) - before
+        each = f"{1e3 * used / points:.2f} ms of processor time a point on the workers"
+        print(f"{count} workers: {points / elapsed:.0f} points/s elapsed, {each}", flush=True)
+
+
+def _used() -> float:
+    return process_time()
+
+
+def batch(points: int = 1_000_000) -> None:
+    """Growth rate and verdict of two shafts, in this process, with the store."""
+    with tempfile.TemporaryDirectory() as folder:
+        tn.study(asked(Path(folder) / "warm.zarr", ["growth_rate"], 64), line=line(), workers=0)
+        begun, elapsed = process_time(), perf_counter()
+        store = Path(folder) / "a.zarr"
+        found = tn.study(asked(store, ["growth_rate", "verdict"], points), line=line(), workers=0)
+        used, elapsed = process_time() - begun, perf_counter() - elapsed
+        size = sum(path.stat().st_size for path in store.rglob("*") if path.is_file())
+    each = f"{1e6 * used / found.done:.2f} µs a point, {elapsed:.0f} s elapsed"
+    print(f"{found.done} points in {used:.1f} s of processor time ({each}), {size / 1e6:.1f} MB in the store")
+
+
+def memory(*sizes: int) -> None:
+    """The largest that this process holds while points are computed, above what it holds before; each study new."""
+    from trunnion.studies.store import Store
+    from trunnion.studies.study import _plan, completed
+
+    for points in sizes or (1_000_000, 10_000_000):
+        with tempfile.TemporaryDirectory() as folder:
+            plan = _plan(asked(Path(folder) / "a.zarr", ["growth_rate", "verdict"], points), line(), False)
+            store = Store.create(plan.store, plan.question, plan.design, plan.block, plan.source)
+            held, stop = [_held()], threading.Event()
+
+            def watch(seen: list[int] = held, end: threading.Event = stop) -> None:
+                while not end.is_set():
+                    seen.append(_held())
+                    sleep(EVERY)
+
+            watcher = threading.Thread(target=watch)
+            watcher.start()
+            begun = process_time()
+            completed(store, 0, None, None, None, False, None)
+            stop.set()
+            watcher.join()
+        most, above = max(held) / 1e6, (max(held) - held[0]) / 1e6
+        used = process_time() - begun
+        print(f"{points} points: at most {most:.0f} MB held, {above:.0f} MB above the start; {used:.0f} s", flush=True)
+
+
+def _held() -> int:
+    """Bytes that this process has in memory now."""
+    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    return pages * resource.getpagesize()
+
+
+if __name__ == "__main__":
+    what, *numbers = sys.argv[1:]
+    {"overhead": overhead, "workers": workers, "batch": batch, "memory": memory}[what](*map(int, numbers))
