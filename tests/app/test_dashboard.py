@@ -33,6 +33,7 @@ def test_a_fresh_page_begins_with_it_on_one_screen(look: Look) -> None:
     page.wait_for_url("**view=orders**")
 
 
+@pytest.mark.slow
 def test_no_verdict_stands_beside_another_line(look: Look) -> None:
     """From the moment that a number moves until the whole search has ended the verdict is not yet checked."""
     look.at("?view=dashboard")
@@ -81,6 +82,7 @@ def test_what_tiles_say_is_what_was_computed() -> None:
     assert worst.startswith(max(shares, key=lambda name: shares[name]) if shares else "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [390, 1024, 1920])
 def test_it_needs_no_sideways_scroll(look: Look, width: int) -> None:
     look.page.set_viewport_size({"width": width, "height": 900})

@@ -6,6 +6,7 @@ import ast
 import re
 from io import BytesIO
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from xml.etree import ElementTree
 
@@ -22,6 +23,7 @@ from trunnion.app.address import pack
 from trunnion.app.page import Page
 from trunnion.app.parts.calls import script
 from trunnion.app.parts.document import Document
+from trunnion.app.parts.variant_strip import KeptVariant, VariantStrip
 from trunnion.app.parts.variants import difference
 from trunnion.app.parts.widgets import HtmlPane, lines, markup, small
 from trunnion.app.views.base import View, links
@@ -97,14 +99,17 @@ def test_every_view_shows_names_as_text(name: str, settings: dict[str, str]) -> 
 
 @pytest.mark.parametrize("text", hostile.NAMES)
 def test_every_message_and_piece_shows_text_as_text(text: str) -> None:
-    page = Page({"Driveline": "driveline"}, lambda name: None, lambda: None)
+    page = Page({"Driveline": "driveline"}, "driveline", lambda name: None, lambda: None)
     page.message(f"{text}\n{text}")
     page.idle(text, (text,))
     kept = tn.dumps(tn.loads(TOML).replace("load", load_torque=1.0)) if "load" in tn.loads(TOML).names else TOML
     pieces = (
         sent(page.status), small(text, data_x=text), lines(f"{text}\n{text}"), markup("<p>{0:s}</p>", text),
-        difference(kept, tn.Driveline(hostile.line().elements, name=text)),
+        difference(text, kept, tn.Driveline(hostile.line().elements, name=text)),
     )  # fmt: skip
+    strip = VariantStrip(SimpleNamespace())  # type: ignore[arg-type]
+    strip.show([KeptVariant("kept 1", text, TOML, TOML, verdict=markup("{}", text))], markup("{}", text))
+    assert harmless(sent(strip.panel)).text
     for piece in pieces:
         assert text in " ".join(harmless(piece).text.split("\n")) or piece is pieces[-1]
     plain = HtmlPane(text)
@@ -113,7 +118,7 @@ def test_every_message_and_piece_shows_text_as_text(text: str) -> None:
 
 def test_a_refusal_of_a_file_is_shown_as_text() -> None:
     """Keys, values and tables of a file that cannot be read are quoted in its refusal."""
-    page = Page({"Driveline": "driveline"}, lambda name: None, lambda: None)
+    page = Page({"Driveline": "driveline"}, "driveline", lambda name: None, lambda: None)
     for name in hostile.NAMES:
         quoted = "'" + name.replace("'", "") + "'"
         for text in (f"{quoted} = 1\n", f"format = 1\n[[element]]\ntype = {quoted}\n", f"format = {quoted}\n"):

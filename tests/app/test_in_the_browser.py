@@ -112,6 +112,7 @@ def test_the_report_is_saved_whole(look: Look, tmp_path: Path) -> None:
     assert "data:image/svg+xml" in page and said in html.unescape(" ".join(page.split()))
 
 
+@pytest.mark.slow
 def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
     from playwright.sync_api import expect  # where there is a browser, see conftest
 
@@ -128,6 +129,7 @@ def test_a_malformed_file_is_refused_and_the_page_lives(look: Look) -> None:
     expect(look.page.get_by_label("angle of HookeJoint 1", exact=True)).to_have_value("3.5 deg", timeout=60_000)
 
 
+@pytest.mark.slow
 def test_what_stayed_unsent_follows_when_the_page_rests(look: Look) -> None:
     """A change that nobody sees carries it; it comes after every other change."""
     look.at("?view=joints")

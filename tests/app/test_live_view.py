@@ -19,6 +19,7 @@ def plays(seen: Look, title: str) -> None:
     seen.page.wait_for_function(f"() => {FOUND}?.data.choices[0].title === '{title}'")
 
 
+@pytest.mark.slow
 def test_it_plays_the_line_and_follows_its_settings(look: Look) -> None:
     look.at("?view=live")
     plays(look, "turning")
@@ -49,6 +50,7 @@ def test_what_it_plays_can_be_saved(look: Look) -> None:
     assert scene == look.page.evaluate(f"{FOUND}.data")
 
 
+@pytest.mark.slow
 def test_two_variants_take_one_context(look: Look) -> None:
     look.at("?view=live")
     plays(look, "turning")
@@ -67,6 +69,7 @@ def test_a_motion_that_cannot_be_shown_says_why(look: Look) -> None:
     assert look.page.evaluate(FOUND) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("width", [390, 1024])
 def test_it_needs_no_sideways_scroll(look: Look, width: int) -> None:
     look.page.set_viewport_size({"width": width, "height": 800})

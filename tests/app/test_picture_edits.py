@@ -30,6 +30,7 @@ def test_what_is_inserted_goes_by_the_part_it_stands_beside() -> None:
     assert document.data == Document(starter("two-shaft")).data
 
 
+@pytest.mark.slow
 def test_a_click_on_a_part_brings_its_fields(look: Look) -> None:
     look.page.set_default_timeout(60_000)
     look.at("?view=live")
@@ -56,6 +57,7 @@ def test_a_click_on_a_part_brings_its_fields(look: Look) -> None:
     assert field.input_value() == before
 
 
+@pytest.mark.slow
 def test_by_keyboard_a_part_is_chosen_given_a_neighbour_and_taken_away(look: Look) -> None:
     look.page.set_default_timeout(60_000)
     look.at("?view=live&live.part=Disk+1")
@@ -69,3 +71,31 @@ def test_by_keyboard_a_part_is_chosen_given_a_neighbour_and_taken_away(look: Loo
     page.get_by_label("Part to change", exact=True).select_option("Disk 2")
     page.get_by_role("button", name="remove Disk 2", exact=True).press("Enter")
     page.wait_for_function(f"() => {FOUND}.named.length === {count}")
+
+
+@pytest.mark.slow
+def test_an_element_is_dragged_to_another_place_and_back(look: Look) -> None:
+    look.at()
+    page = look.page
+    heads = page.locator("[data-group^='element-'] .head")
+    heads.first.wait_for()
+    kinds = "rows => rows.map(row => row.querySelector('.kind').textContent)"
+
+    def order() -> list[str]:
+        return [str(one) for one in heads.evaluate_all(kinds)]
+
+    before = order()
+    last = len(before) - 1
+    behind = {"target_position": {"x": 20, "y": 4}}
+    heads.nth(1).drag_to(heads.nth(last), **behind)
+    wanted = [before[0], *before[2:last], before[1], before[last]]
+    assert wanted != before
+    for _ in range(300):
+        if order() == wanted:
+            break
+        page.wait_for_timeout(100)
+    assert order() == wanted
+    page.get_by_role("button", name="Undo", exact=True).click()
+    page.wait_for_timeout(500)
+    look.settled_anew()
+    assert order() == before

@@ -12,12 +12,9 @@ from trunnion.pictures import looks
 
 LEAST_CONTRAST = 4.5
 """Of text, by WCAG 2.2, 1.4.3."""
-LABORIOUS = ("joints", "orders", "stability", "limits", "motion")
+LABORIOUS = ("driveline", "live", "verdict", "joints", "orders", "stability", "limits", "motion")
 VIEWS = [
     "dashboard",
-    "driveline",
-    "live",
-    "verdict",
     *(pytest.param(view, marks=pytest.mark.slow) for view in LABORIOUS),
 ]
 QUERY = "?view={}&stability.across=20&stability.up=16"
@@ -182,6 +179,7 @@ def nothing_overlaps_from_twice_enlarged_to_wide(look: Look) -> None:
     assert found == {width: [] for width in found}
 
 
+@pytest.mark.slow
 def test_a_click_on_a_speed_and_the_same_number_typed_are_one(look: Look) -> None:
     """The wave form that a click in the orders shows, and its address, come back from the labelled field alone."""
     look.at("?view=orders")

@@ -71,6 +71,34 @@ def rotated():
     return tn.track_orders(tn.Measurement([wheel()]), [1])
 
 
+def benched(**more):
+    """A run-up of a line with a joint on a synthetic bench."""
+    joint, tube = HookeJoint(angle=0.2, name="joint"), Shaft(stiffness=2e4, damping=25.0, name="tube")
+    line = Driveline([ConstantSpeed(name="drive"), joint, tube, Disk(inertia=0.5, name="hub")])
+    return line, tn.measure(line, **({"speeds": (60.0, 90.0), "duration": 3.0, "pickups": {"hub": 30}} | more))
+
+
+def tracked(at="hub"):
+    """Order 2 of its hub, the channel said to be at ``at``."""
+    line, run = benched()
+    train = tn.PulseTrain(run.pulses[0].times, 30, "CH1", at)
+    return line, tn.track_orders(tn.Measurement([train]), [2])
+
+
+def identified(free, **more):
+    return tn.identify(*tracked(), free, **more)
+
+
+def free_and_bent():
+    """A free–free line with a joint."""
+    joint, hub = HookeJoint(angle=0.2), Disk(inertia=0.5, name="hub")
+    return Driveline([Disk(inertia=2.0), Shaft(stiffness=2e4, damping=9.0), Disk(inertia=0.3), joint, tube(), hub])
+
+
+def tube():
+    return Shaft(stiffness=2e4, damping=9.0, name="tube")
+
+
 def damped():
     """A damper at the middle of three equal disks that are free–free."""
     ends, shaft = Disk(inertia=1.0), Shaft(stiffness=100.0)
@@ -874,6 +902,25 @@ PYTHON = [
         lambda: tn.track_orders(tn.Measurement([wheel()]), [1], between=(33.0, 99.0)),
         "between = [33.0, 99.0]: is outside the recording, 0 to 19.99 s",
         "rising times",
+    ),
+    (lambda: benched(duration=0.0), "duration = 0: must be positive", "in seconds"),
+    (lambda: benched(speeds=-5.0), "speeds = -5: must be positive", "tn.rpm(1500)"),
+    (lambda: benched(jitter=-1e-6), "jitter = -1e-06: must not be negative", "0 for none"),
+    (lambda: benched(missing=0.5), "missing = 0.5: must be a share below 0.2", "0.001"),
+    (lambda: benched(pickups={"hob": 30}), "pickups = 'hob': is no disk of the line", '"hub"'),
+    (lambda: benched(pickups={"hub": 1}), "pickups.hub = 1: must be a whole number", "2 or more"),
+    (lambda: benched(gauges=["tubes"]), "gauges = 'tubes': is no spring of the line", '"tube"'),
+    (lambda: tn.compare_measured(*tracked("hob")), "CH1.at = 'hob': is no disk of the line", '"hub"'),
+    (lambda: tn.compare_measured(*tracked("input")), "data: shows no place of the line that moves", 'at = "hub"'),
+    (lambda: tn.compare_measured(*tracked()).plot(channel="hub"), "channel = 'hub': is no channel", "there are CH1"),
+    (lambda: identified({"tube.stifness": (1e4, 4e4)}), "tube.stifness: is not a parameter", '"tube.stiffness"'),
+    (lambda: identified({"tube.stiffness": (4e4, 1e4)}), "tube.stiffness = (40000.0, 10000.0): must be", "free={"),
+    (lambda: identified({}), "free: must name one parameter or more", "free={"),
+    (lambda: identified({"tube.stiffness": (1e4, 4e4)}, seed=-1), "seed = -1: must be a whole number", "0 or more"),
+    (
+        lambda: tn.identify(free_and_bent(), tracked()[1], {"tube.stiffness": (1e4, 4e4)}),
+        "driveline: is free–free and has joint angles",
+        "drive its input at a constant speed",
     ),
     (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
     (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),

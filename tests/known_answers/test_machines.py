@@ -357,3 +357,28 @@ def test_a_limit_is_judged_under_a_factor() -> None:
     found = tn.sensitivity(line, parameters=["fan.rated_power"], of=["checks"], checks=["max torque of shaft"])
     one = next(row for row in found.ranked("max torque of shaft") if "rated_power" in row.parameter)
     assert one.derivative == pytest.approx(expected / 30e3, rel=1e-6)
+
+
+def test_each_load_case_is_judged_where_the_line_then_runs() -> None:
+    """A motor without a converter turns faster under less load: the torque there is the motor's, by its formula."""
+    motor = tn.Motor(inertia=0.4, breakdown_torque=500.0, breakdown_slip=0.2, synchronous_speed="1500 rpm")
+    fan = tn.Fan(inertia=3.0, rated_power="30 kW", rated_speed="1480 rpm", name="fan")
+    line = tn.Driveline(
+        [motor, tn.Shaft(stiffness=2e4, damping=3.0, name="shaft"), fan],
+        operation=tn.Operation(load_cases=[tn.LoadCase(name="dense", factors={"fan": 1.5})]),
+        limits=[tn.Limit(of="shaft", max_torque=400.0)],
+    )
+    w0 = 1500 * np.pi / 30
+
+    def drives(w: float) -> float:
+        s = 1 - w / w0
+        return 2 * 500.0 * s * 0.2 / (s**2 + 0.04)
+
+    c = 30e3 / (1480 * np.pi / 30) ** 3
+    at = brentq(lambda w: drives(w) - 1.5 * c * w**2, 0.9 * w0, w0, xtol=1e-13)
+    check = next(one for one in tn.assess(line).checks if one.name == "max torque of shaft")
+    assert check.load_case == "dense" and check.speed == pytest.approx(at, rel=1e-9)
+    assert check.value == pytest.approx(drives(at), rel=1e-8)
+    stalled = line.but(operation=tn.Operation(load_cases=[tn.LoadCase(name="jam", factors={"fan": 9.0})]))
+    assert len(tn.mean_speeds(stalled.with_load("jam"))) == 1  # it creeps, and stays judged there
+    assert next(one for one in tn.assess(stalled).checks if one.name == "max torque of shaft").load_case == "jam"

@@ -5,9 +5,10 @@ from __future__ import annotations
 import base64
 import binascii
 import zlib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from urllib.parse import urlencode
 
+from trunnion.app.parts.variant_strip import MOST_KEPT
 from trunnion.errors import InputError
 
 LARGEST = 1_000_000
@@ -38,9 +39,24 @@ def unpack(text: str) -> str:
         raise InputError("does not hold a driveline", key="line", value=text, remedy=remedy) from None
 
 
-def address(view: str, settings: Mapping[str, str], slider: Mapping[str, str], toml: str, kept: str | None) -> str:
-    """The query of a page."""
+def address(
+    view: str,
+    settings: Mapping[str, str],
+    slider: Mapping[str, str],
+    toml: str,
+    kept: Sequence[tuple[str, str, bool]] = (),
+) -> str:
+    """The query of a page; ``kept`` variants as name, file, and whether they are shown."""
     parts = {"view": view, **{f"{view}.{k}": v for k, v in settings.items()}, **slider, "line": pack(toml)}
-    if kept is not None:
-        parts["kept"] = pack(kept)
+    for number, (name, file, is_shown) in enumerate(kept, start=1):
+        key = f"kept{number}"
+        parts |= {key: pack(file), f"{key}.name": name}
+        if not is_shown:
+            parts[f"{key}.hidden"] = "1"
     return "?" + urlencode(parts)
+
+
+def kept_keys(query: Mapping[str, str]) -> list[str]:
+    """Keys of the kept variants of a query, in their order; "kept" alone is how there was one."""
+    keys = ["kept", *(f"kept{number}" for number in range(1, MOST_KEPT + 1))]
+    return [key for key in keys if key in query]

@@ -19,6 +19,20 @@ _TEMPLATE = """
 {% block title %}Trunnion{% endblock %}
 {% block preamble %}
 <meta name="viewport" content="width=device-width, initial-scale=1">
+<script>
+// A slider's handle has no name of its own: it gets the words above it, which change with the parameter.
+const attached = Element.prototype.attachShadow
+Element.prototype.attachShadow = function (...given) {
+  const root = attached.apply(this, given)
+  const name = () => {
+    const words = root.querySelector(".bk-slider-title")?.textContent.replace(/: [^:]*$/, "")
+    for (const handle of words ? root.querySelectorAll(".noUi-handle") : [])
+      if (handle.getAttribute("aria-label") !== words) handle.setAttribute("aria-label", words)
+  }
+  new MutationObserver(name).observe(root, { childList: true, subtree: true, characterData: true })
+  return root
+}
+</script>
 {% endblock %}
 {% block postamble %}
 <style>
@@ -64,12 +78,14 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 .stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: #1a1a1a;
   background: #fff3d6; border: 1px solid #b58900; animation: late 0.3s step-end; }
 @keyframes late { from { visibility: hidden; } }
-.refusal, .refusal * { color: #8d0016; }
+.refusal, .refusal * { color: #8d0016; overflow-wrap: anywhere; }
+h2, p, li, td, th { overflow-wrap: anywhere; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
 .verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
 .sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
 .verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
 a { color: #00558a; }
+.bk-spin-btn { display: none !important; }
 :focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
 """
 
@@ -77,12 +93,20 @@ a { color: #00558a; }
 class Page:
     """Panel objects of the page; the session says what stands in them."""
 
-    def __init__(self, views: Mapping[str, str], choose: Callable[[str], None], cancel: Callable[[], None]) -> None:
-        """``views``: names of the views by their titles."""
+    def __init__(
+        self, views: Mapping[str, str], first: str, choose: Callable[[str], None], cancel: Callable[[], None]
+    ) -> None:
+        """``views``: names of the views by their titles; ``first``: the one to begin with, chosen from the start, so
+        that what is pressed while the page loads is never taken back."""
         pn.config.raw_css = [_STYLE]
         self.programmatic = ProgrammaticChange()
         self.navigation = pn.widgets.RadioButtonGroup(
-            label="View", options=dict(views), button_type="default", margin=(4, 0), stylesheets=[_NAVIGATION]
+            label="View",
+            options=dict(views),
+            value=first,
+            button_type="default",
+            margin=(4, 0),
+            stylesheets=[_NAVIGATION],
         )
         self.navigation.param.watch(lambda event: choose(event.new) if not self.programmatic else None, "value")
         self.said = pane(margin=(4, 0), css_classes=["refusal"])
@@ -104,31 +128,34 @@ class Page:
         for name in ("navigation", "status", "main", "aside"):
             self.template.add_panel(name, getattr(self, name))
 
-    def fill(self, sliders: Any, keep: Sequence[Any], difference: Any) -> None:
+    def fill(self, sliders: Any, strip: Any, difference: Any) -> None:
         """What stands beside the pictures."""
-        first, *others = keep
-        variants = (heading("Two variants side by side"), first, pn.Row(*others, margin=0), difference)
-        self.aside.extend([heading("Move a number"), sliders, *variants])
+        self.aside.extend([heading("Move a number"), sliders, heading("Variants"), strip, difference])
 
-    def show(self, view: View, variants: Sequence[str]) -> None:
-        """Put a view, with a picture for each variant, on the page."""
-        key = (view.name, *variants)
+    def show(self, view: View, names: Mapping[str, str], is_upon: bool) -> None:
+        """Put a view on the page, with a picture for each variant, by its ``names``, or the pictures on the same axes
+        where the view has any that can be."""
+        is_upon = is_upon and len(names) > 1 and view.lay_upon(names)
+        if not is_upon:
+            view.lay_upon({})
+        variants = ["now"] if is_upon else list(names)
+        key = (view.name, is_upon, *names.items())
         if key == self._shown:
             return
         self._shown = key
         with self.programmatic:
             self.navigation.value = view.name
         one = len(variants) == 1
-        titles = {"kept": "the kept variant", "now": "now"}
         pictures = []
         for variant in variants:
             side = view.of(variant)
             side.narrow(not one)
-            above = [side.stamp] if one else [heading(titles[variant]), side.stamp]
+            above = [side.stamp] if one else [heading(names[variant]), side.stamp]
             pictures.append(column(*above, side.panel, min_width=300 if one else 240))  # two fit beside the sliders
         whole = pictures[0] if one else pn.Row(*pictures, sizing_mode="stretch_width", margin=0)
         about = [pane(markup("<p style='margin:0'>{}</p>", view.about))] if view.about else []
-        self.main.objects = [*about, view.controls, whole, view.downloads]
+        said = [view.upon] if is_upon else []
+        self.main.objects = [*about, view.controls, *said, whole, view.downloads]
 
     def message(self, text: str) -> None:
         """Say what went wrong, or nothing more."""

@@ -7,7 +7,7 @@ import secrets
 import traceback
 from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import zip_longest
+from itertools import count, zip_longest
 from typing import Any
 
 import panel as pn
@@ -19,8 +19,9 @@ from trunnion.app.page import Page
 from trunnion.app.parts.calls import LINE, Call, script
 from trunnion.app.parts.document import Document
 from trunnion.app.parts.jobs import Job, WorkerMessage
-from trunnion.app.parts.variants import Sliders, buttons, difference
-from trunnion.app.parts.widgets import Html, markup, pane
+from trunnion.app.parts.variant_strip import MOST_KEPT, MOST_SHOWN, UPON, KeptVariant, VariantStrip, free_name
+from trunnion.app.parts.variants import Sliders, difference
+from trunnion.app.parts.widgets import Html, joined, markup, pane
 from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import View, ViewStep, links
@@ -39,7 +40,11 @@ UNSAID = 0.25
 """Seconds that a computation takes without a word: a bar that comes and goes at once only makes the page jump."""
 REST = 0.5
 """Seconds after a change of the page when what may have stayed behind is sent."""
-KEPT, NOW = "kept", "now"
+NOW = "now"
+LONGEST_NAME = 40
+"""Letters of the name of a variant."""
+JUDGED_AFTER = 0.6
+"""Seconds without a further change before the strip of variants has a line judged."""
 EDITOR = "driveline"
 """The view of an address that names none but says something else; a fresh page begins with the first."""
 KINDS: dict[str, type[View]] = {kind.name: kind for kind in VIEWS}
@@ -52,7 +57,9 @@ class Session:
         self.pool = pool
         self.token = secrets.token_urlsafe(24)
         self.document = Document(toml)
-        self.kept: str | None = None
+        self.variants: list[KeptVariant] = []
+        self.fresh = count(1)
+        self.is_upon = False
         self.said_from = 0.0
         self.task: asyncio.Task[None] | None = None
         self.rest: asyncio.TimerHandle | None = None
@@ -63,19 +70,22 @@ class Session:
         self.query = _query()
         self.unread = False
         failure = self._read_lines()
-        self.page = Page({kind.name.capitalize(): kind.name for kind in VIEWS}, self.show_view, self.cancel)
+        name = self.query.get("view", "")
+        first = name if name in KINDS else EDITOR if self.query else VIEWS[0].name
+        titles = {kind.name.capitalize(): kind.name for kind in VIEWS}
+        self.page = Page(titles, first, self.show_view, self.cancel)
         self.sliders = Sliders(
             self.document.line,
             lambda line, path: self.edit(lambda document: document.set_numbers(line, path)),
             lambda: self.guarded(self._write_address),
         )
         self.sliders.read(self.query)
-        self.keep_buttons = buttons(lambda: self._keep(self.document.toml), lambda: self._keep(None), self._swap)
+        self.strip = VariantStrip(self)
+        self.verdict: tuple[str, Html | str] = ("", "")
         self.views: dict[str, View] = {}
-        name = self.query.get("view", "")
-        self.view = self.view_of(name if name in KINDS else EDITOR if self.query else VIEWS[0].name)
+        self.view = self.view_of(first)
         self.difference = pane()
-        self.page.fill(self.sliders.panel, self.keep_buttons, self.difference)
+        self.page.fill(self.sliders.panel, self.strip.panel, self.difference)
         self.template = self.page.template
         self.doc = pn.state.curdoc
         self.location = pn.state.location
@@ -101,8 +111,9 @@ class Session:
             self.unread = True
             return f"The address holds no driveline that can be read: {error}"
         try:
-            if "kept" in self.query:
-                self.kept = Document(address.unpack(self.query["kept"])).toml
+            for key in address.kept_keys(self.query):
+                name = self.query.get(f"{key}.name", "")
+                self._add_variant(Document(address.unpack(self.query[key])), name, f"{key}.hidden" not in self.query)
         except InputError as error:
             return f"The address holds no kept variant that can be read: {error}"
         return ""
@@ -155,14 +166,92 @@ class Session:
 
         self.guarded(work)
 
-    def _keep(self, toml: str | None) -> None:
-        self.kept = toml
-        self._line_changed()
+    # -- variants -------------------------------------------------------------------------------------------------
 
-    def _swap(self) -> None:
-        if self.kept is not None:
-            other, self.kept = self.kept, self.document.toml
-            self.edit(lambda document: document.replace_text(other))
+    def keep(self, name: str) -> None:
+        """Keep the present line under a name."""
+
+        def work() -> None:
+            if len(self.variants) >= MOST_KEPT:
+                remedy = "drop one first"
+                raise InputError(f"are kept already, {MOST_KEPT} at most", element="variants", remedy=remedy)
+            self._add_variant(self.document, name, self._is_room())
+            self._line_changed()
+
+        self.guarded(work)
+
+    def _is_room(self) -> bool:
+        return sum(one.is_shown for one in self.variants) < MOST_SHOWN
+
+    def _add_variant(self, document: Document, name: str, is_shown: bool) -> None:
+        taken = {one.name for one in self.variants}
+        name = name[:LONGEST_NAME]
+        named = free_name(self.variants) if not name or name in taken else name
+        key = f"kept {next(self.fresh)}"
+        self.variants.append(KeptVariant(key, named, document.toml, document.file().text, is_shown))
+
+    def _variant(self, key: str) -> KeptVariant:
+        return next(one for one in self.variants if one.key == key)
+
+    def show_variant(self, key: str, is_shown: bool) -> None:
+        """Show a variant beside the present line, or no more."""
+        self._variant(key).is_shown = is_shown and (self._is_room() or self._variant(key).is_shown)
+        if is_shown and not self._variant(key).is_shown:
+            self.page.message(f"{MOST_SHOWN} variants are shown at most: hide one first.")
+        self.guarded(self._line_changed)
+
+    def compare_all_no_more(self) -> None:
+        """Show none of the kept variants."""
+        for one in self.variants:
+            one.is_shown = False
+        self.guarded(self._line_changed)
+
+    def drop(self, key: str) -> None:
+        """Keep a variant no more."""
+        self.variants = [one for one in self.variants if one.key != key]
+        for view in self.views.values():
+            view.sides.pop(key, None)
+        self.guarded(self._line_changed)
+
+    def swap(self, key: str) -> None:
+        """Make a variant the present line, and keep that in its place; undo takes the line back."""
+        one = self._variant(key)
+        other, one.toml, one.file = one.file, self.document.toml, self.document.file().text
+        one.verdict = ""
+        self.edit(lambda document: document.replace_text(other))
+
+    def arrange_variants(self, how: str) -> None:
+        """Beside each other, or on the same axes."""
+        self.is_upon = how == UPON
+        self.guarded(self._look)
+
+    def _judge_variants(self) -> None:
+        """Have what the strip says of the present line, and of every variant, be the verdict on that very line."""
+        asked = {one.toml for one in self.variants if not one.verdict}
+        if self.variants and self.verdict[0] != self.document.toml:
+            asked.add(self.document.toml)
+        for toml in asked:
+            self._say_verdict(toml, markup("<span data-variant='not yet checked'>not yet checked</span>"))
+            self.beside(self._verdict_of(toml))
+
+    async def _verdict_of(self, toml: str) -> None:
+        await asyncio.sleep(JUDGED_AFTER)
+        if toml not in (self.document.toml, *(one.toml for one in self.variants)):
+            return  # a slider under way
+        try:
+            found = (await self.pool.run(Job(toml, Call("tn.assess", (LINE,)), "verdict_in_short"), self)).value
+        except TrunnionError as error:
+            found = {"verdict": "not judged", "said": str(error)}
+        said = markup("<span data-variant='{0}'>{1}</span>", found["verdict"], found["said"])
+        self.locked(partial(self._say_verdict, toml, said))
+
+    def _say_verdict(self, toml: str, said: Html) -> None:
+        for one in self.variants:
+            if one.toml == toml:
+                one.verdict = said
+        if toml == self.document.toml:
+            self.verdict = (toml, said)
+        self.strip.show(self.variants, self.verdict[1] if self.verdict[0] == self.document.toml else "")
 
     def show_view(self, name: str) -> None:
         """Look at another view."""
@@ -186,8 +275,10 @@ class Session:
 
     def _line_changed(self) -> None:
         self.sliders.adapt(self.document.line)
-        self.difference.object = difference(self.kept, self.document.line)
-        self.keep_buttons[1].disabled = self.keep_buttons[2].disabled = self.kept is None
+        shown = [one for one in self.variants if one.is_shown]
+        self.difference.object = joined(difference(one.name, one.toml, self.document.line) for one in shown)
+        self.strip.show(self.variants, self.verdict[1] if self.verdict[0] == self.document.toml else "")
+        self._judge_variants()
         self._view_changed()
 
     def _view_changed(self) -> None:
@@ -201,8 +292,9 @@ class Session:
 
     def _look(self) -> None:
         """Compute what the visible view shows; whatever was under way for it is dropped."""
-        sides = [NOW] if self.kept is None else [KEPT, NOW]
-        self.page.show(self.view, sides)
+        names = {one.key: one.name for one in self.variants if one.is_shown} | {NOW: "now"}
+        sides = list(names)
+        self.page.show(self.view, names, self.is_upon)
         self._write_address()
         under_way = self.task is not None and not self.task.done() and not self.resting
         if self.task:
@@ -223,7 +315,8 @@ class Session:
         """What a bookmark restores; an address that cannot be read stays, to be copied again."""
         if not self.unread:
             of = self.view.name, self.view.query(), self.sliders.query()
-            self.location.search = address.address(*of, self.document.toml, self.kept)
+            kept = [(one.name, one.file, one.is_shown) for one in self.variants]
+            self.location.search = address.address(*of, self.document.file().text, kept)
 
     def _expect(self, sides: list[str]) -> None:
         """Have the pictures know which line and settings they are to be of."""
@@ -311,7 +404,7 @@ class Session:
                 remarks += answer.remarks
                 if step.lasting:
                     self.known[view.name, side, step.name] = job, answer
-                self.locked(partial(view.of(side).take, step, job, answer.value))
+                self.locked(partial(view.take, side, step, job, answer.value))
             self.took[view.name, step.name] = asyncio.get_running_loop().time() - begin
         self.locked(partial(self.page.idle, "", tuple(dict.fromkeys(remarks))))
         self.pool.warm(WARMING, self)
@@ -339,7 +432,7 @@ class Session:
 
         def show_known() -> None:
             for known_step, of, value in known:
-                view.of(side).take(known_step, of, value)
+                view.take(side, known_step, of, value)
 
         if known:
             self.locked(show_known)
@@ -378,11 +471,12 @@ class Session:
         return self.task is None or self.task.done()
 
     def line(self, side: str) -> Driveline:
-        """The present line, or the kept one."""
-        return self.document.line if side == NOW or self.kept is None else loads(self.kept)
+        """The present line, or a kept one."""
+        return self.document.line if side == NOW else loads(self._toml(side))
 
     def _toml(self, side: str) -> str:
-        return self.document.toml if side == NOW else self.kept or self.document.toml
+        kept = next((one.toml for one in self.variants if one.key == side), None)
+        return self.document.toml if kept is None else kept
 
     def _progress(self, done: int, total: int, share: float) -> None:
         if asyncio.get_running_loop().time() >= self.said_from:

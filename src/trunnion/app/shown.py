@@ -82,6 +82,11 @@ def assessment(result: Any) -> Plain:
     }
 
 
+def verdict_in_short(result: Any) -> Plain:
+    """Verdict and what binds."""
+    return {"verdict": str(result.verdict), "said": result.sentence}
+
+
 def _rule(check: Any) -> str:
     """Name, formula, source and inputs of a check, those that it has."""
     parts = [check.rule.name, check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]

@@ -111,13 +111,13 @@ def _write_new(target: Path, text: str, force: bool) -> None:
 
 def export(
     file: Annotated[str, typer.Argument(metavar="FILE", help="Driveline file, or a name of the catalogue.")],
-    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion or modelica.")],
+    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion, modelica or c.")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py or .mo file to write.")
+        Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py, .mo or .c file to write.")
     ],
     as_json: Json = False,
 ) -> None:
-    """Write a line with straight joints for other programs: a table, a state space, openTorsion, Modelica."""
+    """Write a line for other programs: a table, a state space, openTorsion, Modelica, or C."""
     besides = tn.export_line(read_line(file), output, to)
     if as_json:
         write_json("export", {"written": str(output), "not_written": list(besides)})

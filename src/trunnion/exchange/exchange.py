@@ -10,6 +10,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.toml_file import LARGEST_FILE
 from trunnion.errors import InputError
+from trunnion.exchange.c_source import c_source_of
 from trunnion.exchange.held import not_written, refuse_unheld
 from trunnion.exchange.matlab import write_state_space
 from trunnion.exchange.modelica import model_of
@@ -21,22 +22,24 @@ from trunnion.exchange.tables import read_table, table_of
 from trunnion.reading import regular_bytes
 from trunnion.writing import written_whole
 
-ENDINGS: Mapping[str, str] = {"csv": ".csv", "matlab": ".mat", "opentorsion": ".py", "modelica": ".mo"}
+ENDINGS: Mapping[str, str] = {"csv": ".csv", "matlab": ".mat", "opentorsion": ".py", "modelica": ".mo", "c": ".c"}
 """Targets, and what their files end in."""
 _TEXTS: Mapping[str, Callable[[Network], str]] = {"csv": table_of, "opentorsion": script_of, "modelica": model_of}
 _READERS: Mapping[str, Callable[[str, str], Network]] = {".csv": read_table, ".py": read_script, ".mo": read_model}
 
 
 def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple[str, ...]:
-    """Write a line with straight joints to a file of another program; it appears whole or stays as it was.
+    """Write a line to a file of another program; it appears whole or stays as it was.
 
     Parameters
     ----------
-    line : any driveline of inertias, springs with one stiffness, rigid gears, and constant and viscous loads.
-    path : of the file, ending in .csv, .mat, .py or .mo; one that is there is replaced.
+    line : any driveline of inertias, springs with one stiffness, rigid gears, and constant and viscous loads, its
+        joints straight; for "c" any whose nonlinear equations have no friction that sticks.
+    path : of the file, ending in .csv, .mat, .py, .mo or .c; one that is there is replaced.
     to : "csv", a table with a row for each of them, in SI units; "matlab", a state space A, B, C, D with the names of
         its states, inputs and outputs; "opentorsion", a script that builds the assembly; "modelica", a model of
-        Modelica.Mechanics.Rotational.
+        Modelica.Mechanics.Rotational; "c", the equations of motion x' = f(t, x) at the operating speed in ANSI C, with
+        joints, excitations, meshes and stages.
 
     Returns what the description says besides and the file does not: limits, scenarios and the like.
 
@@ -61,15 +64,22 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple
         raise InputError(
             f"does not end in {ENDINGS[to]}", key="output", value=str(path), remedy=f"a file for {to} does"
         )
+    if to == "c":
+        _write(c_source_of(line), path)
+        return not_written(line)
     refuse_unheld(line)
     network = network_of(line)
-    text = _TEXTS[to](network) if to in _TEXTS else None
-    with written_whole(path) as temporary:
-        if text is None:
+    if to in _TEXTS:
+        _write(_TEXTS[to](network), path)
+    else:
+        with written_whole(path) as temporary:
             write_state_space(network, temporary)
-        else:
-            temporary.write_text(text, encoding="utf-8", newline="\n")
     return not_written(line)
+
+
+def _write(text: str, path: str | os.PathLike[str]) -> None:
+    with written_whole(path) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
 def import_line(path: str | os.PathLike[str]) -> Driveline:
@@ -100,6 +110,8 @@ def import_line(path: str | os.PathLike[str]) -> Driveline:
     place = Path(path)
     if place.suffix.lower() not in _READERS:
         remedy = "name a file that ends in .csv, .py or .mo"
+        if place.suffix.lower() == ".c":
+            remedy = "a function in C does not say what it is made of; export the line to csv"
         if place.suffix.lower() == ".mat":
             remedy = "a state space does not say what it is made of; export the line to csv"
         raise InputError("cannot be imported", key=str(path), remedy=remedy)

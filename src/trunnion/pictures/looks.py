@@ -6,6 +6,7 @@ them apart in grey. What judges is dark where it is bad: regions without stabili
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -236,6 +237,10 @@ LOOKS: dict[str, Look] = {
     **{f"{name}, down": _mark("inverted_triangle", colour, 6.0, "") for name, colour in _CONTACTS.items()},
 }
 
+VARIANTS = 3
+"""Variants that are told apart on the same axes."""
+_VARIANT_DASHES = ((2, 1.5), (6, 1.5), (1, 2.5))
+
 FAMILIES: dict[str, Callable[[int], Look]] = {
     "curve": _curve,
     "plain": lambda k: replace(_curve(k), marker="", width=1.2),
@@ -248,6 +253,7 @@ FAMILIES: dict[str, Callable[[int], Look]] = {
     "theory": lambda k: _mark("circle", _curve(k).colour, 3.5, WHITE),
     "dotted": lambda k: replace(_curve(k), marker="circle", width=1.3, size=2.0, every=True),
     "envelope": lambda k: _area(_curve(k).colour, opacity=0.35),
+    "variant": lambda k: Look(FAINT, 1.2, _VARIANT_DASHES[k % VARIANTS]),
     "class": lambda k: Look(_CLASSES[k % len(_CLASSES)], 0.7),
     "interval": lambda k: _area(_curve(k).colour, opacity=0.25),
     "bar": lambda k: _area(_curve(k).colour, hatch=HATCHES[k % len(HATCHES)], edge=WHITE, width=0.3),
@@ -281,7 +287,15 @@ PALETTES: dict[str, tuple[str, ...]] = {
 """Colours of meshes, from the low end to the high one; colours between are mixed."""
 
 
+_VARIANT = re.compile(r"of variant ([0-9]+): (.*)")
+
+
 def look(role: str) -> Look:
-    """The look of a role, or of one of a family."""
+    """The look of a role, or of one of a family; of a curve of another variant that of the curve, but for its dash."""
+    if found := _VARIANT.fullmatch(role):
+        own = look(found[2])
+        return replace(
+            own, dash=_VARIANT_DASHES[int(found[1]) % VARIANTS], width=0.8 * own.width, layer=own.layer - 0.1
+        )
     family, _, number = role.rpartition(" ")
     return FAMILIES[family](int(number)) if number.isdigit() and family in FAMILIES else LOOKS[role]

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
 from trunnion.measured.identification.result import Identification
 from trunnion.measured.overlay import MeasuredComparison
+from trunnion.measured.peaks import PredictedPeaks
 from trunnion.measured.tracking.by_angle import MeasuredOrderMap
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
 from trunnion.pictures.looks import curve
@@ -61,7 +61,7 @@ def comparison(found: MeasuredComparison, *, channel: str = "") -> Picture:
     ------
     InputError : no such channel.
     """
-    return _over(found.speed, found.order, found.measured, found.predicted, found.half_width, found, channel)
+    return _over(found, channel)
 
 
 def identification(found: Identification, *, channel: str = "") -> Picture:
@@ -75,46 +75,40 @@ def identification(found: Identification, *, channel: str = "") -> Picture:
     columns = [data.column(name) for name in found.channels]
     rows = found.windows
     measured, half = data.amplitude[rows][:, :, columns], data.half_width[rows][:, :, columns]
+    speed = data.speed[rows]
+    rank = np.argsort(speed)
+    none = np.full(found.predicted.shape[1:], np.nan)
     shown = MeasuredComparison(
-        speed=data.speed[rows], order=data.order, channels=found.channels,
-        kinds=tuple(data.kinds[c] for c in columns), measured=measured, predicted=found.predicted, half_width=half,
+        speed=speed, order=data.order, channels=found.channels, kinds=tuple(data.kinds[c] for c in columns),
+        measured=measured, predicted=found.predicted, half_width=half, peak=none, peak_speed=none, peak_error=none,
         begin=found.begin, off=found.residual.T, outside=found.residual.T, findings=(), unit=found.unit,
+        curve=PredictedPeaks(speed[rank], found.predicted[rank], none, none, none),
     )  # fmt: skip
     return comparison(shown, channel=channel)
 
 
-def _over(
-    speed: Array,
-    order: Array,
-    measured: Complex,
-    predicted: Complex,
-    half: Array,
-    found: MeasuredComparison,
-    channel: str,
-) -> Picture:
-    moves = int(np.argmax(np.abs(predicted).max(axis=(0, 1)) > 0))
+def _over(found: MeasuredComparison, channel: str) -> Picture:
+    curves = np.abs(found.curve.amplitude)
+    moves = int(np.argmax(curves.max(axis=(0, 1)) > 0))
     known = f"there are {', '.join(found.channels)}"
     column = place_of(channel, found.channels, moves, "channel", "no channel", known)
-    size_of = np.abs(measured[:, :, column])
+    size_of, factor = np.abs(found.measured[:, :, column]), speed_factor(found.unit)
     symbol, size = unit_of(found.kinds[column], float(np.nanmax(size_of, initial=0.0)))
-    rank = np.argsort(speed)
-    x, y, wanted = (
-        speed[rank] * speed_factor(found.unit),
-        size_of[rank] / size,
-        np.abs(predicted[rank, :, column]) / size,
-    )
+    rank = np.argsort(found.speed)
+    x, y = found.speed[rank] * factor, size_of[rank] / size
+    along, wanted = found.curve.speed * factor, curves[:, :, column] / size
     peaks = np.maximum(np.nan_to_num(y).max(axis=0, initial=0.0), wanted.max(axis=0, initial=0.0))
     largest = float(peaks.max(initial=0.0))
     drawn = sorted(k for k in np.argsort(-peaks)[:MOST_ORDERS].tolist() if peaks[k] > largest / 10**DECADES)
     least = max(min((float(np.nanmin(y[:, k])) for k in drawn), default=0.0), 2 * largest / 10 ** (DECADES + 0.5))
     items: list[Item] = []
     for i, k in enumerate(drawn):
-        around = half[rank, k, column] / size
+        around = found.half_width[rank, k, column] / size
         low, high = np.maximum(y[:, k] - around, least / 4), y[:, k] + around
+        order = order_words(float(found.order[k]))
         items.append(Band(x, low, high, f"interval {i}", "measured, interval of 95 %" if not i else ""))
-        items.append(Points(x, y[:, k], f"dot {i}", f"{order_words(float(order[k]))}, measured"))
-        name = f"{order_words(float(order[k]))}, predicted"
-        items.append(Line(x, np.where(wanted[:, k] > 0, wanted[:, k], np.nan), curve(i), name))
+        items.append(Points(x, y[:, k], f"dot {i}", f"{order}, measured"))
+        items.append(Line(along, np.where(wanted[:, k] > 0, wanted[:, k], np.nan), curve(i), f"{order}, predicted"))
     up = Axis(f"{WORDS[found.kinds[column]]} amplitude", symbol)
     up = up.logarithmic(least / 2, 2 * largest) if largest > 0 else up
     return over_speed(x, found.unit, up, items, title=f"{found.channels[column]}: measured and predicted")

@@ -21,7 +21,7 @@ from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
-from trunnion.results.units import figures, signs
+from trunnion.results.units import figures, range_words, signs
 from trunnion.results.words import Words
 
 MOST_RESONANCES = 30
@@ -314,7 +314,7 @@ def operation(contents: Contents, unit: str) -> Table:
     """Where the line runs."""
     seen, factor = contents.overview, Words(unit).factor
     low, high = seen.speed_range
-    rows = [("speed range", f"{four(low * factor)} to {four(high * factor)} {unit}")]
+    rows = [("speed range", f"{range_words(four(low * factor), four(high * factor))} {unit}")]
     if seen.operation.speed:
         rows.insert(0, ("operating speed", f"{four(seen.operation.speed * factor)} {unit}"))
     if seen.chart is not None:

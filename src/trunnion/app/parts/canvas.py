@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import panel as pn
 
 from trunnion.app.parts.widgets import column
 from trunnion.pictures.draw_bokeh import PIXELS, Drawn, height_of
+from trunnion.pictures.overlaid import overlaid
 from trunnion.pictures.picture import Item, Picture
 
 BROAD, BROADER = 6.0, 1.3
@@ -25,9 +26,21 @@ class Canvas:
         self.on, self.name, self.is_narrow = on or {}, name, False
         self.drawn: list[Drawn] = []
         self.panel = column()
+        self.own: tuple[Picture, tuple[Item, ...]] | None = None
+        self.others: Sequence[tuple[str, Picture]] = ()
 
     def show(self, picture: Picture, *more: Item) -> None:
         """A picture, with ``more`` in each of its panels. Figures stay where it has the same kinds of axes."""
+        self.own = picture, more
+        self._draw(overlaid(picture, self.others), more)
+
+    def lay_upon(self, others: Sequence[tuple[str, Picture]]) -> None:
+        """What pictures of other variants, by their names, show on the same axes, from now on."""
+        if self.own is not None and (others or self.others):
+            self.others = others
+            self._draw(overlaid(self.own[0], others), self.own[1])
+
+    def _draw(self, picture: Picture, more: Sequence[Item]) -> None:
         panels, height = [panel.with_items(*more) for panel in picture.panels], height_of(picture)
         if [one.kind for one in self.drawn] != [Drawn.kind_of(panel) for panel in panels]:
             self.drawn = [Drawn(panel, height, self.name) for panel in panels]
@@ -45,6 +58,7 @@ class Canvas:
 
     def clear(self) -> None:
         """Show nothing."""
+        self.own, self.others = None, ()
         self.drawn, self.panel.objects = [], []
 
     def narrow(self, is_narrow: bool) -> None:

@@ -88,18 +88,55 @@ export function render({ model }) {
     return row
   }
 
+  // An element is dragged by its head to before or behind another one; the arrows beside it do the same.
+  let dragged = null
+  function take(event, group) {
+    dragged = group
+    event.dataTransfer.effectAllowed = "move"
+    event.dataTransfer.setData("text/plain", group.title)
+  }
+  function drop() {
+    dragged = null
+    for (const row of table.querySelectorAll(".before, .behind")) row.classList.remove("before", "behind")
+  }
+  const isBefore = (event, row) => {
+    const box = row.getBoundingClientRect()
+    return event.clientY < box.top + box.height / 2
+  }
+  function over(event, row, group) {
+    if (!dragged || dragged.key === group.key) return
+    event.preventDefault()
+    const before = isBefore(event, row)
+    row.classList.toggle("before", before)
+    row.classList.toggle("behind", !before)
+  }
+  function put(event, row, group) {
+    if (!dragged) return
+    event.preventDefault()
+    const from = dragged.path[1], place = group.path[1] + (isBefore(event, row) ? 0 : 1)
+    const by = place - from - (place > from ? 1 : 0)
+    if (by) say({ do: "move", by, path: dragged.path, key: dragged.key })
+    drop()
+  }
+
   function build() {
     inputs.clear(); notes.clear(); table.replaceChildren()
     for (const group of model.groups) {
       const number = group.path[0] === "element" ? group.path[1] + 1 + "" : ""
-      const head = element("div", { class: "head" }, element("span", { class: "number" }, number),
+      const listed = group.path[0] === "element" && !model.alone
+      const head = element("div", { class: "head", draggable: listed ? "true" : null,
+        ondragstart: event => { if (listed) take(event, group) }, ondragend: drop },
+        element("span", { class: "number" }, number),
         element("span", { class: "kind" }, ...broken(group.kind || group.title)), tools(group))
       const fields = element("div", { class: "fields" })
       for (const f of group.fields) fields.append(field(group, f))
       const body = element("div", { class: "body" }, fields, adder(group),
         element("div", { class: "note group-note", role: "alert" }))
-      table.append(element("div", { class: "group", role: "group", "aria-label": group.title,
-        "data-group": group.path.join("-") }, head, body))
+      const row = element("div", { class: "group", role: "group", "aria-label": group.title,
+        "data-group": group.path.join("-"), ondragover: event => { if (listed) over(event, row, group) },
+        ondragleave: () => row.classList.remove("before", "behind"),
+        ondrop: event => { if (listed) put(event, row, group) } }, head, body)
+      table.append(row)
     }
     const kind = element("select", { "aria-label": "kind of the new element", id: "new-kind" })
     for (const k of model.kinds) kind.append(element("option", { value: k }, k))
@@ -162,6 +199,8 @@ _STYLE = """
 :host { display: block; width: 100%; }
 .group { display: flex; border-top: 1px solid #d5d9de; padding: 4px 0; gap: 8px; }
 .head { flex: 0 0 210px; display: flex; align-items: center; gap: 6px; font-weight: 600; align-self: flex-start; }
+.head[draggable] { cursor: grab; }
+.group.before { box-shadow: 0 -3px 0 #0072b2; } .group.behind { box-shadow: 0 3px 0 #0072b2; }
 .number { color: #555; min-width: 1.5em; text-align: right; font-weight: 400; }
 .kind { flex: 1; overflow-wrap: anywhere; }
 .body { flex: 1; min-width: 0; }
@@ -173,7 +212,7 @@ input, select, button { font: inherit; padding: 2px 4px; border: 1px solid #8a92
 input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
 input[aria-invalid="true"] { border: 2px solid #b3001b; background: #fff3f3; }
 input[type="number"] { width: 5em; }
-button { cursor: pointer; background: #f2f4f6; }
+button { cursor: pointer; background: #f2f4f6; min-width: 24px; min-height: 24px; }
 .tools { white-space: nowrap; }
 .note { color: #8d0016; font-size: 13px; max-width: 34em; white-space: pre-line; }
 .alone .group { flex-direction: column; } .alone .new { flex-direction: row; } .alone .head { flex-basis: auto; }

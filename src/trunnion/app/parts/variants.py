@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
 
 import panel as pn
 
@@ -17,6 +16,8 @@ from trunnion.driveline.quantities import KINDS, RATIO, eye_unit
 from trunnion.errors import InputError
 
 STEPS = 200
+LONG_LABEL = ".bk-slider-title { white-space: normal; overflow-wrap: anywhere; }"
+"""The path of a parameter is as long as the name of its element."""
 MOST_ROWS = 30
 """Differences that are listed."""
 
@@ -57,7 +58,9 @@ class Sliders:
         self.asked: dict[str, str] = {}
         self.programmatic = ProgrammaticChange()
         self.which = pn.widgets.Select(label="Parameter to move", options=[], sizing_mode="stretch_width")
-        self.slider = pn.widgets.FloatSlider(label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width")
+        self.slider = pn.widgets.FloatSlider(
+            label="Value", start=0, end=1, step=0.01, sizing_mode="stretch_width", stylesheets=[LONG_LABEL]
+        )
         self.value = pn.widgets.FloatInput(label="Value as a number", width=105)
         self.low = pn.widgets.FloatInput(label="Slider from", width=72)
         self.high = pn.widgets.FloatInput(label="to", width=72)
@@ -168,27 +171,13 @@ def _ends(value: float, unit: str) -> tuple[float, float]:
     return float(f"{low:.3g}"), float(f"{high:.3g}")
 
 
-def difference(kept: str | None, line: Driveline) -> Html:
+def difference(name: str, kept: str, line: Driveline) -> Html:
     """What changed since a variant was kept, as HTML."""
-    if kept is None:
-        return Html()
     rows = changes(loads(kept), line)
     if not rows:
-        return markup("<p>The two variants are alike so far: change a value.</p>")
+        return markup("<p>{} is like the line now: change a value.</p>", name)
     row = "<tr><td>{}</td><td>{}</td><td>{}</td></tr>"
     cells = joined(markup(row, one.place, one.before, one.after) for one in rows[:MOST_ROWS])
     more = markup("<p>and {} more</p>", len(rows) - MOST_ROWS) if len(rows) > MOST_ROWS else ""
-    head = markup("<tr><th>what changed</th><th>kept</th><th>now</th></tr>")
+    head = markup("<tr><th>what changed</th><th>{}</th><th>now</th></tr>", name)
     return markup("<table class='plain'>{}{}</table>{}", head, cells, more)
-
-
-def buttons(keep: Callable[[], None], drop: Callable[[], None], swap: Callable[[], None]) -> tuple[Any, ...]:
-    """Keep this variant, compare no more, swap the two."""
-    made = (
-        pn.widgets.Button(label="Keep this variant to compare", width=230),
-        pn.widgets.Button(label="Compare no more", width=140, disabled=True),
-        pn.widgets.Button(label="Swap", width=70, disabled=True),
-    )
-    for button, action in zip(made, (keep, drop, swap), strict=True):
-        button.on_click(lambda event, action=action: action())
-    return made

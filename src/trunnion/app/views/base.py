@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Coroutine, Mapping, Sequence
+from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Generic, Protocol, TypeVar
@@ -21,6 +21,8 @@ from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import known_speed, speed_unit
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
+from trunnion.pictures.overlaid import largest
+from trunnion.pictures.picture import Picture
 from trunnion.reporting import ranges
 from trunnion.results.speeds import speed_factor
 from trunnion.steady.orders.forced_response import shaft_names
@@ -89,7 +91,7 @@ class Host(Protocol):
     document: Document
 
     def line(self, side: str) -> Driveline:
-        """The line of a variant, "now" or "kept"."""
+        """The line of a variant, "now" or a kept one by its key."""
 
     def edit(self, change: Callable[[Document], Any]) -> None:
         """Change the line, and everything that follows from it."""
@@ -121,7 +123,7 @@ V = TypeVar("V", bound="View")
 
 
 class VariantPane(ABC, Generic[V]):
-    """The picture of one variant, "now" or "kept": a method ``show_KIND`` for what each kind of step gives."""
+    """The picture of one variant, "now" or a kept one: a method ``show_KIND`` for what each kind of step gives."""
 
     panel: Any
     parts: Mapping[tuple[str, ...], Sequence[Any]]
@@ -189,11 +191,15 @@ class VariantPane(ABC, Generic[V]):
         """The line that the picture is of."""
         return self.view.session.line(self.variant)
 
+    @property
+    def canvases(self) -> dict[str, Canvas]:
+        """The places of its pictures, by their names."""
+        return {name: held for name, held in vars(self).items() if isinstance(held, Canvas)}
+
     def narrow(self, narrow: bool) -> None:
         """Take half of the page, or all of it again."""
-        for held in vars(self).values():
-            if isinstance(held, Canvas):
-                held.narrow(narrow)
+        for held in self.canvases.values():
+            held.narrow(narrow)
 
     def begin(self, what: str) -> None:
         """Forget what belongs to another question."""
@@ -235,6 +241,8 @@ class View(ABC):
         self.sides: dict[str, VariantPane[Any]] = {}
         self.programmatic = ProgrammaticChange()
         self.downloads = pane()
+        self.upon = pane()
+        self.names: Mapping[str, str] = {}
         for key, make in self.fields.items():
             self._bind(key, make())
         self.controls = self.arrange()
@@ -260,6 +268,32 @@ class View(ABC):
             side = self.sides[variant] = self.side(self, variant)
             side.begin(str(self.settings.get("what", "")))
         return self.sides[variant]
+
+    def take(self, side: str, step: ViewStep, job: Job, data: Any) -> None:
+        """Show what a job gave for a variant, on the axes of another one too where they are shared."""
+        self.of(side).take(step, job, data)
+        if len(self.names) > 1:
+            self.show_upon()
+
+    def lay_upon(self, names: Mapping[str, str]) -> bool:
+        """Show what variants have on the axes of the present line's pictures, or nothing of them; whether it can."""
+        self.names = names
+        self.show_upon()
+        return bool(self.of("now").canvases)
+
+    def show_upon(self) -> None:
+        """The same anew, once a picture has changed, with how the largest values differ."""
+        own, rows = self.of("now"), list[Html]()
+        for place, canvas in own.canvases.items():
+            others = [
+                (name, self.of(key).canvases[place].own) for key, name in self.names.items() if key != own.variant
+            ]
+            known = [(name, of[0]) for name, of in others if of is not None]
+            canvas.lay_upon(known)
+            if canvas.own is not None:
+                rows += [row for name, one in known for row in _largest(canvas.own[0], name, one)]
+        head = markup("<tr><th>largest of</th><th>variant</th><th>there</th><th>now</th><th>change</th></tr>")
+        self.upon.object = markup("<table class='plain'>{}{}</table>", head, joined(rows)) if rows else ""
 
     def show_question(self) -> None:
         """Show the controls of the question, and in the pictures nothing of another one."""
@@ -355,6 +389,19 @@ def links(token: str, view: View, line: Driveline) -> Html:
     rows["the driveline"] = markup("{}, its report: {}", *whole)
     found = joined(markup("<li>{}: {}</li>", title, parts) for title, parts in rows.items())
     return markup("<h2 style='font-size:16px;margin:14px 0 0'>Save</h2><ul class='files'>{}</ul>", found)
+
+
+def _largest(own: Picture, name: str, other: Picture) -> Iterator[Html]:
+    """How the largest values of the curves differ that two pictures name, as rows of a table."""
+    for one in largest(own, other):
+        change = f"{one.share:+.1%}" if math.isfinite(one.share) else ""
+        values = (
+            f"{value:.4g} {one.unit} at {at:.4g} {one.at_unit}"
+            for value, at in ((one.other, one.other_at), (one.now, one.at))
+        )
+        yield markup(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", one.curve, name, *values, change
+        )
 
 
 def _link(token: str, view: str, name: str, ending: str, text: str) -> Html:

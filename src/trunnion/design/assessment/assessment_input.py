@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from math import isclose
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,8 @@ from trunnion.arrays import Array, Codes, Complex
 from trunnion.design.assessment.cause import Cause
 from trunnion.design.assessment.measures import Measure, measures, torque_measures, torque_name
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.mean_balance import SAME, mean_speeds, own_speed
+from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import ComputationError, InputError
@@ -438,11 +441,30 @@ def lossy(assembly: Assembly) -> bool:
 def cases_of(
     line: Driveline, low: float, high: float, effort: SearchEffort = WHOLE, *, partly: bool = False
 ) -> tuple[LoadCaseResponse, ...]:
-    """The line as stated and under each of its load cases, where it asks for it with every cylinder out of work."""
-    return tuple(
-        LoadCaseResponse(name, assemble(line.with_load(name) if name else line), low, high, effort, partly=partly)
-        for name in ("", *line.cases)
-    )
+    """The line as stated and under each of its load cases, where it asks for it with every cylinder out of work.
+
+    A line that runs by itself, asked where it does, settles at another speed under other loads.
+    """
+    settled = low == high and runs_by_itself(line) and _settles_at(line, low)
+    found = []
+    for name in ("", *line.cases):
+        loaded = line.with_load(name) if name else line
+        own = _own_speed(loaded) if name and settled else None
+        ends = (low, high) if own is None else (own, own)
+        found.append(LoadCaseResponse(name, assemble(loaded), *ends, effort, partly=partly))
+    return tuple(found)
+
+
+def _settles_at(line: Driveline, speed: float) -> bool:
+    return any(isclose(one.speed, speed, rel_tol=SAME) for one in mean_speeds(line))
+
+
+def _own_speed(line: Driveline) -> float | None:
+    """None where there is none, or several: the response then says so."""
+    try:
+        return own_speed(line)
+    except InputError:
+        return None
 
 
 def with_torques(cases: Iterable[LoadCaseResponse], asked: tuple[tuple[str, int], ...]) -> Iterator[LoadCaseResponse]:

@@ -1,0 +1,91 @@
+"""Where the orders that a line predicts are largest between two speeds: searched, whatever speeds were tracked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex
+from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.ranges.resonances import resonances
+from trunnion.floquet.ranges.span import Span
+from trunnion.measured.predicted import PredictedChannels
+from trunnion.response.orders.response import response_about, steady_states_of
+from trunnion.response.orders.result import OrderResponse
+from trunnion.response.ranges.largest import Largest, SearchedQuantity, first_speeds, search
+
+TOLERANCE = 1e-4
+"""Share of a peak that may still be missing."""
+KNOWN = 0.01
+"""Share that may be missing of a peak that counts as found."""
+CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
+"""Speeds about each resonance, in half-widths of its peak: what draws it."""
+
+
+@dataclass(frozen=True)
+class PredictedPeaks:
+    """Amplitudes (speed, order, channel) at the speeds (speed,) [rad/s] that were looked at, at the angle 0; and of
+    each order and channel (order, channel) the largest size, its speed [rad/s] and what it may be low by.
+
+    why : what kept the search from its end, "" where nothing did; the speeds are those that were tracked then.
+    """
+
+    speed: Array
+    amplitude: Complex
+    at: Array
+    value: Array
+    error: Array
+    why: str = ""
+
+
+def predicted_peaks(channels: PredictedChannels, bare: Complex) -> PredictedPeaks:
+    """The peaks between the lowest and the highest speed that were tracked.
+
+    bare : what the line predicts at the tracked speeds, as of ``channels.at``.
+    """
+    tracked = channels.data.speed
+    low, high = float(tracked.min()), float(tracked.max())
+    try:
+        found = _searched(channels, low, high)
+    except (InputError, ComputationError) as error:
+        return _read(tracked, bare, str(error))
+    if found.ended or not np.all(found.error <= KNOWN * found.value):
+        return _read(tracked, bare, found.ended or "some peak is infinite, a resonance without damping")
+    values = channels.of(found.response.spectrum)
+    shape = values.shape[1:]
+    return PredictedPeaks(
+        found.response.speed, values, found.response.speed[found.at].reshape(shape), found.value.reshape(shape),
+        found.error.reshape(shape),
+    )  # fmt: skip
+
+
+def _searched(channels: PredictedChannels, low: float, high: float) -> Largest:
+    assembly = channels.assembly
+    span = Span(assembly, low, high)
+    met = resonances(span)
+    about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
+    first = [
+        np.union1d(part, about[(about > part[0]) & (about < part[-1])]) for part in first_speeds(span.pieces, met)
+    ]  # fmt: skip
+    respond = partial(response_about, assembly, motions=steady_states_of(assembly))
+    shape = (len(channels.data.order), len(channels.columns))
+    quantities = [_quantity(channels, k, c) for k in range(shape[0]) for c in range(shape[1])]
+    return search(assembly, respond, first, quantities, tolerance=TOLERANCE)
+
+
+def _quantity(channels: PredictedChannels, order: int, channel: int) -> SearchedQuantity:
+    def parts(found: OrderResponse) -> Complex:
+        return channels.of(found.spectrum)[:, order, [channel]]
+
+    return SearchedQuantity(lambda found: np.asarray(np.abs(parts(found)[:, 0])), parts)
+
+
+def _read(speed: Array, bare: Complex, why: str) -> PredictedPeaks:
+    """What the tracked speeds alone show."""
+    rank = np.argsort(speed)
+    size = np.nan_to_num(np.abs(bare))
+    at = size.argmax(axis=0)
+    value = np.take_along_axis(size, at[None], axis=0)[0]
+    return PredictedPeaks(speed[rank], bare[rank], speed[at], value, np.full(value.shape, np.inf), why)
