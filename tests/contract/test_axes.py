@@ -53,7 +53,7 @@ REFUSED = [
     (LINE, "outer disk.drive_share", 0, 1, "high", "drive_share 1, which shares the drive"),
     (LINE, "coupling.stiffness", -1, 1, "low", "stiffness -1, which must be positive"),
     (LINE, "coupling.relative_damping", -1, 1, "low", "relative_damping -1, which must not be negative"),
-    (LINE, "coupling.damping", 1, 2, "low", "damping 1, which stands beside relative_damping"),
+    (LINE, "coupling.damping", 1, 2, "low", "damping 1, which conflicts with relative_damping"),
     (LINE, "vehicle.mass", -1, 1, "low", "mass -1, which must be positive"),
     (LINE, "vehicle.radius", 0, 1, "low", "radius 0, which must be positive"),
     (LINE, "lossy.loss_factor", -1, 1, "low", "loss_factor -1, which must not be negative"),

@@ -152,7 +152,7 @@ REFUSED = [
     ('component = "EL-8"', "is not the name of a component, maker/type"),
     ("component = 8", "is not the name of a component, maker/type"),
     ('component = "works/EL-8"\ntype = "Shaft"', 'is a Coupling; write type = "Coupling"'),
-    ('component = "works/EL-8"\nsheet = { component = "a/b" }', "stands beside sheet"),
+    ('component = "works/EL-8"\nsheet = { component = "a/b" }', "conflicts with sheet"),
     ('component = "works/EL-8"\nstifness = 3', "unknown key; did you mean"),
 ]
 

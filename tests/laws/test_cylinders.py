@@ -249,7 +249,7 @@ def test_a_table_beside_the_file(tmp_path):
         ("order,amplitude [N*m]\n2,3\n2,4\n", "table.csv.order 2: stands in several rows"),
         ("order,speed [rpm],amplitude [N*m]\n2,600,4\n", "table.csv.order 2: has one speed only"),
         ("order,speed [rpm],amplitude [N*m]\n2,600,4\n2,600,5\n", "table.csv.order 2: has two rows for one speed"),
-        ("order,speed [rpm],torque [N*m],amplitude [N*m]\n2,1,1,1\n", "table.csv.torque: stands beside speed"),
+        ("order,speed [rpm],torque [N*m],amplitude [N*m]\n2,1,1,1\n", "table.csv.torque: conflicts with speed"),
         ("order,order,amplitude [N*m]\n2,2,1\n", "table.csv.order: stands twice"),
         ("order,amplitude [N*m]\n", "table.csv: has no rows below its first line"),
         ("order,amplitude [N*m]\n-2,3\n", "must be positive"),

@@ -183,7 +183,7 @@ WRONG = (
     ({"channel": [{"column": 9}]}, "9.column = 9: is no column of the file; there are 2"),
     ({"channel": [{"column": "pickup", "kind": "pulses", "pulses_per_turn": 30, "level": 9.0}]}, "pickup.level = 9"),
     ({"channel": [{"column": "flat", "kind": "pulses", "pulses_per_turn": 30}]}, "flat.column: does not move"),
-    ({"channel": [{"column": "holes", "kind": "other"}]}, "holes.values: has 3 samples that are no numbers, the first"),
+    ({"channel": [{"column": "holes", "kind": "other"}]}, "holes.values: has no number in 3 samples, the first"),
     ({"channel": [{"column": "holes", "kind": "pulses", "pulses_per_turn": 3}]}, "holes.column: has samples that are"),
     ({"channel": [{"column": "pickup", "kind": "pulses", "pulses_per_turn": 300}]}, "pickup.times = 449: holds less"),
 )  # fmt: skip

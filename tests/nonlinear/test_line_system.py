@@ -272,7 +272,7 @@ def test_excitations_survive_the_file() -> None:
 
 REFUSED: list[tuple[Any, str]] = [
     ([{"order": 2}], "amplitude: is missing"),
-    ([{"amplitude": 2.0}], "order: is missing beside amplitude"),
+    ([{"amplitude": 2.0}], "order: is needed with amplitude"),
     ([{"amplitude": 2.0, "order": 0, "frequency": 3.0}], "order = 0: must not be zero; leave it out"),
     ([{"amplitude": 2.0, "order": 2, "frequency": 0}], "frequency = 0: must not be zero"),
     ([{"amplitude": 2.0, "frequency": -3.0}], "frequency = -3: must be positive"),

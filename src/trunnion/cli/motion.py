@@ -180,7 +180,7 @@ def _course(line: tn.Driveline, first: float | None, last: float | None, duratio
     if last is None:
         return first
     if duration is None:
-        raise InputError("is missing beside --to-speed", key="--duration", remedy="write --duration 10, in seconds")
+        raise InputError("is needed with --to-speed", key="--duration", remedy="write --duration 10, in seconds")
     return tn.SpeedProfile([0.0, duration], [operating_speed(line, first), last])
 
 

@@ -166,10 +166,10 @@ class AppliedTorque(Record):
     def _check_motor(self, given: list[str]) -> None:
         missing = [key for key in _KLOSS if key not in given]
         if missing:
-            raise InputError(f"is missing beside {given[0]}", key=missing[0], remedy=f"needed are {', '.join(_KLOSS)}")
+            raise InputError(f"is needed with {given[0]}", key=missing[0], remedy=f"needed are {', '.join(_KLOSS)}")
         beside = [key for key in ("torque", "table", "speed", "angle", "power", "formula") if getattr(self, key)]
         if beside:
-            raise InputError("stands beside breakdown_torque", key=beside[0], remedy="leave one of the two out")
+            raise InputError("conflicts with breakdown_torque", key=beside[0], remedy="leave one of the two out")
         slip, torque, speed = self.breakdown_slip, self.breakdown_torque, self.synchronous_speed
         assert slip is not None and torque is not None and speed is not None
         for key, value in (("breakdown_torque", torque), ("synchronous_speed", speed)):
@@ -202,7 +202,7 @@ class AppliedTorque(Record):
         what = "formula" if self.formula is not None else "function"
         beside = next((k for k in (*VARIABLES, "torque", "table", "factor") if getattr(self, k)), "")
         if beside:
-            raise InputError(f"stands beside {what}", key=beside, remedy="leave one of the two out")
+            raise InputError(f"conflicts with {what}", key=beside, remedy="leave one of the two out")
         if self.between != "lines":
             raise InputError("is of tables", key="between", value=self.between, remedy=f"leave it out beside {what}")
         if self.since is not None and self.until is not None and not self.since < self.until:
@@ -211,7 +211,7 @@ class AppliedTorque(Record):
     def _check_power(self) -> None:
         beside = [key for key in ("torque", "table", "time", "angle", "factor", "formula") if getattr(self, key)]
         if beside:
-            raise InputError("stands beside power", key=beside[0], remedy="leave one of the two out")
+            raise InputError("conflicts with power", key=beside[0], remedy="leave one of the two out")
         if len(self.speed) != 2 or not self.speed[0] > 0:
             problem = "must be two positive speeds beside power"
             raise InputError(problem, key="speed", remedy='write speed = ["100 rpm", "3000 rpm"], say')
@@ -231,7 +231,11 @@ class AppliedTorque(Record):
 
     def _check_torques(self) -> None:
         if len(self.variables) != 1:
-            problem = "goes over nothing" if not self.variables else f"goes over {' and '.join(self.variables)}"
+            problem = (
+                "has neither time, speed nor angle"
+                if not self.variables
+                else f"goes over {' and '.join(self.variables)}"
+            )
             remedy = "give one of time, speed and angle, and torque; or two, and a table"
             raise InputError(problem, key="torque", remedy=remedy)
         points = getattr(self, self.variables[0])

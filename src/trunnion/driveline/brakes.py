@@ -55,7 +55,7 @@ class Brake(Rotor):
             raise InputError("is less than torque", key="static_torque", value=self.static_torque, remedy=remedy)
         if self.stribeck_speed is not None and self.static_torque is None:
             remedy = "write how much it holds at rest"
-            raise InputError("is missing beside stribeck_speed", key="static_torque", remedy=remedy)
+            raise InputError("is needed with stribeck_speed", key="static_torque", remedy=remedy)
         return self
 
     def inertias(self, number: Numbers) -> tuple[Any, ...]:

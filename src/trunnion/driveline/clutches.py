@@ -115,7 +115,7 @@ class Clutch(PiecewiseShaft):
             ("linear_frequency", "linear_amplitude", "30 Hz"),
         ):
             if getattr(self, key) is None and getattr(self, other) is not None:
-                raise InputError(f"is missing beside {other}", key=key, remedy=f'write {key} = "{example}", say')
+                raise InputError(f"is needed with {other}", key=key, remedy=f'write {key} = "{example}", say')
         return self
 
     def lost_per_cycle(self, amplitude: float | str) -> float:

@@ -114,7 +114,7 @@ class Coupling(SpringElement):
         positive(self, *self.ratings, "thermal_resistance")
         if self.relative_damping is not None and self.loss_factor is not None:
             value, remedy = self.relative_damping, "leave one of the two out; the loss factor is ψ/2π"
-            raise InputError("stands beside loss_factor", key="relative_damping", value=value, remedy=remedy)
+            raise InputError("conflicts with loss_factor", key="relative_damping", value=value, remedy=remedy)
         self._check_torques()
         self._check_temperatures()
         return self
@@ -123,7 +123,7 @@ class Coupling(SpringElement):
         if not self.torques and not self.stiffnesses:
             return
         if self.stiffness is not None:
-            raise InputError("stands beside stiffness", key="stiffnesses", remedy="leave one of the two out")
+            raise InputError("conflicts with stiffness", key="stiffnesses", remedy="leave one of the two out")
         _table("torques", self.torques, "stiffnesses", self.stiffnesses, TORQUE)
         if self.torques[0] < 0:
             remedy = "begin at 0 or above; the stiffness is the same in both directions"
@@ -149,7 +149,7 @@ class Coupling(SpringElement):
             raise InputError("have no factors", key="temperatures", remedy=remedy)
         elif self.temperature is None:
             remedy = 'write temperature = "60 degC", say; tn.coupling_temperatures finds where it settles'
-            raise InputError("is missing beside temperatures", key="temperature", remedy=remedy)
+            raise InputError("is needed with temperatures", key="temperature", remedy=remedy)
         for key, values in factors.items():
             _table("temperatures", self.temperatures, key, values, TEMPERATURE)
             if not min(values) > 0:
@@ -165,10 +165,10 @@ class Coupling(SpringElement):
         ):  # fmt: skip
             if getattr(self, key) is not None and getattr(self, other) is None:
                 example = "30 degC" if other == "ambient_temperature" else "0.15 K/W"
-                raise InputError(f"is missing beside {key}", key=other, remedy=f'write {other} = "{example}", say')
+                raise InputError(f"is needed with {key}", key=other, remedy=f'write {other} = "{example}", say')
         if self.thermal_resistance is not None and self.temperature is None:
             remedy = "write temperature, at which it is taken where nothing iterates it"
-            raise InputError("is missing beside thermal_resistance", key="temperature", remedy=remedy)
+            raise InputError("is needed with thermal_resistance", key="temperature", remedy=remedy)
 
     def doubts(self) -> Iterator[Doubt]:
         yield from super().doubts()

@@ -278,7 +278,7 @@ def _wrong_damping(line: Driveline) -> Iterator[InputError]:
         if key is not None:
             remedy = "leave out one of the two"
             yield InputError(
-                "stands beside the line's damping_ratio",
+                "conflicts with the line's damping_ratio",
                 element=name,
                 key=key,
                 value=getattr(element, key),

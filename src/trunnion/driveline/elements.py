@@ -431,14 +431,16 @@ def one_way(element: Element, direct: str, other: tuple[str, ...], needed: tuple
     if getattr(element, direct) is not None:
         if stated:
             remedy = f"leave out either {direct} or {', '.join(stated)}"
-            raise InputError(f"stands beside {direct}", key=stated[0], value=getattr(element, stated[0]), remedy=remedy)
+            raise InputError(
+                f"conflicts with {direct}", key=stated[0], value=getattr(element, stated[0]), remedy=remedy
+            )
         return
     missing = [key for key in needed if getattr(element, key) is None]
     if stated and missing:
         remedy = f"needed are {', '.join(needed)}"
         if missing == ["shear_modulus"] and "material" in type(element).model_fields:
             remedy = 'write material = "steel", say, or shear_modulus'
-        raise InputError(f"is missing beside {stated[0]}", key=missing[0], remedy=remedy)
+        raise InputError(f"is needed with {stated[0]}", key=missing[0], remedy=remedy)
     if missing:
         remedy = f"write {element.example}, or {', '.join(needed)}" if direct != "ratio" else f"write {element.example}"
         raise InputError("is missing", key=direct, remedy=remedy)
@@ -448,7 +450,7 @@ def _alone(element: Element, given: str, others: tuple[str, ...]) -> None:
     for key in others:
         value = getattr(element, key)
         if value is not None:
-            raise InputError(f"stands beside {given}", key=key, value=value, remedy=f"leave out {key} or {given}")
+            raise InputError(f"conflicts with {given}", key=key, value=value, remedy=f"leave out {key} or {given}")
 
 
 def positive(element: Element, *keys: str) -> None:

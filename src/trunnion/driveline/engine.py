@@ -264,7 +264,7 @@ class Engine(Composite):
         drawn = [key for key in (*CRANK, "shear_modulus") if getattr(self, key) is not None]
         if drawn and self.throw_stiffness:
             value, remedy = getattr(self, drawn[0]), "leave one of the two out"
-            raise InputError("stands beside throw_stiffness", key=drawn[0], value=value, remedy=remedy)
+            raise InputError("conflicts with throw_stiffness", key=drawn[0], value=value, remedy=remedy)
         if drawn:
             self._check_drawing(drawn[0])
         elif not self.throw_stiffness and not self.rigid and self.throws > 1:
@@ -287,10 +287,10 @@ class Engine(Composite):
         not_negative(self, "damping", "loss_factor", "drive_share")
         if self.loss_factor is not None and self.damping:
             raise InputError(
-                "stands beside loss_factor", key="damping", value=self.damping, remedy="leave one of the two out"
+                "conflicts with loss_factor", key="damping", value=self.damping, remedy="leave one of the two out"
             )
         if self.loss_factor is None and self.loss_factor_frequency is not None:
-            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
+            raise InputError("is needed with loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
 
     def _check_drawing(self, given: str) -> None:
         self._needs(given, *CRANK, "shear_modulus", "stroke")
@@ -302,7 +302,7 @@ class Engine(Composite):
                 raise InputError(problem, key=f"{part}_bore", value=bore, remedy="check the units")
         if not FORMULAS[self.stiffness_formula](self._drawn) > 0:
             remedy = 'check them, or write stiffness_formula = "carter"'
-            raise InputError("give a throw without stiffness", key="stiffness_formula", remedy=remedy)
+            raise InputError("leaves a throw without stiffness", key="stiffness_formula", remedy=remedy)
 
     @property
     def _drawn(self) -> CrankThrow:
@@ -333,7 +333,7 @@ class Engine(Composite):
             raise InputError(f"must be from 1 to {HIGHEST_ORDER}", key="orders", value=self.orders, remedy="12, say")
         if self.gas_torque and self.pressure:
             remedy = "leave one of the two out"
-            raise InputError("stands beside gas_torque", key="pressure", remedy=remedy)
+            raise InputError("conflicts with gas_torque", key="pressure", remedy=remedy)
         if any(one.frequency is not None for one in self.gas_torque):
             raise InputError("repeats orders, not a frequency", key="gas_torque", remedy="write orders")
         for key in ("pressure", "compression"):
@@ -366,17 +366,22 @@ class Engine(Composite):
                 remedy = f"write a number from 1 to {len(self.firing_order)}"
                 raise InputError("is the number of no cylinder", key=key, value=value, remedy=remedy)
         if self.misfiring is not None and self.misfiring == self.cut_out:
-            raise InputError("is cut out", key="misfiring", value=self.misfiring, remedy="leave one of the two out")
+            raise InputError(
+                "names a cylinder that is cut out",
+                key="misfiring",
+                value=self.misfiring,
+                remedy="leave one of the two out",
+            )
         if len(self.compression) > 1:
             raise InputError("must be one curve", key="compression", value=len(self.compression))
         numbers = ("compression_ratio", "charge_pressure", "polytropic_exponent")
         given = [key for key in numbers if getattr(self, key) is not None]
         if given and self.compression:
             remedy = "leave one of the two out"
-            raise InputError("stands beside compression", key=given[0], value=getattr(self, given[0]), remedy=remedy)
+            raise InputError("conflicts with compression", key=given[0], value=getattr(self, given[0]), remedy=remedy)
         if given and len(given) < 3:
             missing = next(key for key in numbers if key not in given)
-            raise InputError(f"is missing beside {given[0]}", key=missing, remedy=f"write {', '.join(numbers)}")
+            raise InputError(f"is needed with {given[0]}", key=missing, remedy=f"write {', '.join(numbers)}")
         self._needs("compression_ratio", "bore", "stroke", "rod_length")
         self._needs("compression", "bore", "stroke", "rod_length")
         if self.compression_ratio is not None and not self.compression_ratio > 1:
@@ -389,7 +394,7 @@ class Engine(Composite):
         """Refuse what is stated without what it needs."""
         missing = next((one for one in needed if getattr(self, one) is None), None)
         if getattr(self, key) not in (None, ()) and missing is not None:
-            raise InputError(f"is missing beside {key}", key=missing, remedy=f"write {', '.join(needed)}")
+            raise InputError(f"is needed with {key}", key=missing, remedy=f"write {', '.join(needed)}")
 
     def doubts(self) -> Iterator[Doubt]:
         peaks = [max(curve.pressures) for key in ("pressure", "compression") for curve in getattr(self, key)]

@@ -89,7 +89,7 @@ class Excitation(Record):
         given = [key for key in ("order", "frequency") if getattr(self, key) is not None]
         if not given:
             remedy = 'give order = 2, say, or frequency = "50 Hz", or both'
-            raise InputError("is missing beside amplitude", key="order", remedy=remedy)
+            raise InputError("is needed with amplitude", key="order", remedy=remedy)
         for key in given:
             value = getattr(self, key)
             if not (value > 0 or (len(given) == 2 and value < 0)):
@@ -105,7 +105,7 @@ class Excitation(Record):
         if not given:
             raise InputError("is missing", key="amplitude", remedy='write order = 2 and amplitude = "40 N*m"')
         if len(given) > 1:
-            raise InputError(f"stands beside {given[0]}", key=given[1], remedy="leave one of the two out")
+            raise InputError(f"conflicts with {given[0]}", key=given[1], remedy="leave one of the two out")
         if self.order is None and given != ["amplitude"]:
             remedy = "write amplitude, or order instead of frequency"
             raise InputError("belongs to an order of the rotation", key=given[0], remedy=remedy)
@@ -120,7 +120,7 @@ class Excitation(Record):
                 raise InputError("has no amplitudes beside it", key=lone, remedy='write amplitudes = ["40 N*m", ...]')
             return
         if bool(self.speeds) == bool(self.torques):
-            problem = "stands beside speeds" if self.speeds else "is missing beside amplitudes"
+            problem = "conflicts with speeds" if self.speeds else "is needed with amplitudes"
             remedy = 'give speeds = ["600 rpm", "1800 rpm"], say, or torques'
             raise InputError(problem, key="torques" if self.speeds else "speeds", remedy=remedy)
         if len(points) < 2:

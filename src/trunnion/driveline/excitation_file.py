@@ -62,7 +62,7 @@ def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
     columns = rows[0][1] if rows else {}
     if "speed" in columns and "torque" in columns:
         remedy = "a table goes over one of the two; leave the other out"
-        raise InputError("stands beside speed", element=source, key="torque", remedy=remedy)
+        raise InputError("conflicts with speed", element=source, key="torque", remedy=remedy)
     over = next((key for key in ("speed", "torque") if key in columns), None)
     if not by_order:
         raise InputError("has no rows below its first line", key=source, remedy="write one row an order")

@@ -372,7 +372,7 @@ def _of_component(data: dict[str, Any], around: Surroundings | None) -> dict[str
         raise InputError(f"is a {found.kind}", key="component", value=data["component"], remedy=remedy)
     if "sheet" in stated:
         remedy = "leave one of the two out: component reads the sheet anew, and sheet says what was read"
-        raise InputError("stands beside sheet", key="component", value=data["component"], remedy=remedy)
+        raise InputError("conflicts with sheet", key="component", value=data["component"], remedy=remedy)
     return {"type": found.kind, **found.fields, **stated}
 
 

@@ -174,7 +174,9 @@ class GearPair(Element):
         chosen = toothed if any(key in toothed for key in given) else plain
         other = next((key for key in given if key not in chosen), None)
         if other is not None:
-            raise InputError(f"stands beside {given[0]}", key=other, remedy=f"write {', '.join(toothed)}, or the radii")
+            raise InputError(
+                f"conflicts with {given[0]}", key=other, remedy=f"write {', '.join(toothed)}, or the radii"
+            )
         missing = next((key for key in chosen if getattr(self, key) is None), None)
         if missing is not None:
             missing = missing if given else "teeth_in"
@@ -201,7 +203,7 @@ class GearPair(Element):
             )  # fmt: skip
         if self.backlash and self.angular_backlash:
             raise InputError(
-                "stands beside backlash", key="angular_backlash", value=self.angular_backlash, remedy="leave out one"
+                "conflicts with backlash", key="angular_backlash", value=self.angular_backlash, remedy="leave out one"
             )
         if not 0 <= self.stiffness_ratio <= 1:
             remedy = "0 is free play, 1 no backlash at all"

@@ -144,7 +144,7 @@ class Limit(Addressed):
         if self.transient_vibratory_torque is not None:
             if self.vibratory_torque is None:
                 remedy = "write the continuous limit beside it"
-                raise InputError("is missing beside transient_vibratory_torque", key="vibratory_torque", remedy=remedy)
+                raise InputError("is needed with transient_vibratory_torque", key="vibratory_torque", remedy=remedy)
             if self.transient_vibratory_torque < self.vibratory_torque:
                 raise InputError(
                     "is smaller than vibratory_torque, which is borne continuously",

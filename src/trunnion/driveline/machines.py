@@ -76,11 +76,11 @@ class Machine(Rotor):
         first = next(key for key in begun[0] if self._states(key))
         if len(begun) > 1:
             other = next(key for key in begun[1] if self._states(key))
-            raise InputError(f"stands beside {first}", key=other, remedy=f"leave out {other} or {first}")
+            raise InputError(f"conflicts with {first}", key=other, remedy=f"leave out {other} or {first}")
         missing = next((key for key in self._needed(begun[0]) if not self._states(key)), None)
         if missing:
             needed = ", ".join(self._needed(begun[0]))
-            raise InputError(f"is missing beside {first}", key=missing, remedy=f"needed are {needed}")
+            raise InputError(f"is needed with {first}", key=missing, remedy=f"needed are {needed}")
         return self
 
     def _states(self, key: str) -> bool:
@@ -203,10 +203,10 @@ class Motor(ElectricMachine):
         not_negative(self, "drive_share")
         if self.drive_share and self.curve:
             remedy = "leave it out: the line turns where its curve balances the loads"
-            raise InputError("stands beside curve", key="drive_share", value=self.drive_share, remedy=remedy)
+            raise InputError("conflicts with curve", key="drive_share", value=self.drive_share, remedy=remedy)
         if self.drive_share and self.set_speed is not None:
             remedy = "leave out set_speed, which then follows the speed asked for, or drive_share"
-            raise InputError("stands beside set_speed", key="drive_share", value=self.drive_share, remedy=remedy)
+            raise InputError("conflicts with set_speed", key="drive_share", value=self.drive_share, remedy=remedy)
         return self
 
     def _needed(self, keys: tuple[str, ...]) -> tuple[str, ...]:
@@ -415,7 +415,7 @@ class Propeller(Consumer):
                 f"leave out one of the two: it multiplies a torque by the square of the speed, and {linear} is none"
             )
             value = self.damping_factor
-            raise InputError(f"stands beside {linear}", key="damping_factor", value=value, remedy=remedy)
+            raise InputError(f"conflicts with {linear}", key="damping_factor", value=value, remedy=remedy)
         return self
 
     def doubts(self) -> Iterator[Doubt]:

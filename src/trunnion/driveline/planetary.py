@@ -128,7 +128,7 @@ class Planetary(Elastic):
             raise InputError("is missing", key=missing, remedy="write planet_mass and centre_distance, or neither")
         if self.held is not None and self.free_speed != 1.0:
             remedy = "leave it out: all speeds follow from the input's"
-            raise InputError("stands beside held", key="free_speed", value=self.free_speed, remedy=remedy)
+            raise InputError("conflicts with held", key="free_speed", value=self.free_speed, remedy=remedy)
         positive(self, "planet_inertia", "planet_mass", "centre_distance", "module", *MESHES)
         not_negative(self, "mesh_damping")
         self._check_meshes()
@@ -146,7 +146,7 @@ class Planetary(Elastic):
         for key in (*MESHES, "module", "planet_inertia"):
             if getattr(self, key) is None:
                 remedy = "elastic teeth need sun_mesh_stiffness, ring_mesh_stiffness, module and planet_inertia"
-                raise InputError(f"is missing beside {stated[0]}", key=key, remedy=remedy)
+                raise InputError(f"is needed with {stated[0]}", key=key, remedy=remedy)
         if not 0 < self.pressure_angle < pi / 4:
             remedy = 'write "20 deg", say'
             raise InputError(

@@ -68,7 +68,9 @@ class PressureCurve(Record):
         count = len(self.angles)
         if count < FEWEST_POINTS:
             remedy = "give one every 2 deg, say, over the whole cycle"
-            raise InputError(f"has {count} points, and a curve {FEWEST_POINTS} at least", key="angles", remedy=remedy)
+            raise InputError(
+                f"has {count} points, and a curve needs {FEWEST_POINTS} at least", key="angles", remedy=remedy
+            )
         if len(self.pressures) != count:
             problem = f"must be {count} quantities, as angles are, and are {len(self.pressures)}"
             raise InputError(problem, key="pressures", remedy="give one at every angle")

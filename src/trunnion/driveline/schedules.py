@@ -106,7 +106,7 @@ class Schedule(Named):
     @model_validator(mode="after")
     def _whole(self) -> Schedule:
         if (self.travel is None) == (self.speed is None):
-            problem = "goes over travel and speed at once" if self.travel is not None else "goes over nothing"
+            problem = "has travel and speed at once" if self.travel is not None else "has neither travel nor speed"
             raise InputError(problem, key="travel", remedy='write travel = ["-60 mm", "90 mm"], or speed')
         if not self.angles and not self.loads:
             raise InputError("lets nothing follow", key="angles", remedy="write angles or loads by element")

@@ -76,11 +76,11 @@ class SpringElement(Elastic):
         positive(self, "stiffness", "loss_factor_frequency")
         not_negative(self, "loss_factor")
         if self.loss is None and self.loss_factor_frequency is not None:
-            raise InputError("is missing beside loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
+            raise InputError("is needed with loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
         if self.loss is not None and self.damping != 0.0:
             beside = "loss_factor" if self.loss_factor is not None else "relative_damping"
             remedy = "leave one of the two out"
-            raise InputError(f"stands beside {beside}", key="damping", value=self.damping, remedy=remedy)
+            raise InputError(f"conflicts with {beside}", key="damping", value=self.damping, remedy=remedy)
         return self
 
     @property

@@ -62,7 +62,7 @@ class SlipClutch(Element):
             ("sliding_torque", "stribeck_speed", "900 N*m"), ("stribeck_speed", "sliding_torque", "30 rpm")
         ):  # fmt: skip
             if getattr(self, key) is None and getattr(self, other) is not None:
-                raise InputError(f"is missing beside {other}", key=key, remedy=f'write {key} = "{example}", say')
+                raise InputError(f"is needed with {other}", key=key, remedy=f'write {key} = "{example}", say')
         self._check_table()
         return self
 

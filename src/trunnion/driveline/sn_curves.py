@@ -109,21 +109,21 @@ class SNCurve(Addressed):
 
     def _wrong_together(self) -> Iterator[InputError]:
         if (self.stress_amplitude is None) == (self.torque_amplitude is None):
-            problem = "is missing" if self.stress_amplitude is None else "stands beside torque_amplitude"
+            problem = "is missing" if self.stress_amplitude is None else "conflicts with torque_amplitude"
             remedy = "write stress_amplitude of a tube, or torque_amplitude: one of the two"
             yield InputError(problem, key="stress_amplitude", value=self.stress_amplitude, remedy=remedy)
             return
         of_other, ultimate = ("torque", "stress") if self.stress_amplitude is not None else ("stress", "torque")
         if getattr(self, f"ultimate_{of_other}") is not None:
             key, remedy = f"ultimate_{of_other}", f"write ultimate_{ultimate}"
-            yield InputError(f"stands beside {ultimate}_amplitude", key=key, value=getattr(self, key), remedy=remedy)
+            yield InputError(f"conflicts with {ultimate}_amplitude", key=key, value=getattr(self, key), remedy=remedy)
         if self.ultimate is not None and self.mean_sensitivity is not None:
             remedy = "leave one of the two out: Goodman's line, or the form of the FKM guideline"
             value = self.mean_sensitivity
-            yield InputError(f"stands beside ultimate_{ultimate}", key="mean_sensitivity", value=value, remedy=remedy)
+            yield InputError(f"conflicts with ultimate_{ultimate}", key="mean_sensitivity", value=value, remedy=remedy)
         if self.ultimate is not None and self.ultimate <= self.amplitude:
             problem = f"does not lie above {ultimate}_amplitude"
-            remedy = "it breaks at once there, and after many cycles at the amplitude"
+            remedy = "check both: what breaks a part at once is more than what it bears many times"
             yield InputError(problem, key=f"ultimate_{ultimate}", value=self.ultimate, remedy=remedy)
 
     @property

@@ -77,5 +77,5 @@ def _with_points(torque: dict[str, Any], place_of: Callable[[str], Path]) -> dic
     found = read_torque(place_of(named))
     beside = [key for key in COLUMNS.columns if key in torque]
     if beside:
-        raise InputError("stands beside file", element="torque", key=beside[0], remedy="leave one of the two out")
+        raise InputError("conflicts with file", element="torque", key=beside[0], remedy="leave one of the two out")
     return {**{key: value for key, value in torque.items() if key != "file"}, **found}

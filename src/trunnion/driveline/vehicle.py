@@ -81,7 +81,7 @@ class Tyre(Elastic):
         missing = [key for key in slip if getattr(self, key) is None]
         if stated and missing:
             raise InputError(
-                f"is missing beside {stated[0]}", key=missing[0],
+                f"is needed with {stated[0]}", key=missing[0],
                 remedy=f"a tread that slips needs {', '.join(slip)}; one that does not needs none of them",
             )  # fmt: skip
         return self

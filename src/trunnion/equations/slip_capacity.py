@@ -55,7 +55,7 @@ def refuse_slipping(packed: PackedLine, topo: Topology, table: Array, mean: Arra
         assert isinstance(clutch, SlipClutch)
         if topo.graph:
             raise InputError(
-                f"stands beside {packed.line.names[topo.knot]}, where its load does not follow from what is behind it",
+                f"conflicts with {packed.line.names[topo.knot]}, where its load does not follow from what is behind it",
                 element=name, key="torque", value=clutch.torque, remedy="write a Ratio of 1 in its place",
             )  # fmt: skip
         holds = table[:, packed.column(place, "torque")] * clutch.last_share

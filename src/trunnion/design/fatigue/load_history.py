@@ -68,7 +68,7 @@ class LoadHistory:
     def __post_init__(self) -> None:
         given = [key for key in ("share", "per_hour") if getattr(self, key) is not None]
         if len(given) != 1:
-            problem = "stands beside share" if given else "is missing"
+            problem = "conflicts with share" if given else "is missing"
             raise InputError(problem, element=self._label, key="per_hour", value=self.per_hour, remedy="give one")
         for key in (*given, "duration"):
             value = getattr(self, key)
@@ -82,13 +82,13 @@ class LoadHistory:
         if isinstance(self.source, Mapping):
             if self.share is not None and self.duration is None:
                 remedy = "say how many seconds the torques last, or give per_hour"
-                raise InputError("is missing beside share", element=self._label, key="duration", remedy=remedy)
+                raise InputError("is needed with share", element=self._label, key="duration", remedy=remedy)
             for name, values in self.source.items():
                 self._check(name, values)
         elif not isinstance(self.source, LineSimulation | RunUp | Transient | Passing | OrderResponse):
             remedy = "give what simulate, run_up, transient, passing or order_response returns, or torques by element"
             kind = type(self.source).__name__
-            raise InputError(f"is a {kind}, and no history", element=self._label, key="source", remedy=remedy)
+            raise InputError(f"is no history but of type {kind}", element=self._label, key="source", remedy=remedy)
 
     @property
     def _label(self) -> str:

@@ -170,7 +170,7 @@ class SampledSignal(Portable):
         if gaps.any():
             at = self.start + float(np.argmax(gaps)) / self.rate
             raise InputError(
-                f"has {counted(int(gaps.sum()), 'sample')} that are no numbers, the first at {at:.6g} s",
+                f"has no number in {counted(int(gaps.sum()), 'sample')}, the first at {at:.6g} s",
                 element=self.name, key="values", remedy="cut the gap out, or read the parts on either side",
             )  # fmt: skip
 

@@ -108,7 +108,7 @@ def synchronous_average(
     count = len(rows) // turns
     if count < 2:
         raise InputError(
-            "does not come twice, from one of its multiples on", element=channel.name, key="turns", value=turns,
+            "does not repeat within the recording", element=channel.name, key="turns", value=turns,
             remedy="record longer",
         )  # fmt: skip
     parts = rows[: count * turns].reshape(count, -1)
