@@ -111,3 +111,15 @@ def test_one_line_exit_code_2_and_nothing_written(run, here, call, words):
     assert result.stdout == "" and words in result.stderr
     assert result.stderr.startswith("error: ") and result.stderr.count("\n") == 1
     assert not (here / "trunnion-out").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [("a.b=15 %", 0.15), ("a.b=15%", 0.15), ("a.b=0.15", 0.15), ("a.b=normal 3 %", ("normal", 0.03))],
+)
+def test_a_share_with_and_without_a_blank(text, wanted):
+    """The first hour writes it as files do."""
+    from trunnion.cli.limits import _tolerance
+
+    path, found = _tolerance(None, text, "--tolerance")
+    assert path == "a.b" and found == (pytest.approx(wanted) if isinstance(wanted, float) else wanted)

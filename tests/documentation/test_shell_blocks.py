@@ -42,13 +42,20 @@ def of_consoles(name: str) -> Iterator[str]:
             yield from (command for command, _ in commands(block.text))
 
 
+def in_sentences(name: str) -> Iterator[str]:
+    """Whole commands within the page's sentences and tables; dots and capitals stand for the reader's own there."""
+    for command in re.findall(r"`(trunnion [^`\n]+)`", (ROOT / name).read_text(encoding="utf-8")):
+        if len(command.split()) > 2 and not re.search(r"…|\.\.\.|\b[A-Z]{3,}\b", command):
+            yield command
+
+
 WITH_LINES = tuple(name for name in PAGES if any(lines(name)))
 
 
 @pytest.mark.parametrize("name", PAGES)
 def test_commands_are_understood(name: str) -> None:
     group = typer.main.get_command(app)
-    for line in (*lines(name), *of_consoles(name)):
+    for line in (*lines(name), *of_consoles(name), *in_sentences(name)):
         words = shlex.split(line, comments=True)
         if words[0] == "trunnion":
             with group.make_context("trunnion", words[1:]) as context:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -24,9 +25,10 @@ def _damping(asked: CommandInput, text: str, key: str) -> str:
 
 
 def _tolerance(asked: CommandInput, text: str, key: str) -> tuple[str, object]:
-    """``PARAMETER=10%``, ``PARAMETER=0.1`` or ``PARAMETER=normal 3%``."""
+    """``PARAMETER=10%``, ``PARAMETER=10 %``, ``PARAMETER=0.1`` or ``PARAMETER=normal 3%``."""
     path, equals, given = text.rpartition("=")
-    kind, _, number = given.strip().rpartition(" ")
+    given = re.sub(r"\s+%", "%", given.strip())  # files write "10 %"
+    kind, _, number = given.rpartition(" ")
     try:
         share = float(number.removesuffix("%")) / (100 if number.endswith("%") else 1)
     except ValueError:
