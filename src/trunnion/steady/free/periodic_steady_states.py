@@ -146,13 +146,13 @@ def slopes_along(solved: SteadyStateCurve, values: Array) -> SteadyStateSlopes:
     return SteadyStateSlopes(
         solved,
         values,
-        motions.found & motions.resolved,
-        balance.period,
-        slopes,
-        shift,
-        drift,
-        solved.by_speed(motions.table),
-        np.abs(damping) * balance.period < 1e-12 * n,
+        found=motions.found & motions.resolved,
+        period=balance.period,
+        slopes=slopes,
+        shift=shift,
+        drift=drift,
+        by_speed=solved.by_speed(motions.table),
+        undamped=np.abs(damping) * balance.period < 1e-12 * n,
     )
 
 
