@@ -252,3 +252,40 @@ def test_a_clutch_between_two_that_are_braked() -> None:
     assert run.outcome.kind == "reached" and abs(run.speed).max() == 0
     on = run.then(1.0, torque=[A(on="motor", time=[0.0], torque=[25.0], between="steps")], friction=brakes[1:])
     assert on.speed[-1].tolist() == pytest.approx([5.0 / 3.0, 5.0 / 3.0], rel=1e-8)
+
+
+@pytest.mark.parametrize("on", ["motor", "load"])
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "-2*max(speed, 0) - 5",
+        "-5 - 2*min(speed, 0)",
+        "-4*max(speed, 0) + 4*min(speed, 0) + 12*sin(3*time)",
+        "-3*abs(speed)",
+    ],
+)
+def test_a_formula_that_bends_where_friction_stops(formula: str, on: str) -> None:
+    """Both switch at the same moment: against small steps of the equations, friction by hand."""
+    run = tn.transient(
+        pair(), 3.0, torque=[A(on="motor", formula=formula)], friction=[F(on=on, torque=10.0)], speed=20.0
+    )
+    assert run.outcome.kind == "reached"
+    acts = compile(formula, "formula", "eval")
+    names = {"max": max, "min": min, "abs": abs, "sin": np.sin}
+    twist, speeds, step = 0.0, [20.0, 20.0], 1e-4
+    rubbed = ["motor", "load"].index(on)
+    for i in range(30_000):
+        shaft = 1e3 * twist + speeds[0] - speeds[1]
+        torques = [eval(acts, names | {"speed": speeds[0], "time": i * step}) - shaft, shaft]
+        before = list(speeds)
+        for k in (0, 1):
+            if k != rubbed:
+                speeds[k] += step * torques[k]
+                continue
+            sense = np.sign(speeds[k]) or np.sign(torques[k]) * (abs(torques[k]) > 10.0)
+            speeds[k] += step * (torques[k] - 10.0 * sense) if sense else 0.0
+            if speeds[k] * sense < 0 and abs(torques[k]) <= 10.0:
+                speeds[k] = 0.0
+        twist += step * (sum((1, -1)[k] * (before[k] + speeds[k]) / 2 for k in (0, 1)))
+    assert run.speed[-1][rubbed] == pytest.approx(speeds[rubbed], abs=1e-9)
+    np.testing.assert_allclose(run.speed[-1], speeds, atol=0.02)

@@ -446,10 +446,29 @@ class Stepper:
         for first, several in self.groups.items():
             if not any(one.stated.at_rest and any(one.share(place.time)) for one in several):
                 senses.pop(first, None)  # nothing rubs yet
-            elif first not in senses:
+                continue
+            least = EQUAL * max(self.usual, abs(place.speed))
+            if first not in senses:
                 speed = self._of_station(place, first)[1]
-                senses[first] = float(np.sign(speed)) if abs(speed) > EQUAL * max(self.usual, abs(place.speed)) else 0.0
+                senses[first] = float(np.sign(speed)) if abs(speed) > least else 0.0
+            elif senses[first] and senses[first] * self._group_speed(place, first) <= least:
+                senses[first] *= not self._comes_to_rest(place, first)
         return replace(place, senses=senses)
+
+    def _group_speed(self, place: Place, first: int, later: float = 0.0) -> float:
+        """Speed [rad/s] of a group in a state that is told from the rotation that goes with the line, begun ``later``
+        [s] before."""
+        turning = place.speed + place.acceleration * later
+        return float(
+            place.state[self.topo.size + int(self.topo.unknown_of[first])] + self.topo.mean_speeds[first] * turning
+        )
+
+    def _comes_to_rest(self, place: Place, first: int) -> bool:
+        """Whether a group without speed in the sense it had loses more of it: where a formula bends at standstill, the
+        piece may end for that and not for the friction."""
+        self._write(place)
+        gained = self._rates(place)[self.topo.size + int(self.topo.unknown_of[first])]
+        return bool(place.senses[first] * (gained + self.topo.mean_speeds[first] * place.acceleration) <= 0)
 
     def _at_rest(self, place: Place, first: int) -> Place:
         """The same place, where a group has no speed at all."""
@@ -526,10 +545,10 @@ class Stepper:
         return float(self.numbers[torques + one.compliance]), one.holds * share
 
     def _overloaded(self, place: Place, trajectory: Trajectory) -> Outcome | None:
-        """The outcome of a run in which something stood or stuck beyond what it bears, in the piece that began at
-        ``place``."""
+        """The outcome of a run in which something stood or stuck beyond what it bears, or was driven by its friction,
+        in the piece that began at ``place``."""
         standing = [first for first, sense in place.senses.items() if sense == 0.0]
-        if not (standing or self.line.clutches) or not trajectory.steps:
+        if not (place.senses or self.line.clutches) or not trajectory.steps:
             return None
         full = max([c.holds for c in self.line.clutches] + [f.stated.at_rest for f in self.frictions])
         times = np.linspace(place.time, trajectory.time, CHECKS + 1)
@@ -541,6 +560,15 @@ class Stepper:
             pulls = [(first, *self._pull(at, first)) for first in standing]
             found = [(f"the disk {self.groups[f][0].stated.on} stands", pulled, most[0]) for f, pulled, most in pulls]
             found += [(f"{self.line.clutches[c].name} sticks", *self._carried(at, int(c))) for c in sticks]
+            for first, sense in place.senses.items():
+                if sense * self._group_speed(at, first, float(time) - place.time) < -EXCESS * max(
+                    self.usual, abs(place.speed)
+                ):
+                    words = (
+                        f"stopped at t = {time:.6g} s: the friction on {self.groups[first][0].stated.on} drives it; "
+                        f"what lies behind t = {place.time:.6g} s is not right"
+                    )
+                    return Outcome(False, "friction exceeded", words)
             for what, torque, most in found:
                 if abs(torque) > most + EXCESS * max(most, full):
                     words = (
