@@ -407,7 +407,7 @@ def test_an_address_holds_the_number_that_is_moved_and_how_far_it_may_go(path: s
 
 def test_changes_are_named_with_units() -> None:
     line = tn.loads(starter("two-shaft"))
-    shown = difference(dumps(line), line.replace("HookeJoint 1", angle="5 deg"))
+    shown = difference("before", dumps(line), line.replace("HookeJoint 1", angle="5 deg"))
     assert "<td>HookeJoint 1, angle</td><td>12 deg</td><td>5 deg</td>" in shown
 
 

@@ -6,6 +6,7 @@ import doctest
 import inspect
 import re
 import sys
+from importlib.util import find_spec
 from typing import Any
 
 import pytest
@@ -22,6 +23,8 @@ UNNAMED = (trunnion.ComputationError, trunnion.InputRemark, trunnion.Tolerance)
 """They take a text, or any number of an element by its own name."""
 SLOW = ("reproduce",)
 """Names whose examples take many seconds."""
+NEEDS = {"read_study": "zarr", "study_sensitivities": "zarr"}
+"""Names whose examples need a package of an extra."""
 RUNNER = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE, verbose=False)
 FINDER = doctest.DocTestFinder(recurse=False)
 
@@ -50,12 +53,19 @@ def described(name: str) -> set[str]:
     return {one.lstrip("*") for head in heads for one in head.split(", ")}
 
 
+def is_installed(package: str | None) -> bool:
+    """Whether what an example needs of an extra is there."""
+    return package is None or find_spec(package) is not None
+
+
 def with_slow(names: list[str]) -> list[Any]:
     """``names`` as parameters, those marked whose examples take long."""
     return [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in names]
 
 
-@pytest.mark.parametrize("name", with_slow([name for name in PUBLIC if examples(name)]))
+@pytest.mark.parametrize(
+    "name", with_slow([name for name in PUBLIC if examples(name) and is_installed(NEEDS.get(name))])
+)
 def test_examples_run(name: str) -> None:
     """Every line gives what stands below it."""
     failures: list[str] = []

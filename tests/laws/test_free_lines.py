@@ -213,10 +213,6 @@ REFUSED = [
         r'disk, "Disk 1" say, drive_share = 1$',
     ),
     (
-        lambda: tn.stability_chart(bent_pair(0.2, {}), ("speed", 30, 60, 4), ("Disk 1.inertia", 1, 2, 3)),
-        "is free–free and has joint angles: it is judged about its own periodic motion.*stability at single speeds",
-    ),
-    (
         lambda: tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1.0), tn.Disk(inertia=1.0, drive_share=1.0)]),
         r"Disk 1.drive_share = 1: shares the drive of a line that a ConstantSpeed drives; leave out the ConstantSpeed",
     ),
