@@ -47,7 +47,7 @@ radius = xr.open_dataset("x.nc", engine="h5netcdf").spectral_radius
 there = tn.stability(plain.replace("coil", stiffness=stiffness * (9 / 8) ** 4), 60.0)
 np.testing.assert_allclose(float(radius[-1, -1]), there.spectral_radius, atol=1e-8)
 """
-REFUSED = """    (lambda: tn.TorsionSpring(wire_diameter=0.01), "TorsionSpring.coil_diameter: is missing", ""),
+REFUSED = """    (lambda: tn.TorsionSpring(wire_diameter=0.01), "TorsionSpring.coil_diameter: is needed", ""),
     (lambda: tn.TorsionSpring(stiffness=-4), "TorsionSpring.stiffness = -4: must be positive", ""),
 """
 
