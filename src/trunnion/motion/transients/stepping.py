@@ -29,7 +29,7 @@ from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kern
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
-from trunnion.motion.transients.watched import Watched
+from trunnion.motion.transients.watched import WatchedValue
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
 from trunnion.results.speeds import about_speed
@@ -192,7 +192,7 @@ class Stepper:
                 return Found(pieces, place, Outcome(True, "crossed", words), crossed)
             place = hit.act(place)
 
-    def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[Watched]) -> Outcome:
+    def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[WatchedValue]) -> Outcome:
         """The outcome of a run whose integration ended at ``place``, and what of its torques is no number there."""
         if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
             return wrong
@@ -578,8 +578,8 @@ class Stepper:
 
     # What is watched.
 
-    def _watched(self, place: Place) -> list[Watched]:
-        core, found = watch_kernel(), list[Watched]()
+    def _watched(self, place: Place) -> list[WatchedValue]:
+        core, found = watch_kernel(), list[WatchedValue]()
         for k, one in enumerate(self.torques):
             for i, axis in enumerate(one.axes):
                 if axis.variable == "time":
@@ -592,33 +592,35 @@ class Stepper:
                     if np.isfinite(end):
                         level = (0.0, end + step * beside, 0.0, 0.0, 0.0)
                         found.append(
-                            Watched(kind, one.station, one.sense, level, step, True, self._stepped(k, i, step))
+                            WatchedValue(kind, one.station, one.sense, level, step, True, self._stepped(k, i, step))
                         )
         found += self._kinks()
         for first, sense in place.senses.items():
             if sense:
                 stopped = self._stopped(first)
-                found.append(Watched(core.STATION_SPEED, first, sense, (0.0,) * 5, -1, True, stopped))
+                found.append(WatchedValue(core.STATION_SPEED, first, sense, (0.0,) * 5, -1, True, stopped))
                 continue
             _, (bears, slope) = self._pull(place, first)
             level = (place.time, bears * (1 + LATER), slope, 0.0, 0.0)
             unknown = int(self.topo.unknown_of[first])
             for way in (1.0, -1.0):
-                found.append(Watched(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
+                found.append(WatchedValue(core.ON_UNKNOWN, unknown, way, level, 1, True, self._let_go(first, way)))
         if self.mean_speed is not None:
             level = (0.0, self.mean_speed, 0.0, 0.0, 0.0)
-            found.append(Watched(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
+            found.append(WatchedValue(core.MEAN_SPEED, 0, 1.0, level, 2, True, None, "line has the speed asked for"))
         return found + [self._asked(one) for one in self.crossings]
 
-    def _kinks(self) -> list[Watched]:
+    def _kinks(self) -> list[WatchedValue]:
         """Where formulas bend or jump: a new piece begins there, on the other side."""
-        core, found, at = watch_kernel(), list[Watched](), self.applied_at
+        core, found, at = watch_kernel(), list[WatchedValue](), self.applied_at
         for one, cell, program in zip(self.torques, self.cells, self.programs, strict=True):
             if one.formula is not None and one.acts(cell):
                 for kink in range(one.formula.kinks):
                     side = self.numbers[program + self.core.SIDES + kink]
                     level = (float(kink), 0.0, 0.0, 0.0, 0.0)
-                    found.append(Watched(core.KINK, at, 1.0, level, -1 if side > 0 else 1, True, lambda place: place))
+                    found.append(
+                        WatchedValue(core.KINK, at, 1.0, level, -1 if side > 0 else 1, True, lambda place: place)
+                    )
             at += self.core.PER_APPLIED
         return found
 
@@ -639,18 +641,18 @@ class Stepper:
         """A group that stood sets off."""
         return lambda place: replace(place, senses={**place.senses, first: way})
 
-    def _asked(self, one: LevelCrossing) -> Watched:
+    def _asked(self, one: LevelCrossing) -> WatchedValue:
         core, way = watch_kernel(), {"rising": 1, "falling": -1, "either": 2}[one.direction]
         level = (0.0, one.level, 0.0, 0.0, 0.0)
         if one.key in ("speed", "angle"):
             station = disk_station(self.line.assembly, one.of, "crossing")
             kind = core.STATION_SPEED if one.key == "speed" else core.STATION_ANGLE
             sense = float(np.sign(self.topo.mean_speeds[station]))
-            return Watched(kind, station, sense, level, way, one.ends, None, self._said(one))
+            return WatchedValue(kind, station, sense, level, way, one.ends, None, self._said(one))
         place = self.line.assembly.line.index(one.of)
         spring = next(e for e, c in enumerate(self.topo.compliances) if place in c.shafts)
         kind = {"torque": core.TORQUE, "twist": core.TWIST, "slip": core.TWIST_RATE}[one.key]
-        return Watched(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
+        return WatchedValue(kind, spring, 1.0, level, way, one.ends, None, self._said(one))
 
     def _spring_torques(self, place: Place) -> Array:
         """Torque [N m] of every spring as the numbers stand."""
@@ -673,7 +675,7 @@ class Stepper:
             return one.label
         return one.label.replace(f"{one.level:.6g} rad/s", about_speed(one.level, self.unit))
 
-    def _watch(self, watched: list[Watched]) -> Watch | None:
+    def _watch(self, watched: list[WatchedValue]) -> Watch | None:
         if not watched:
             return None
         core = watch_kernel()

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from trunnion.motion.transients.place import Place
 
 
-class Watched(NamedTuple):
+class WatchedValue(NamedTuple):
     """One watched value: kind, place, factor, level (since, four powers), direction; whether it ends the piece; what is
     then done, or None for a crossing of the user's, with its label."""
 
