@@ -16,34 +16,25 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.motion.passing.least_found import LeastFound, search, summary
+from trunnion.motion.passing.least_found import LeastFound, TriedValue, search, summary
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import ACCELERATION, trials_of
 from trunnion.results.counts import few
-from trunnion.results.fields import computed, coordinate, internal, labelled, members, variable
+from trunnion.results.fields import computed, coordinate, labelled, members, variable
 from trunnion.results.speeds import show_acceleration
 from trunnion.waiting import keeps_time
 
 
 @labelled
-class AccelerationTrial:
+class AccelerationTrial(TriedValue):
     """Passages with one acceleration of the rigid line, from every starting phase."""
 
     acceleration: float = variable("", "rad/s^2")
-    share: float = variable("", "1", "of the starting phases that passed", name="passed")
-    undecided: float = variable("", "1", "of the starting phases")
-    worst: str = variable("", "", "how the passages ended that did not pass", name="otherwise")
-    kinds: tuple[str, ...] = internal("how each ended, by starting phase")
 
     @property
     def value(self) -> float:
         """The acceleration [rad/s²]."""
         return self.acceleration
-
-    @property
-    def passes(self) -> bool:
-        """Whether the line passed from every starting phase."""
-        return self.share == 1.0
 
 
 @labelled
@@ -154,7 +145,7 @@ def least_acceleration(
     def found(made: Sequence[tuple[float, list[str]]], band: Array, stopped: str) -> LeastAcceleration:
         ordered = sorted(made, key=lambda one: one[0])
         return LeastAcceleration(
-            trials=tuple(AccelerationTrial(value, *summary(kinds), tuple(kinds)) for value, kinds in ordered),
+            trials=tuple(AccelerationTrial(*summary(kinds), acceleration=value) for value, kinds in ordered),
             phases=trials.phases, drive=named, first=trials.first, last=trials.last, accuracy=accuracy,
             tolerance=tolerance, band=band, stopped=stopped, unit=speed_unit(description),
         )  # fmt: skip

@@ -13,32 +13,23 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.coefficients import Assembly
-from trunnion.motion.passing.least_found import LeastFound, search, summary
+from trunnion.motion.passing.least_found import LeastFound, TriedValue, search, summary
 from trunnion.motion.passing.start import ends_of, lasting
 from trunnion.motion.passing.trials import FACTOR, trials_of
-from trunnion.results.fields import computed, coordinate, internal, labelled, members, variable
+from trunnion.results.fields import computed, coordinate, labelled, members, variable
 from trunnion.waiting import keeps_time
 
 
 @labelled
-class DriveTrial:
+class DriveTrial(TriedValue):
     """Passages with one factor of the drive torque, from every starting phase."""
 
     factor: float = variable("", "1")
-    share: float = variable("", "1", "of the starting phases that passed", name="passed")
-    undecided: float = variable("", "1", "of the starting phases")
-    worst: str = variable("", "", "how the passages ended that did not pass", name="otherwise")
-    kinds: tuple[str, ...] = internal("how each ended, by starting phase")
 
     @property
     def value(self) -> float:
         """The factor."""
         return self.factor
-
-    @property
-    def passes(self) -> bool:
-        """Whether the line passed from every starting phase."""
-        return self.share == 1.0
 
 
 @labelled
@@ -139,7 +130,7 @@ def least_drive(
     def found(made: Sequence[tuple[float, list[str]]], band: Array, stopped: str) -> LeastDrive:
         ordered = sorted(made, key=lambda one: one[0])
         return LeastDrive(
-            trials=tuple(DriveTrial(value, *summary(kinds), tuple(kinds)) for value, kinds in ordered),
+            trials=tuple(DriveTrial(*summary(kinds), factor=value) for value, kinds in ordered),
             phases=trials.phases, drive=trials.drive, first=trials.first, last=trials.last, accuracy=accuracy,
             tolerance=tolerance, band=band, stopped=stopped, unit=speed_unit(trials.line),
         )  # fmt: skip

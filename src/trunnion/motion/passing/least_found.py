@@ -19,7 +19,7 @@ from trunnion.errors import InputError
 from trunnion.motion.passing.boundary_nature import BoundaryNature, boundary_nature
 from trunnion.motion.passing.trials import Trials, passes
 from trunnion.results.counts import counted
-from trunnion.results.fields import attribute, coordinate, internal, labelled
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.speeds import rounded_speed
@@ -29,6 +29,21 @@ from trunnion.waiting import time_is_up
 MOST_POINTS = 10_000
 WIDE = 8.0
 """Accuracies that the even band about the boundary reaches to either side."""
+
+
+@labelled
+class TriedValue:
+    """Passages with one value, of which the subclass says what it is, from every starting phase."""
+
+    share: float = variable("", "1", "of the starting phases that passed", name="passed")
+    undecided: float = variable("", "1", "of the starting phases")
+    worst: str = variable("", "", "how the passages ended that did not pass", name="otherwise")
+    kinds: tuple[str, ...] = internal("how each ended, by starting phase")
+
+    @property
+    def passes(self) -> bool:
+        """Whether the line passed from every starting phase."""
+        return self.share == 1.0
 
 
 @labelled
@@ -206,10 +221,10 @@ def _around(now: LeastFound, reach: float, low: float, high: float, count: int) 
     return np.geomspace(max(float(np.nanmin(edges)) / reach, low), min(float(np.nanmax(edges)) * reach, high), count)
 
 
-def summary(kinds: Sequence[str]) -> tuple[float, float, str]:
-    """Share that passed, share undecided, and how the others ended."""
+def summary(kinds: Sequence[str]) -> tuple[float, float, str, tuple[str, ...]]:
+    """Share that passed, share undecided, how the others ended, and how each did: the fields of a ``TriedValue``."""
     other = sorted({kind for kind in kinds if not passes([kind])})
-    return passes(kinds) / len(kinds), list(kinds).count("undecided") / len(kinds), " or ".join(other)
+    return passes(kinds) / len(kinds), list(kinds).count("undecided") / len(kinds), " or ".join(other), tuple(kinds)
 
 
 def _halvings(low: float, high: float, count: int, accuracy: float) -> int:
