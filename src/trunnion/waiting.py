@@ -160,6 +160,15 @@ def time_kept(reserve: float, share: float) -> Iterator[None]:
         _LIMIT.reset(token)
 
 
+def uncounted(seconds: float) -> None:
+    """Processor time that limits of it do not count: of what happens once on a machine, as compiling does."""
+    limit = _LIMIT.get()
+    while limit is not None:
+        if limit.clock is time.process_time:
+            limit.ends += seconds
+        limit = limit.outer
+
+
 def limited() -> bool:
     """Whether there is a limit, so that work is better done in pieces that are of use by themselves."""
     return _LIMIT.get() is not None

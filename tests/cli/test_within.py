@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
+import subprocess
 import sys
 import threading
 import time
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,9 +22,10 @@ from trunnion.equations.coefficients import assemble
 from trunnion.numerics.threads import on_threads
 from trunnion.response.orders.response import response_about
 from trunnion.response.ranges.largest import SearchedQuantity, search
-from trunnion.waiting import OutOfTime, keep_time, time_is_up, time_limit
+from trunnion.waiting import OutOfTime, keep_time, time_is_up, time_limit, uncounted
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
+PTO = Path(__file__).parents[2] / "examples" / "pto-shaft.toml"
 ENDED = "ended the search"
 PATIENCE = 150.0
 """Seconds beyond its limit that a command may take where it compiles first, on a busy machine."""
@@ -191,6 +195,33 @@ def test_limits_within_one_another_and_on_threads():
     assert 1 <= len(seen) <= 2
 
 
+def test_what_happens_once_on_a_machine_is_no_processor_time_of_a_limit():
+    def work(seconds: float) -> None:
+        begun = time.process_time()
+        while time.process_time() - begun < seconds:
+            pass
+
+    with time_limit(0.2, of_processor=True) as outer, time_limit(30.0) as elapsed, time_limit(0.1, of_processor=True):
+        ends = elapsed.ends
+        work(0.3)
+        uncounted(0.15)
+        assert not outer.over and time_is_up()  # the inner one had 0.1 s, and 0.05 s were its own
+        uncounted(0.1)
+        assert not time_is_up() and elapsed.ends == ends
+
+
+def test_compiling_takes_nothing_from_the_time_of_a_report():
+    import numba
+
+    with time_limit(0.5, of_processor=True) as limit, output.compile_notice():
+        from trunnion.numerics import jit  # noqa: F401
+
+        for k in range(3):
+            numba.njit(eval(f"lambda x: sum([x[i] * {k} for i in range(len(x))])"))(np.arange(3.0))
+        ends = limit.ends - limit.clock()
+        assert ends > 0.3
+
+
 def test_another_thread_can_stop_an_analysis():
     """The verdict that a stop leaves is that of what was searched: nothing is satisfied in silence."""
     shafts, disk, joint = [tn.Shaft(stiffness=9e3 + k, damping=2.0) for k in range(11)], tn.Disk(inertia=0.2), 0.1
@@ -266,3 +297,15 @@ def test_a_study_of_fewer_scrambles_has_a_wider_interval():
     np.testing.assert_allclose(part.growth_rate[0], whole.growth_rate[0, : part.samples], rtol=1e-6, atol=1e-9)
     low, high = part.interval
     assert low <= whole.probability + 0.1 and high >= whole.probability - 0.1
+
+
+@pytest.mark.slow
+def test_a_first_report_has_its_chart(tmp_path, monkeypatch):
+    """Where everything has to be compiled first too."""
+    monkeypatch.chdir(tmp_path)
+    environment = {**os.environ, "TRUNNION_CACHE": str(tmp_path / "cache")}
+    told = subprocess.run(
+        [sys.executable, "-m", "trunnion", "analyze", str(PTO)], env=environment, capture_output=True, text=True
+    )
+    assert told.returncode == 0 and "compiling once" in told.stderr
+    assert "chart was not computed" not in told.stdout and "stability-chart.nc" in told.stdout

@@ -23,7 +23,7 @@ from trunnion._version import __version__
 from trunnion.cli.ending import EndedBy
 from trunnion.errors import ComputationError
 from trunnion.results.plain import plain
-from trunnion.waiting import OutOfTime, TimeLimit, seconds_left, time_limit
+from trunnion.waiting import OutOfTime, TimeLimit, seconds_left, time_limit, uncounted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -220,6 +220,25 @@ class _Clock:
         return f"about {min(whole - worked, seconds_left()):.0f} s left"
 
 
+class _CompiledHere(threading.local):
+    """Processor time that a thread spends on compiling, which limits of processor time do not count."""
+
+    depth, since = 0, 0.0
+
+    def begin(self) -> None:
+        if not self.depth:
+            self.since = time.thread_time()
+        self.depth += 1
+
+    def end(self) -> None:
+        self.depth = max(0, self.depth - 1)
+        if not self.depth:
+            uncounted(time.thread_time() - self.since)
+
+
+_COMPILED = _CompiledHere()
+
+
 @contextmanager
 def compile_notice() -> Iterator[_Clock]:
     """Says so once if something has to be compiled, which otherwise looks like a hang, and how long it took.
@@ -268,9 +287,11 @@ def _listening(clock: _Clock) -> AbstractContextManager[Any]:
     class Notice(event.Listener):  # type: ignore[misc]
         def on_start(self, event: Any) -> None:
             clock.begin()
+            _COMPILED.begin()
 
         def on_end(self, event: Any) -> None:
             clock.end()
+            _COMPILED.end()
 
     listening: AbstractContextManager[Any] = event.install_listener("numba:compile", Notice())
     return listening

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 DRAWN = 3.0
 """Seconds that the pictures of a report take: with less left than that none is made."""
 REST, LEAST = 10.0, 0.05
-"""Seconds of processor time that report and chart may take where no time is given; seconds at least where it is."""
+"""Seconds of processor time, compiling not counted, that report and chart may take where no time is given; seconds at
+least where it is."""
 
 
 def analyze(
