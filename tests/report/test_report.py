@@ -12,9 +12,13 @@ import pytest
 
 import trunnion as tn
 from trunnion.driveline.starter import starter
+from trunnion.equations.coefficients import assemble
 from trunnion.pictures.driveline_sketch import draw as draw_sketch
+from trunnion.reporting.overview_findings import response_findings
 from trunnion.reporting.report import Report
 from trunnion.reporting.tables import TIED, checks, with_signs
+from trunnion.reporting.under_load import loaded_motions
+from trunnion.results.words import Words
 
 TEXT = """
 format = 1
@@ -254,3 +258,19 @@ def test_names_of_a_row_end_above_its_branch():
     bend = next(box for text, box in texts.items() if text.startswith("β"))
     names = [box for text, box in texts.items() if "shaft" in text and box.x1 > bend.x0]
     assert len(names) >= 3 and all(box.y0 > bend.y1 for box in names)
+
+
+def test_load_cases_without_a_motion_for_one_reason_are_told_together() -> None:
+    mill = tn.loads(starter("rolling-mill"))
+    assert mill.operation is not None
+    cases = ", ".join(["as described", *(case.name for case in mill.operation.load_cases)])
+    (told,) = loaded_motions(mill, None)[1]
+    assert told.startswith(f"Motion under load ({cases}): strip: closes a loop")
+
+
+def test_what_joints_force_is_told_as_a_part_where_something_else_excites() -> None:
+    mill = tn.loads(starter("rolling-mill"))
+    alone = mill.replace("upper pinion", excitation=())
+    for line, part in ((mill, "their part of the torque"), (alone, "the torque")):
+        (told,) = response_findings(assemble(line), tn.resonance_speeds(line), (6.3, 44.0), Words("rpm"))
+        assert f": under the loads as described {part} of motor shaft rises to" in told.sentence

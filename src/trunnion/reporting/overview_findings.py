@@ -139,7 +139,8 @@ def response_findings(
     places = np.clip([r.speed for r in forced], low, high)
     usual = np.linspace(low, high, 2 * len(forced) + 9)
     try:
-        sweep = speed_sweep(unexcited(assembly.line), np.concatenate([places, usual]))
+        joints_alone = unexcited(assembly.line)
+        sweep = speed_sweep(joints_alone, np.concatenate([places, usual]))
     except (InputError, ComputationError, OutOfTime):  # without a linear response, which the checks say
         return
     torque = sweep.torque_amplitude[: len(places)]
@@ -157,8 +158,9 @@ def response_findings(
     else:
         operation = assembly.line.operation
         loads = "under the loads as described " if operation and operation.load_cases else ""
+        part = "the torque" if joints_alone == assembly.line else "their part of the torque"
         said = (
-            f"{said}: {loads}the torque of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N m at "
+            f"{said}: {loads}{part} of {sweep.shafts[shaft]} rises to ±{torque[which, shaft]:.4g} N m at "
             f"{words.rounded(at)}, {raised[which, shaft]:.2g} times its median over the range."
         )
     yield Finding(Gravity.CAUTION, said)

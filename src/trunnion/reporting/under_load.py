@@ -31,21 +31,23 @@ def loaded_motions(line: Driveline, speed: float | None) -> tuple[tuple[LoadedMo
         return (), ()
     cases = {AS_DESCRIBED: line} if _loaded(line) else {}
     cases |= {case.name: line.with_load(case.name) for case in (operation.load_cases if operation else ())}
-    found, left_out = [], []
+    found: list[LoadedMotion] = []
+    without: dict[str, list[str]] = {}  # why, and the cases of which that is said
     for name, loaded in cases.items():
         try:
             response = periodic_response(loaded, speed)
         except (InputError, ComputationError) as error:
-            left_out.append(f"Motion under load ({name}): {error}")
+            without.setdefault(str(error), []).append(name)
             continue
         except OutOfTime as error:
-            left_out.append(f"Motion under load ({name}): not computed, {error.why}")
+            without.setdefault(f"not computed, {error.why}", []).append(name)
             continue
         assert isinstance(response, PeriodicResponse)
         if response.outcome.ok:
             found.append(LoadedMotion(name, response))
         else:
-            left_out.append(f"Motion under load ({name}): {response.outcome}")
+            without.setdefault(str(response.outcome), []).append(name)
+    left_out = (f"Motion under load ({', '.join(names)}): {why}" for why, names in without.items())
     return tuple(found), tuple(left_out)
 
 
