@@ -135,7 +135,7 @@ def _shown(result: Study, path: str) -> ShownQuantity:
     if path and path not in known:
         raise InputError("is no quantity of the study", key="quantity", value=path, remedy=nearest(path, known))
     one = result.quantities[known.index(path) if path else 0]
-    axis = Words(result.unit).parameter(one.path, one.unit or "1")
+    axis = result.quantity_axis(one)
     done = np.asarray(result.status == DONE)
     if not done.any():
         raise ComputationError(f"{result.store}: no point is computed yet")

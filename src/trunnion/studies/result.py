@@ -16,8 +16,8 @@ from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, internal, labelled
 from trunnion.results.outcome import Outcome
+from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.result import Result
-from trunnion.results.units import in_words
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.studies.design import StudyAxis, StudyDesign, in_axes
 from trunnion.studies.points import DONE, FAILED, MISSING
@@ -137,6 +137,12 @@ class Study(Result):
         )
         yield from super().declared()
 
+    def quantity_axis(self, one: StudyQuantity) -> QuantityAxis:
+        """How a quantity reads, on axes and in sentences: speeds in the line's unit, frequencies in Hz beside rpm."""
+        named = one.path.rpartition(".")[2]
+        words = self.words.of_frequencies if "frequency" in named else self.words
+        return words.parameter(one.path, one.unit or "1")
+
     def _lines(self) -> Iterator[str]:
         where = f"{counted(self.points, 'point')}{in_axes(self.design.shape)}"
         yield f"{self.analysis} at {where}: {self.done} done, {self.failed} failed"
@@ -169,12 +175,9 @@ class Study(Result):
             if not len(known):
                 return "not finite anywhere"
             low, middle, high = np.quantile(known, [0.0, 0.5, 1.0])
-            unit = one.unit or "1"
-            if in_words(low, unit, 4) == in_words(high, unit, 4):
-                return f"{in_words(low, unit, 4)} at all of them"
-            return (
-                f"{in_words(low, unit, 4)} to {in_words(high, unit, 4)}, half of them below {in_words(middle, unit, 4)}"
-            )
+            axis = self.quantity_axis(one)
+            least, half, most = (axis.number(value, 4) for value in (low, middle, high))
+            return f"{least} at all of them" if least == most else f"{least} to {most}, half of them below {half}"
         words, counts = np.unique(one.shown(values), return_counts=True)
         order = np.argsort(-counts, kind="stable")
         said = [f"{words[k] or 'none'} at {counts[k]}" for k in order[:6]]
