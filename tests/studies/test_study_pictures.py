@@ -166,10 +166,12 @@ def test_refusals(gridded, options, message) -> None:
     assert message in str(told.value)
 
 
-@pytest.mark.parametrize(("speed", "unit"), [("1500 rpm", "Hz"), ("150 rad/s", "rad/s")])
-def test_a_frequency_has_one_unit_in_print_and_picture(tmp_path: Path, speed: str, unit: str) -> None:
+@pytest.mark.parametrize("unit", ["Hz", "rad/s"])
+def test_a_frequency_has_one_unit_in_print_and_picture(tmp_path: Path, unit: str) -> None:
     disks = [tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.8)]
-    line = tn.Driveline([tn.ConstantSpeed(), *disks], operation=tn.Operation(speed=speed))
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), *disks], operation=tn.Operation(speed="1500 rpm") if unit == "Hz" else None
+    )
     path = {"path": "Disk 1.inertia", "low": 0.5, "high": 1.0, "points": 5}
     asked = {"line": "", "analysis": "natural_frequencies", "quantities": "frequency[0]", "parameter": [path]}
     found = tn.study({**asked, "store": str(tmp_path / "a.zarr")}, line=line, workers=0)
