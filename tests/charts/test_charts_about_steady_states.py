@@ -277,3 +277,40 @@ def test_regions_and_windows_of_a_free_line() -> None:
     assert any(Pair(**{**vars(pair), "speed": s, "angles": (0.35, end + 2e-2)}).radius() > 1 for s in grid)
     damped = tn.minimum_damping(line, (108.0, 112.0), maximum=10.0, rows=3)
     assert damped.smallest is not None
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        Pair(True, 63.0, (0.35, 0.3), load=700.0),
+        Pair(True, 110.0, (0.5, 0.45), load=-1200.0, viscous=2.0),
+        Pair(True, 41.0, (0.6, 0.2), damping=(40.0, 30.0), load=2000.0),
+        Pair(True, 63.0, (0.35, 0.3), load=2500.0),
+    ],
+)
+def test_single_speeds_are_judged_about_the_motion_too(pair: Pair) -> None:
+    """Also where rigid shafts give another radius by far more than the error."""
+    one = tn.stability(pair.description(), pair.speed, about_steady_state=True)
+    true = pair.radius() ** (one.period / np.pi)
+    assert abs(one.spectral_radius - true) <= one.error_estimate + 3e-7
+    assert abs(tn.stability(pair.description(), pair.speed).spectral_radius - true) > 1e-5
+    assert one.set_aside == 0
+    assert "judged about the line's own periodic motion\n" in str(one)
+
+
+def test_stages_are_judged_where_the_motion_meets_them() -> None:
+    """A spring whose stages lie beyond the motion is judged as the stage that it stays in; one whose motion goes
+    through two stages, by both."""
+    pair = Pair(True, 63.0, (0.35, 0.3), load=700.0)
+    parts = list(pair.description().elements)
+
+    def radius(knee: float) -> float:
+        staged = tn.PiecewiseShaft.symmetric([(12e3, knee), (6e3, 1.0)], damping=2.0)
+        line = tn.Driveline([*parts[:5], staged, parts[6]])
+        return tn.stability(line, pair.speed, about_steady_state=True).spectral_radius
+
+    stiff = tn.Driveline([*parts[:5], tn.Shaft(stiffness=12e3, damping=2.0), parts[6]])
+    one = tn.stability(stiff, pair.speed, about_steady_state=True).spectral_radius
+    assert radius(0.9) == pytest.approx(one, abs=1e-8)
+    mean = 700.0 / 12e3
+    assert abs(radius(mean) - one) > 1e-4

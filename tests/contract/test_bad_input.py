@@ -1375,6 +1375,14 @@ PYTHON = [
         "leave it out",
     ),
     (
+        lambda: tn.stability(
+            tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]), 10.0,
+            about_steady_state=True,
+        ),
+        "driveline.about_steady_state = True: has straight joints",
+        "leave it out",
+    ),
+    (
         lambda: tn.stability_chart(
             tn.PeriodicLinearFamily(np.pi, lambda tau, a: (np.eye(1), np.eye(1), np.eye(1)), 1, {"a": 1.0}),
             ("a", 0.0, 1.0, 3), ("a", 0.0, 1.0, 3), about_steady_state=True,

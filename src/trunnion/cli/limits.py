@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import trunnion as tn
 from trunnion.cli.command_input import CommandInput, InputAttribute, NumberBounds, OptionReader
-from trunnion.cli.options import Line, Progress, Speed, SpeedRange, SpeedUnit
+from trunnion.cli.options import AboutSteadyState, Line, Progress, Speed, SpeedRange, SpeedUnit
 from trunnion.cli.places import PICTURES_AND_DATA, CommandOutput
 from trunnion.cli.readers import file_of_line, place_of_line, read_box_range, read_speed
 from trunnion.cli.typed import Command
@@ -55,6 +55,7 @@ def tongues(
     x: Annotated[Box, OptionReader(read_box_range, "speed")],
     y: Annotated[Box, OptionReader(read_box_range, "HookeJoint *.angle")],
     speed: Speed,
+    about_steady_state: AboutSteadyState = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -63,7 +64,9 @@ def tongues(
     --x PARAMETER:LOW:HIGH  Or PARAMETER for the file's range.
     --y PARAMETER:LOW:HIGH[:ROWS]  Or an angle alone.
     """
-    found = tn.tongues(line, x[0], y[0], speed=speed, rows=y[1], progress=progress).in_unit(unit)
+    found = tn.tongues(
+        line, x[0], y[0], speed=speed, rows=y[1], about_steady_state=about_steady_state, progress=progress
+    ).in_unit(unit)
     boundaries = found.data[["of_tongue", "boundary_x", "boundary_y"]]
     return CommandOutput(found, table=boundaries)
 
@@ -76,6 +79,7 @@ def minimum_damping(
     maximum: float = 100.0,
     speeds: SpeedRange,
     margin: float = 0.0,
+    about_steady_state: AboutSteadyState = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -85,7 +89,10 @@ def minimum_damping(
     --maximum  The largest value of it, SI units.
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
-    found = tn.minimum_damping(line, speeds, damping=damping, maximum=maximum, margin=margin, progress=progress)
+    found = tn.minimum_damping(
+        line, speeds, damping=damping, maximum=maximum, margin=margin, about_steady_state=about_steady_state,
+        progress=progress,
+    )  # fmt: skip
     return CommandOutput(found.in_unit(unit))
 
 
@@ -96,6 +103,7 @@ def stable_windows(
     parameter: Annotated[Box, OptionReader(read_box_range, "HookeJoint *.angle")],
     speeds: SpeedRange,
     margin: float = 0.0,
+    about_steady_state: AboutSteadyState = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -105,7 +113,9 @@ def stable_windows(
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     ends, rows = parameter
-    found = tn.stable_windows(line, *ends, speeds, margin=margin, rows=rows, progress=progress)
+    found = tn.stable_windows(
+        line, *ends, speeds, margin=margin, rows=rows, about_steady_state=about_steady_state, progress=progress
+    )
     return CommandOutput(found.in_unit(unit))
 
 

@@ -32,6 +32,10 @@ Line = Annotated["tn.Driveline", FILE, CommandSubject(loaded_line, {"unit": Unit
 """Under its own torques, or those of a load case."""
 LineOfFile = Annotated["tn.Driveline", FILE, CommandSubject(line_of_file, {"unit": Unit})]
 """Under its own torques."""
+AboutSteadyState = Annotated[
+    bool,
+    typer.Option("--about-steady-state", help="About the motion that the line really makes, not that of rigid shafts."),
+]
 SpeedUnit = Annotated[str, InputAttribute("unit")]
 """Of the speeds that are printed."""
 Progress = Callable[[float], None]

@@ -11,7 +11,7 @@ import typer
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, OptionReader
-from trunnion.cli.options import Line, Progress, SpeedUnit
+from trunnion.cli.options import AboutSteadyState, Line, Progress, SpeedUnit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import is_number, range_of, read_even_axis, read_speed
 from trunnion.cli.typed import Command
@@ -190,6 +190,7 @@ def stable_limit(
     speeds: EvenSpeeds,
     margin: float = 0.0,
     between: bool = True,
+    about_steady_state: AboutSteadyState = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -202,8 +203,9 @@ def stable_limit(
     """
     label, low, high, points = parameter
     result = tn.stable_limit(
-        line, label, speeds, low=low, high=high, margin=margin, between=between, scan=points - 1, progress=progress
-    ).in_unit(unit)
+        line, label, speeds, low=low, high=high, margin=margin, between=between, scan=points - 1,
+        about_steady_state=about_steady_state, progress=progress,
+    ).in_unit(unit)  # fmt: skip
     return CommandOutput(
         result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
         content=lambda: _limit_json(result),

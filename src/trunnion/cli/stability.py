@@ -13,7 +13,18 @@ import typer
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, CommandSubject, NumberBounds, OptionReader, Texts
-from trunnion.cli.options import FILE, SPEED, Line, LineOfFile, LoadCase, Progress, Speed, SpeedUnit, Unit
+from trunnion.cli.options import (
+    FILE,
+    SPEED,
+    AboutSteadyState,
+    Line,
+    LineOfFile,
+    LoadCase,
+    Progress,
+    Speed,
+    SpeedUnit,
+    Unit,
+)
 from trunnion.cli.places import DEFAULT_FOLDER, NOTHING, CommandOutput, write_result
 from trunnion.cli.readers import line_of_file, loaded_line, read_axis, read_points, read_speed, read_time
 from trunnion.cli.typed import Command, Json
@@ -214,11 +225,13 @@ def _frequencies(file: str, texts: Texts) -> CommandInput:
 
 
 @Command("stability", writes=NOTHING)
-def stability(line: Line, *, speed: Speed, unit: SpeedUnit) -> CommandOutput:
+def stability(
+    line: Line, *, speed: Speed, unit: SpeedUnit, about_steady_state: AboutSteadyState = False
+) -> CommandOutput:
     """Example: trunnion stability truck.toml --speed "1500 rpm" """
     from trunnion.cli.report import stability_json
 
-    found = tn.stability(line, speed).in_unit(unit)
+    found = tn.stability(line, speed, about_steady_state=about_steady_state).in_unit(unit)
     return CommandOutput(
         found,
         content=lambda: stability_json(found),
@@ -236,7 +249,7 @@ def stability_chart(
     speed: Speed,
     points: Annotated[tuple[int, int], OptionReader(_size, "200x150")],
     unit: SpeedUnit,
-    about_steady_state: bool = False,
+    about_steady_state: AboutSteadyState = False,
     progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
@@ -244,7 +257,6 @@ def stability_chart(
     --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
     --y PARAMETER:LOW:HIGH[:POINTS][:log]  The same.
     --points NXxNY  Points along x and y where not said there.
-    --about-steady-state  About the motion that the line really makes, not that of rigid shafts.
     """
     from trunnion.cli.report import chart_json, chart_text
 

@@ -52,6 +52,31 @@ def refuse_periodic_base(assembly: Assembly, remedy: str, *, bends: bool = False
         )
 
 
+def require_own_motion(assembly: Assembly, table: Array) -> None:
+    """Refuse lines that turn evenly at all rows of ``table`` to who asks for the periodic motion they make.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if not has_joint_angles(assembly, table):
+        raise InputError(
+            "has straight joints, and turns with its shafts twisted by its loads alone", element="driveline",
+            key="about_steady_state", value=True, remedy="leave it out",
+        )  # fmt: skip
+
+
+def require_no_steady_state(about_steady_state: bool) -> None:
+    """Refuse the motion of a driveline to equations of one's own.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if about_steady_state:
+        raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
+
+
 def refuse_dragged(assembly: Assembly) -> None:
     """Refuse a line whose motion does not repeat in one way alone, as what a damper alone drags may stand anywhere.
 

@@ -22,8 +22,9 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.first_order import LARGEST_DENSE
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
 from trunnion.equations.steady_base import (
-    has_joint_angles,
     has_periodic_base,
+    require_no_steady_state,
+    require_own_motion,
     require_steady_base,
     require_tree,
 )
@@ -140,12 +141,6 @@ def _always_about_steady_state(assembly: Assembly, x: AxisRequest, y: AxisReques
     return has_periodic_base(assembly, corners)
 
 
-def require_no_steady_state(about_steady_state: bool) -> None:
-    """Refuse the motion of a driveline to a family of one's own."""
-    if about_steady_state:
-        raise InputError("belongs to drivelines", key="about_steady_state", value=True, remedy="leave it out")
-
-
 def _steady_state_task(
     assembly: Assembly, x: AxisRequest, y: AxisRequest, speed: float | str | None, analysis: str
 ) -> Task:
@@ -165,11 +160,7 @@ def _own_axes(
     """As ``_axes_of``, and the motions over both axes."""
     require_period(assembly.line, assembly.topology)
     across, up, said, base = _axes_of(assembly, x, y, speed)
-    if not has_joint_angles(assembly, _corners(assembly, across, up, base)):
-        raise InputError(
-            "has straight joints, and turns with its shafts twisted by its loads alone", element="driveline",
-            key="about_steady_state", value=True, remedy="leave it out",
-        )  # fmt: skip
+    require_own_motion(assembly, _corners(assembly, across, up, base))
     from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 
     return across, up, said, base, SteadyStateChart.of(assembly, _request(across), _request(up), base)

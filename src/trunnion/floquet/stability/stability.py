@@ -22,7 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
-from trunnion.equations.steady_base import has_periodic_base
+from trunnion.equations.steady_base import has_periodic_base, require_no_steady_state, require_own_motion
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
@@ -91,6 +91,7 @@ class Stability(Result):
     left_out: tuple[Finding, ...] = internal("what the line has and this does not count", default=())
     unit: str = internal("of speeds in print", default="rad/s")
     extra_torque: float | None = internal(EXTRA, "N m at the input", default=None)
+    about_steady_state: bool = attribute("whether about the line's own periodic motion", default=False)
     dragged: int = internal("how many of those set aside belong to dampers without a spring", default=0)
     speed_sentence: str = internal(
         "of a free–free line with joint angles none of whose torques depends on the speed", default=""
@@ -179,11 +180,12 @@ class Stability(Result):
         if self.set_aside > self.dragged:
             many = self.set_aside - self.dragged
             yield f"  {SET_ASIDE.get(many, f'the {many} multipliers at 1 of rigid rotations are set aside')}"
-        if self.extra_torque is not None:
-            yield (
-                f"  judged about the line's own periodic motion, for which the drives give {self.extra_torque:.4g} N m "
-                "beyond the balance of the loads"
+        if self.about_steady_state:
+            extra = self.extra_torque
+            given = (
+                "" if extra is None else f", for which the drives give {extra:.4g} N m beyond the balance of the loads"
             )
+            yield f"  judged about the line's own periodic motion{given}"
         if self.speed_sentence:
             yield f"  {self.speed_sentence}"
         if self.response is not None:
@@ -198,6 +200,7 @@ def stability(
     *,
     tolerance: float = 1e-10,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
 ) -> Stability:
     """Floquet stability of ``line`` at input ``speed`` [rad/s], with the linear forced response.
 
@@ -209,11 +212,15 @@ def stability(
     statically_twisted : linearise about the line twisted by its load torques (joint phases and η′T̄);
         False takes zero twist, as S1 and S3 do. A free–free line with joint angles is judged about its own periodic
         motion, twist and all, whatever this says.
+    about_steady_state : about the periodic motion that the line really makes, under its loads and joints and without
+        its excitations, instead of the motion of rigid shafts: the one that shooting finds from the line twisted by
+        its loads. A free–free line with joint angles is always judged about it.
 
     Raises
     ------
-    InputError : no speed; a line without inertia, period or steady base motion.
-    ComputationError : the integration did not settle.
+    InputError : no speed; a line without inertia, period or steady base motion; straight joints with
+        ``about_steady_state``.
+    ComputationError : the integration did not settle, or no periodic motion was found.
 
     Examples
     --------
@@ -228,12 +235,15 @@ def stability(
     if isinstance(line, PeriodicLinearSystem):
         if speed is not None:
             raise InputError("belongs to a driveline; this system carries its own rate", key="speed", value=speed)
+        require_no_steady_state(about_steady_state)
         scaled, nothing = np.array(line.frequencies) * line.period / np.pi, np.zeros((2 * line.size, 0))
         run = propagated(line, tolerance)
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
     assembly = assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
-    if has_periodic_base(assembly):
+    if about_steady_state:
+        require_own_motion(assembly, table)
+    if about_steady_state or has_periodic_base(assembly):
         found = _about_steady_state(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
@@ -285,7 +295,7 @@ def _named(
 
 
 def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> Stability:
-    """Of a free line with angled joints, which no motion of rigid shafts stands for."""
+    """Of a line with angled joints; no motion of rigid shafts stands for one that is free–free."""
     topo = assembly.topology
     turns = require_period(assembly.line, topo)
     from trunnion.steady.free.periodic_steady_state import periodic_steady_state
@@ -315,8 +325,9 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
         forced=partial(linear_response, assembly, speed),
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
-        set_aside=1,
-        extra_torque=orbit.values[-1],
+        set_aside=int(topo.free),
+        about_steady_state=True,
+        extra_torque=orbit.values[-1] if topo.free else None,
         speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
     )
 

@@ -1,4 +1,5 @@
-"""A free–free line with joint angles, about its own periodic motion: the base of its stability.
+"""A line with joint angles, about its own periodic motion: the base of the stability of one that is free–free, and of
+one behind a prescribed speed where it is asked for.
 
 About the motion of rigid shafts at constant input speed, which is no motion of a free line, its rigid-body pair
 grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks and transmission errors, whose
@@ -23,7 +24,7 @@ from trunnion.errors import ComputationError
 from trunnion.modes.mode_content import ModeMotion, floquet_pair
 from trunnion.numerics.integration.integration import integrate
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit
-from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit
+from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit
 
 SAMPLES = 256
 PER_CYCLE = 8
@@ -32,8 +33,8 @@ PER_CYCLE = 8
 
 @dataclass(frozen=True)
 class PeriodicSteadyState:
-    """The motion at ``speed`` [rad/s], its last value the torque [N m at the input] beyond the balance; ``assembly`` is
-    the line without excitations."""
+    """The motion at ``speed`` [rad/s], of a free line its last value the torque [N m at the input] beyond the balance;
+    ``assembly`` is the line without excitations."""
 
     orbit: PeriodicOrbit
     assembly: Assembly
@@ -78,7 +79,7 @@ class PeriodicSteadyState:
 
 
 def periodic_steady_state(line: Driveline, speed: float, *, tolerance: float = TOLERANCE) -> PeriodicSteadyState:
-    """The periodic motion of a free line at mean input ``speed`` [rad/s], without its exciters.
+    """The periodic motion of a line at (mean) input ``speed`` [rad/s], without its exciters.
 
     ``tolerance`` : of its integration.
 
@@ -90,7 +91,10 @@ def periodic_steady_state(line: Driveline, speed: float, *, tolerance: float = T
     prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed, linearised=True)
     refuse_dragged(prepared.assembly)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
-    orbit = kept_speed_orbit(prepared, tolerance=tolerance)
+    if prepared.assembly.topology.free:
+        orbit = kept_speed_orbit(prepared, tolerance=tolerance)
+    else:
+        orbit = periodic_orbit(prepared.system, start=prepared.twisted(), tolerance=tolerance)
     if not orbit.outcome.ok:
-        raise ComputationError(f"no periodic motion of the free line was found to judge: {orbit.outcome}")
+        raise ComputationError(f"no periodic motion of the line was found to judge: {orbit.outcome}")
     return PeriodicSteadyState(orbit, prepared.assembly, speed)
