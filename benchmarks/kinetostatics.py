@@ -48,7 +48,7 @@ def main() -> None:
     slow = seconds(one_by_one, 3) * ANGLES / SAMPLE
     rigid = seconds(lambda: tn.kinetostatics(described, speed=line.speed, points=ANGLES), 9)
     elastic = seconds(lambda: tn.kinetostatics(described, speed=line.speed, points=ANGLES, rigid=False), 5)
-    print(f"{ANGLES} angles × 6 joints; drive torques agree to {apart:.1e} N·m")
+    print(f"{ANGLES} angles × 6 joints; drive torques agree to {apart:.1e} N m")
     print(f"  vector model, angle by angle   {slow:8.2f} s (timed over {SAMPLE} angles)")
     print(f"  kinetostatics, rigid shafts    {rigid:8.4f} s, {slow / rigid:7.0f} times faster")
     print(f"  kinetostatics, elastic shafts  {elastic:8.4f} s, {slow / elastic:7.0f} times faster")

@@ -15,7 +15,7 @@ import matplotlib  # noqa: E402
 
 matplotlib.use("Agg")
 
-from generate import changelog, pages  # noqa: E402
+from generate import changelog, pages, player  # noqa: E402
 
 import trunnion as tn  # noqa: E402
 
@@ -65,10 +65,11 @@ sphinx_gallery_conf = {
 }
 
 
-def _with_mathjax(app, failure):  # type: ignore[no-untyped-def]
-    """One file of MathJax with its letters inside, beside the pages."""
+def _beside_the_pages(app, failure):  # type: ignore[no-untyped-def]
+    """One file of MathJax with its letters inside, and the line that turns on the home page."""
     if failure is None:
         copyfile(MATHJAX, Path(app.outdir) / "_static" / MATHJAX.name)
+        player.write_page(Path(app.outdir) / "_static" / player.FILE)
 
 
 def _links_out_of_docs(app, name, source):  # type: ignore[no-untyped-def]
@@ -81,6 +82,7 @@ def _links_out_of_docs(app, name, source):  # type: ignore[no-untyped-def]
         listed = source[0].split()
         new = [page.stem for page in sorted(HERE.glob("*.md")) if page.stem not in (*listed, "index")]
         source[0] = source[0].replace("\nreport\napp\n", "\n".join(["", "report", "app", *new, ""]))
+        source[0] = player.embedded(source[0])
 
 
 def setup(app):  # type: ignore[no-untyped-def]
@@ -88,4 +90,4 @@ def setup(app):  # type: ignore[no-untyped-def]
     warnings.simplefilter("ignore", tn.InputRemark)
     pages.write(HERE / "generated")
     app.connect("source-read", _links_out_of_docs)
-    app.connect("build-finished", _with_mathjax)
+    app.connect("build-finished", _beside_the_pages)

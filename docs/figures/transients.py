@@ -57,7 +57,7 @@ def disturbances() -> Picture:
 
     across = Axis("time", "s", 0.0, 0.2)
     panels = [
-        Panel(across if several is OTHERS else Axis("", "", 0.0, 0.2), Axis("torque", "kN·m"), [
+        Panel(across if several is OTHERS else Axis("", "", 0.0, 0.2), Axis("torque", "kN m"), [
             Line(times, torque(case, **keys), curve(k), case) for k, (case, keys) in enumerate(several.items())
         ], key="beside")
         for several in (FAULTS, OTHERS)

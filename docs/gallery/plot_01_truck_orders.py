@@ -14,4 +14,4 @@ found = tn.order_response(line, np.linspace(tn.rpm(300), tn.rpm(2400), 200), loa
 picture = found.plot()
 place = np.unravel_index(found.vibratory_torque.argmax(), found.vibratory_torque.shape)
 torque, speed = found.vibratory_torque[place], found.speed[place[0]] / tn.rpm(1)
-print(f"{found.springs[place[1]]} carries the most: ±{torque:.0f} N·m at {speed:.0f} rpm.")
+print(f"{found.springs[place[1]]} carries the most: ±{torque:.0f} N m at {speed:.0f} rpm.")

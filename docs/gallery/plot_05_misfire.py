@@ -18,7 +18,7 @@ healthy = tn.order_response(line, speeds)
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")
 for response, label in ((healthy, "all cylinders fire"), (found.response, f"cylinder {found.worst[1]} misfires")):
     axes.plot(speeds / tn.rpm(1), response.vibratory_torque.max(axis=1) / 1e3, label=label)
-axes.set(xlabel="speed [rpm]", ylabel="largest vibratory torque of all shafts [kN·m]")
+axes.set(xlabel="speed [rpm]", ylabel="largest vibratory torque of all shafts [kN m]")
 axes.legend()
 more = (found.response.vibratory_torque.max(axis=1) / healthy.vibratory_torque.max(axis=1)).max()
 print(f"Cylinder {found.worst[1]} is the worst: at one speed the torque is {more:.1f} times that of normal running.")

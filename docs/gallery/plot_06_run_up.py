@@ -26,6 +26,6 @@ for rate in (10, 100):
     motion = run.simulation
     peaks[rate] = abs(motion.torque[:, 0]).max()
     axes.plot(200 + rate * motion.time, motion.torque[:, 0], lw=0.6, label=f"{rate} rpm/s")
-axes.set(xlabel="input speed [rpm]", ylabel="torque of shaft 1 [N·m]")
+axes.set(xlabel="input speed [rpm]", ylabel="torque of shaft 1 [N m]")
 axes.legend()
-print(f"At 100 rpm/s the peak is {peaks[100]:.0f} N·m, at 10 rpm/s {peaks[10]:.0f} N·m.")
+print(f"At 100 rpm/s the peak is {peaks[100]:.0f} N m, at 10 rpm/s {peaks[10]:.0f} N m.")

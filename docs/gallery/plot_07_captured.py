@@ -2,7 +2,7 @@
 Does a weak motor pass the resonance?
 =====================================
 
-A motor of 2.5 N·m runs a line up: with a joint of 15° and with one of 5°.
+A motor of 2.5 N m runs a line up: with a joint of 15° and with one of 5°.
 """
 
 import matplotlib.pyplot as plt

@@ -10,7 +10,7 @@ import numpy as np
 
 import trunnion as tn
 
-best = 2 * 100.0 / np.sqrt(12)  # of K = 1e4 N·m/rad and J = 1 kg·m²
+best = 2 * 100.0 / np.sqrt(12)  # of K = 1e4 N m/rad and J = 1 kg m²
 speeds = np.linspace(40, 140, 300)
 peaks = {}
 figure, axes = plt.subplots(figsize=(7, 4), layout="constrained")

@@ -83,7 +83,7 @@ def unit(key: dict[str, Any]) -> str:
     """SI unit; empty of texts."""
     found = key.get("unit") or next((one["unit"] for one in _variants(key) if "unit" in one), None)
     found = found or key.get("items", {}).get("unit") or ""
-    return {"1": "–"}.get(found, found.replace("*", "·").replace("^2", "²").replace("^3", "³"))
+    return {"1": "–"}.get(found, found.replace("*", " ").replace("^2", "²").replace("^3", "³"))
 
 
 def default(key: dict[str, Any], needed: bool) -> str:

@@ -123,10 +123,10 @@ def test_no_more_are_shown_than_can_be_told_apart(monkeypatch: pytest.MonkeyPatc
 
 
 def test_only_what_has_the_same_axes_is_laid_upon_another() -> None:
-    speed, torque = Axis("speed", "rpm", 0.0, 10.0), Axis("torque", "N·m", 0.0, 5.0)
+    speed, torque = Axis("speed", "rpm", 0.0, 10.0), Axis("torque", "N m", 0.0, 5.0)
     own = Picture((Panel(speed, torque, (Line([0, 10], [1, 2], "curve 0", "tube"),)), Panel(speed, torque, ())))
     more = Line([0, 5, 10], [0, -8, 3], "curve 0", "tube")
-    higher = Axis("torque", "N·m", -9.0, 9.0)
+    higher = Axis("torque", "N m", -9.0, 9.0)
     other = Picture(
         (Panel(speed, higher, (more, Points([1], [1], "start"), Level(3.0, "zero"))), Panel(torque, speed, ()))
     )

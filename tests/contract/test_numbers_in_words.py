@@ -91,4 +91,4 @@ def test_a_slip_clutch_is_told_to_slip_later() -> None:
     with pytest.raises(tn.InputError) as refused:
         tn.stability(line, 100.0)
     said = str(refused.value)
-    assert "150 N·m: it slips" in said and "raise the torque at which it slips" in said and "outermost" not in said
+    assert "150 N m: it slips" in said and "raise the torque at which it slips" in said and "outermost" not in said

@@ -114,7 +114,7 @@ def test_a_torque_that_crosses_the_play_is_said():
 
 def test_a_torque_beyond_the_stages_is_refused():
     soft = tn.PiecewiseShaft(breakpoints=[-0.1, 0.1], stiffnesses=[0, 100.0, 0])
-    with pytest.raises(tn.InputError, match=r"stages: has no stage that carries its load of -20 N·m"):
+    with pytest.raises(tn.InputError, match=r"stages: has no stage that carries its load of -20 N m"):
         tn.kinetostatics(
             tn.Driveline([tn.ConstantSpeed(), soft.model_copy(update={"name": "stages"}), tn.Disk(inertia=1.0)]),
             rigid=False,
@@ -181,7 +181,7 @@ def test_stiff_limit_is_rigid():
 
 
 def test_example_of_s2():
-    """Printed angles: ω_out/ω_in from 0.780 to 1.282; corrected stiffness: 1.574e-5 rad at 150 N·m."""
+    """Printed angles: ω_out/ω_in from 0.780 to 1.282; corrected stiffness: 1.574e-5 rad at 150 N m."""
     line = tn.catalogue("bicardan-elastic")
     slow, fast = tn.kinetostatics(line).speed_ratio
     assert (round(slow, 4), round(fast, 4)) == (0.7801, 1.2819)
@@ -203,7 +203,7 @@ def test_constant_twist_of_s2_is_off_by_an_eighth():
 
 
 def test_tube_formula_of_s2_in_its_own_units():
-    """c = πG(D⁴ − d⁴)/(32 l) with mm and N/mm² is in N·mm/rad: a thousandth of it in N·m/rad."""
+    """c = πG(D⁴ − d⁴)/(32 l) with mm and N/mm² is in N mm/rad: a thousandth of it in N m/rad."""
     tube = tn.Shaft(outer_diameter="90 mm", inner_diameter="84 mm", length="1000 mm", shear_modulus="81 GPa")
     in_millimetres = np.pi * 81000 * (90**4 - 84**4) / (32 * 1000)
     assert tube.torsional_stiffness == pytest.approx(in_millimetres / 1000, rel=1e-14)

@@ -17,9 +17,9 @@ LEFT_OPEN = {
         "A higher speed": ("bands between", "bands half as wide"),
     },
     "bicardan-elastic": {
-        "The elasticity of the shaft": ("N·mm/rad", "N·m/rad"),
-        "It has a reduced": ("N·mm/rad", "N·m/rad"),
-        "It makes": ("N·mm/rad", "N·m/rad"),
+        "The elasticity of the shaft": ("N mm/rad", "N m/rad"),
+        "It has a reduced": ("N mm/rad", "N m/rad"),
+        "It makes": ("N mm/rad", "N m/rad"),
         "The deviation": ("in the example", "in other cases"),
         "The twist": ("varies little", "is justified"),
     },

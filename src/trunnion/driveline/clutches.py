@@ -158,7 +158,7 @@ class Clutch(PiecewiseShaft):
         middle = friction.middle_under(spring, mean, size)
         if np.isnan(middle):
             raise InputError(
-                f"has no stage that carries {mean:g} N·m: it slips", element=self.name or self.kind, key="stiffnesses",
+                f"has no stage that carries {mean:g} N m: it slips", element=self.name or self.kind, key="stiffnesses",
                 remedy="raise the torque at which it slips, or ask for a smaller one",
             )  # fmt: skip
         stiffness = float(friction.over_a_cycle(spring, middle, size)[1])

@@ -73,7 +73,7 @@ def refuse_overload(assembly: Assembly, speed: float) -> None:
         if clutch.load > (1 + ROUNDING) * clutch.holds:
             held = "its friction and its spring hold" if clutch.spring else "its friction holds"
             raise InputError(
-                f"carries a load of {clutch.load:.6g} N·m, more than the {clutch.holds:.6g} N·m that {held}, and no "
+                f"carries a load of {clutch.load:.6g} N m, more than the {clutch.holds:.6g} N m that {held}, and no "
                 "spring takes the rest: it slips away and has no periodic motion",
                 element=clutch.name, key="friction",
                 remedy=f"raise its friction torque above {clutch.load - clutch.spring:.6g} N*m, lower the load, or "

@@ -71,8 +71,8 @@ def stand_ins(line: Driveline) -> tuple[str, ...]:
             stiffness, damping, _ = element.mean(torque=torque[place])
             swing, hertz = np.rad2deg(element.linear_amplitude), element.linear_frequency / (2 * np.pi)
             found.append(
-                f"{name} rubs and stands for a shaft of {stiffness:.4g} N·m/rad and {damping:.3g} "
-                f"N·m·s/rad, its mean over a swing of ± {swing:.3g} deg at {hertz:.3g} Hz; tn.linearity_check tells "
+                f"{name} rubs and stands for a shaft of {stiffness:.4g} N m/rad and {damping:.3g} "
+                f"N m s/rad, its mean over a swing of ± {swing:.3g} deg at {hertz:.3g} Hz; tn.linearity_check tells "
                 "how far that holds"
             )
     return tuple(found)

@@ -38,7 +38,7 @@ def mean_clutch(
     middle = friction.middle_under(law, torque, amplitude)
     if np.isnan(middle).any():
         raise InputError(
-            f"has no stage that carries its load of {float(torque[np.isnan(middle)][0]):g} N·m: it slips",
+            f"has no stage that carries its load of {float(torque[np.isnan(middle)][0]):g} N m: it slips",
             element=law.name, remedy=SLIPS,
         )  # fmt: skip
     stiffness = friction.over_a_cycle(law, middle, amplitude)[1]

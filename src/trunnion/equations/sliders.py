@@ -62,7 +62,7 @@ def sliders(packed: PackedLine, topo: Topology, row: Array) -> tuple[PlacedSlide
 def beyond_capacity(name: str, torque: float, most: float, reach: float) -> tuple[str, str]:
     """What is wrong with a slider that starts with a ``torque`` [N m] beyond the ``most`` that it holds, where its
     spring is deflected by ``reach`` [rad]; and the remedy."""
-    words = f"loads {name} with {torque:.6g} N·m, beyond the {most:.6g} N·m at which it slips"
+    words = f"loads {name} with {torque:.6g} N m, beyond the {most:.6g} N m at which it slips"
     return words, f"start its deflection between {-reach:.6g} and {reach:.6g} rad"
 
 

@@ -66,8 +66,8 @@ def refuse_slipping(packed: PackedLine, topo: Topology, table: Array, mean: Arra
             # So many figures that the two differ.
             digits = next((d for d in (6, 9, 12) if f"{load[worst]:.{d}g}" != f"{holds[worst]:.{d}g}"), 15)
             raise InputError(
-                f"carries a load of {load[worst]:.{digits}g} N·m, beyond its capacity of {holds[worst]:.{digits}g} "
-                "N·m: it slips on, and equations of a steady motion take it as sticking",
+                f"carries a load of {load[worst]:.{digits}g} N m, beyond its capacity of {holds[worst]:.{digits}g} "
+                "N m: it slips on, and equations of a steady motion take it as sticking",
                 element=name, key="torque",
                 remedy="raise its torque, or lower the load; tn.simulate follows it as it slips",
             )  # fmt: skip

@@ -67,7 +67,7 @@ class StageLaw(StageSpring):
                 "take it as it is",
             )
         return InputError(
-            f"has no stage that carries its load of {torque:g} N·m: it slips", element=self.name, remedy=SLIPS
+            f"has no stage that carries its load of {torque:g} N m: it slips", element=self.name, remedy=SLIPS
         )
 
 

@@ -202,9 +202,9 @@ def slipping_on(
         e = clutch.compliance
         least = LEAST * min(slider.reach for slider in friction_sliders if slider.compliance == e)
         if abs(second[e]) > least and abs(second[e] - first[e]) <= STEADY * abs(second[e]):
-            load = f"its load of {clutch.load:.6g} N·m and the excitation together" if clutch.load else "the excitation"
+            load = f"its load of {clutch.load:.6g} N m and the excitation together" if clutch.load else "the excitation"
             words = (
-                f"{clutch.name} slips on by {abs(second[e]):.4g} rad in every period: the {clutch.holds:.6g} N·m that "
+                f"{clutch.name} slips on by {abs(second[e]):.4g} rad in every period: the {clutch.holds:.6g} N m that "
                 f"it holds do not carry {load}; raise its friction torque, lower the load, or give it a stiffness"
             )
             return Outcome(False, "slips on", words)

@@ -77,7 +77,7 @@ def _torques(units: Mapping[str, Turns]) -> Conclusion:
         readings.append(
             Reading(
                 f"torque of the drive, {unit}",
-                f"changes by {largest:.1e} N·m, {share:.0e} of its mean",
+                f"changes by {largest:.1e} N m, {share:.0e} of its mean",
                 sign(share < 0.01),
             )
         )
@@ -111,14 +111,14 @@ def _significance(units: Mapping[str, Turns]) -> Conclusion:
         readings.append(
             Reading(
                 f"in other cases, {unit}",
-                f"it reaches {GUIDELINE:g} at about {allowed / 1000:.0f} kN·m",
+                f"it reaches {GUIDELINE:g} at about {allowed / 1000:.0f} kN m",
                 sign(allowed < BORNE),
             )
         )
     return Conclusion(
         "The deviation can become significant in some cases (Figure 3 b).",
         tuple(readings),
-        f"Cases count up to {BORNE / 1000:g} kN·m, {BORNE / LOAD:.0f} times the example's torque, or a shaft so much "
+        f"Cases count up to {BORNE / 1000:g} kN m, {BORNE / LOAD:.0f} times the example's torque, or a shaft so much "
         "softer under that torque. The unit of c₁₂ is inferred.",
     )
 

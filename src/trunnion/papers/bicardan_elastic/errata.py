@@ -19,8 +19,8 @@ def errata(elastic: Kinetostatics, rigid: Kinetostatics, worst: Kinetostatics, e
     return ComparisonTable(
         "Errata",
         (
-            TableRow("c₁₂", f"{PRINTED_STIFFNESS:.0f} N·m/rad", "N·mm/rad, inferred",
-                "its tube formula with G in N/mm² and lengths in mm gives that unit: twist at 150 N·m "
+            TableRow("c₁₂", f"{PRINTED_STIFFNESS:.0f} N m/rad", "N mm/rad, inferred",
+                "its tube formula with G in N/mm² and lengths in mm gives that unit: twist at 150 N m "
                 f"{twist:.4g} rad; as printed {1e-3 * twist:.4g} rad"),
             TableRow("ν₁₂, β₁₂", "180°, 266.4°", "β₁₂ = ν₁₂ (mod 180°) cancels",
                 f"86.4° from homokinetic, nearly the worst: ω_out/ω_in {slow:.4f} … {fast:.4f}, "

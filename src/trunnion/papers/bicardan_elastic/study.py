@@ -37,15 +37,15 @@ def bicardan_elastic(points: int, report_progress: Callable[[float], None]) -> R
     stiff = turn(printed_stiffness=True)
     even, even_rigid = turn(homokinetic=True), turn(rigid=True, homokinetic=True)
     units = {
-        "c₁₂ in N·mm/rad": Turns(elastic, rigid, even, even_rigid),
-        "c₁₂ in N·m/rad": Turns(stiff, rigid, turn(homokinetic=True, printed_stiffness=True), even_rigid),
+        "c₁₂ in N mm/rad": Turns(elastic, rigid, even, even_rigid),
+        "c₁₂ in N m/rad": Turns(stiff, rigid, turn(homokinetic=True, printed_stiffness=True), even_rigid),
     }
     worst = turn(rigid=True, plane_angle=1.5 * np.pi)
     report_progress(0.8)
-    shown = "1 rad/s, 150 N·m, ν₁₂ = 180°, β₁₂ = 266.4°. "
+    shown = "1 rad/s, 150 N m, ν₁₂ = 180°, β₁₂ = 266.4°. "
     figures = (
         PaperFigure("3", "Angles, speeds, accelerations and torques, intermediate shaft elastic",
-                    shown + "Stiffness in N·mm/rad.", partial(paper, elastic)),
+                    shown + "Stiffness in N mm/rad.", partial(paper, elastic)),
         PaperFigure("4", "Angles, speeds, accelerations and torques, intermediate shaft rigid",
                     shown + "Alike to the width of a line: what differs stands in the table.",
                     partial(paper, rigid)),
@@ -66,7 +66,7 @@ def _assumed(elastic: Kinetostatics, stiff: Kinetostatics) -> ComparisonTable:
     return ComparisonTable(
         "What is assumed",
         (
-            TableRow("unit of c₁₂", "N·m/rad", "N·mm/rad",
+            TableRow("unit of c₁₂", "N m/rad", "N mm/rad",
                 f"no diameters to check it by; the largest twist is {twists[0]:.4g} rad, in the printed unit "
                 f"{twists[1]:.4g} rad; every conclusion is judged in both"),
             TableRow("sense of ν₁₂, β₁₂", "(2)", "both against the rotation",
@@ -88,7 +88,7 @@ def _numbers(rigid: Kinetostatics) -> ComparisonTable:
             row("speed of the intermediate shaft", rigid.speed[1], "rad/s"),
             row("speed of the output", rigid.output_speed, "rad/s"),
             row("acceleration of the output", rigid.output_acceleration, "rad/s²"),
-            row("torque of the drive", rigid.drive_torque, "N·m"),
+            row("torque of the drive", rigid.drive_torque, "N m"),
             *(
                 TableRow(f"tilt θ of the cross in fork {fork}", "(4), not drawn", f"{low:.5g} … {high:.5g} °")
                 for fork, low, high in zip(rigid.forks, *extremes(np.degrees(rigid.cross_tilt)), strict=True)
@@ -100,7 +100,7 @@ def _numbers(rigid: Kinetostatics) -> ComparisonTable:
 def _differences(elastic: Kinetostatics, rigid: Kinetostatics, stiff: Kinetostatics) -> ComparisonTable:
     """What the elasticity changes, absolutely and relative to the fluctuation over a turn."""
     rows = []
-    for words, unit in (("speed", "rad/s"), ("acceleration", "rad/s²"), ("torque", "N·m")):
+    for words, unit in (("speed", "rad/s"), ("acceleration", "rad/s²"), ("torque", "N m")):
         mended, printed = (change(one, rigid, words) for one in (elastic, stiff))
         rows.append(
             TableRow(
