@@ -38,7 +38,11 @@ FAULTS = {
 OTHERS = {
     "bite and tail-out": {"on": "machine", "since": 0.03, "torque": 5e3, "rise": 0.02, "until": 0.12, "fall": 0.03},
     "impacts": {
-        "on": "machine", "peaks": [3e3, 4e3, 2.5e3], "width": "60 deg", "spacing": "100 deg", "angle": "150 deg",
+        "on": "machine",
+        "peaks": [3e3, 4e3, 2.5e3],
+        "width": "60 deg",
+        "spacing": "100 deg",
+        "angle": "150 deg",
     },
     "tip-in": {"on": "machine", "since": 0.05, "first": 0.0, "last": 3e3, "rise": 0.06},
     "emergency brake": {"on": "machine", "since": 0.06, "torque": 4e3, "rise": 0.05},

@@ -19,7 +19,7 @@ LINK = re.compile(r"\]\((?!https?:|#)([^)]*)\)")
 
 
 def link(target: str, home: Path) -> str:
-    """Where a link of a file in folder ``home`` leads from ``docs``; empty where that is no page of the site."""
+    """Where a link of a file in folder ``home`` leads from ``docs``; empty where that is not a page of the site."""
     path, _, anchor = target.partition("#")
     wanted = (home / path).resolve()
     if not wanted.is_relative_to(TOP):
@@ -32,7 +32,7 @@ def link(target: str, home: Path) -> str:
 
 
 def turned(text: str, home: Path, up: str = "") -> str:
-    """Links of a text written in folder ``home``, for a page ``up`` from ``docs``; what is no page is named by its path."""
+    """Links of a text written in folder ``home``, for a page ``up`` from ``docs``; what is not a page is named by its path."""
 
     def one(found: re.Match[str]) -> str:
         page = link(found[1], home)

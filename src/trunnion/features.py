@@ -92,7 +92,7 @@ _LIKE = {
 }
 """Features that every analysis treats as another, whose equations they share."""
 SET_ASIDE = "the multiplier at 1 is set aside"
-DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is no instability and set aside"
+DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is not an instability and set aside"
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Reason] = {
     LAG: (

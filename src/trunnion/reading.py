@@ -26,10 +26,10 @@ def regular_bytes(path: str | os.PathLike[str], most: int, *, what: str) -> byte
     """
     remedy = f"name {what}"
     if not stat.S_ISREG(os.stat(path).st_mode):  # before it is opened, which some devices answer to
-        raise InputError("is no regular file", key=str(path), remedy=remedy)
+        raise InputError("is not a regular file", key=str(path), remedy=remedy)
     with open(os.open(path, os.O_RDONLY | _FLAGS), "rb") as stream:
         if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-            raise InputError("is no regular file", key=str(path), remedy=remedy)
+            raise InputError("is not a regular file", key=str(path), remedy=remedy)
         content = stream.read(most + 1)
     if len(content) > most:
         raise InputError(f"has more than {most} bytes", key=str(path), remedy=remedy)

@@ -89,7 +89,7 @@ def time_limit(seconds: float | None = None, *, of_processor: bool = False) -> I
 
     Raises
     ------
-    InputError : seconds that are no positive number. OutOfTime : the time was up before anything was known.
+    InputError : seconds that are not a positive number. OutOfTime : the time was up before anything was known.
 
     Examples
     --------

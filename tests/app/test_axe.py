@@ -1,6 +1,6 @@
 """Every view against the rules of WCAG 2.2 AA that axe-core can judge.
 
-It is installed from its npm package for the test, and is no part of this project."""
+It is installed from its npm package for the test, and is not part of this project."""
 
 from __future__ import annotations
 

@@ -58,7 +58,9 @@ def test_no_largest_value_is_low_by_more_than_its_error(kind: str, seed: int) ->
             out.write(json.dumps(figures) + "\n")
     assert not found.faults, "\n".join(found.faults)
     assert found.compared >= 4
-    assert len(found.missed) <= found.compared / 4 or (kind, seed) in BLIND, found.missed  # else the scan is no judge
+    assert len(found.missed) <= found.compared / 4 or (kind, seed) in BLIND, (
+        found.missed
+    )  # else the scan is not a judge
 
 
 def test_the_scan_itself_by_hand() -> None:

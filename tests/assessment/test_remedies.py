@@ -135,7 +135,7 @@ def test_a_change_that_breaks_another_check_is_no_remedy(found):
 
 
 def test_slopes_that_nobody_can_see_are_not_printed(found):
-    """The angle of a joint alone follows that angle alone: rounding of other numbers is no sensitivity."""
+    """The angle of a joint alone follows that angle alone: rounding of other numbers is not a sensitivity."""
     line = tn.Driveline(
         [
             tn.ConstantSpeed(),

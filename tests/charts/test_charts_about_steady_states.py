@@ -152,7 +152,7 @@ def test_a_free_line_over_speed_and_angle() -> None:
 
 
 def test_a_load_by_speed_that_comes_to_nothing() -> None:
-    """There the speed changes without end, which is no disturbance; elsewhere it counts."""
+    """There the speed changes without end, which is not a disturbance; elsewhere it counts."""
     pair = Pair(False, 80.0, (0.3, 0.2), viscous=0.5)
     chart = tn.stability_chart(pair.description(), ("speed", 70.0, 90.0, 3), ("Disk 3.viscous_load", 0.0, 0.4, 3))
     agrees(pair, chart, [(0, 0), (0, 1), (1, 1), (2, 2)], y="viscous")

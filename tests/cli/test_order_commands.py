@@ -119,16 +119,16 @@ def test_stable_limit(run, here):
 
 
 REFUSED = [
-    (("order-response", "line.toml", "--speed", "2400:600"), "--speed = '2400:600': is no rising range"),
+    (("order-response", "line.toml", "--speed", "2400:600"), "--speed = '2400:600': is not a rising range"),
     (("order-response", "line.toml", "--speed", "600:2400:1"), "must end in a whole number of speeds"),
-    (("order-response", "line.toml", "--speed", "1:2:3:4"), "is no range"),
+    (("order-response", "line.toml", "--speed", "1:2:3:4"), "is not a range"),
     (("speed-sweep", "line.toml", "--speed", "0:2400"), "--speed = '0': must be positive"),
     (("order-response", "line.toml", "--speed", "600:fast"), "--speed = 'fast': "),
-    (("order-response", "line.toml", "--orders", "1,-2"), "--orders = '1,-2': is no list of orders"),
-    (("order-response", "line.toml", "--orders", "two"), "is no list of orders"),
-    (("order-response", "line.toml", "--spring", "Shaft 3"), "is no shaft or mesh of the line; did you mean"),
+    (("order-response", "line.toml", "--orders", "1,-2"), "--orders = '1,-2': is not a list of orders"),
+    (("order-response", "line.toml", "--orders", "two"), "is not a list of orders"),
+    (("order-response", "line.toml", "--spring", "Shaft 3"), "is not a shaft or mesh of the line; did you mean"),
     (("order-response", "line.toml", "-o", "r.xls"), "has no ending that names a format"),
-    (("stable-limit", "line.toml", "--speed", "1500"), "is no rising range"),
+    (("stable-limit", "line.toml", "--speed", "1500"), "is not a rising range"),
     (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness"), "needs a range"),
     (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness:1000:2000:20:log"), "is searched evenly; leave out :log"),
     (("speed-sweep", "duffing"), "is neither a file nor a name of the catalogue"),

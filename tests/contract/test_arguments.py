@@ -125,4 +125,4 @@ def test_names(key: str) -> None:
 @pytest.mark.parametrize("name", LINES)
 def test_no_line(name: str) -> None:
     for value in (None, 1.0, "truck.toml"):
-        assert "is no driveline" in refusal(LINES[name], value)
+        assert "is not a driveline" in refusal(LINES[name], value)

@@ -117,11 +117,11 @@ def test_what_is_no_regular_file_is_refused_at_once(lines: Path, device: str, mo
     else:
         there.symlink_to(device)
     path = line_naming(lines, "table.csv")
-    assert "is no regular file" in refused(path, tables_anywhere=True)
+    assert "is not a regular file" in refused(path, tables_anywhere=True)
     with pytest.raises(tn.InputError):
         tn.read_excitation(there)
     if not there.is_symlink():
-        assert "is no regular file" in refused(path)
+        assert "is not a regular file" in refused(path)
 
 
 @posix
@@ -132,7 +132,7 @@ def test_charts_are_regular_files_too(tmp_path: Path, special: str) -> None:
         os.mkfifo(path := tmp_path / "chart.nc")
     elif special == "folder":
         path = tmp_path
-    with pytest.raises(tn.InputError, match="is no regular file"):
+    with pytest.raises(tn.InputError, match="is not a regular file"):
         tn.load_chart(path)
 
 

@@ -88,7 +88,7 @@ OWN: dict[str, Callable[[], Any]] = {
     ),
     "order map": lambda: tn.order_map(tn.simulate(feature_lines.bent(), 2.0, speed=100.0)),
     "refusal": lambda: tn.InputError("must be positive", element="Shaft 1", key="stiffness", value=-1, remedy="write"),
-    "refusal of a function": lambda: tn.InputError("is no number", key="x", value=len),
+    "refusal of a function": lambda: tn.InputError("is not a number", key="x", value=len),
     "several refusals": lambda: tn.InputError.together([tn.InputError("is a"), tn.InputError("is b", key="k")]),
     "failure": lambda: tn.ComputationError("did not converge"),
 }  # fmt: skip

@@ -16,7 +16,7 @@ import trunnion
 
 ROOT = Path(trunnion.__file__).parent
 LONGEST = 700
-"""Lines of a file that is no kernel: one idea each, whole."""
+"""Lines of a file that is not a kernel: one idea each, whole."""
 FILES = sorted(ROOT.rglob("*.py"))
 RUNS_TEXT = {"numerics/compiled.py"}
 """Loads a kernel's file a second time under other constants."""

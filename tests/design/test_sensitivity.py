@@ -401,7 +401,7 @@ def pair(second="17.2 deg"):
 
 
 def test_a_cancelled_irregularity_has_a_kink_and_no_derivative():
-    """U ≈ |β₁² − β₂²| grows either way: what central differences give is no derivative."""
+    """U ≈ |β₁² − β₂²| grows either way: what central differences give is not a derivative."""
     found = tn.sensitivity(pair(), of=["checks"], checks=["uniformity"])
     angles = ("HookeJoint 1.angle", "HookeJoint 2.angle")
     assert set(angles) <= set(found.kinks("uniformity"))

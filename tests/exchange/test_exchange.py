@@ -317,11 +317,11 @@ BAD = [
     ("l.csv", "", "does not begin with the columns of a line"),
     ("l.csv", "name,kind\n", "does not begin with the columns of a line"),
     ("l.csv", "{head}x,inertia,0,,two\n", "l.csv: row 2.inertia: is not a number"),
-    ("l.csv", "{head}x,inertia,-1,,2\n", "l.csv: row 2.from: is no number of a flange"),
-    ("l.csv", "{head}x,gear,0,1,,,,0\n", "l.csv: row 2.ratio: is no ratio"),
-    ("l.csv", "{head}x,gear,0,1,,,,1e999999999\n", "l.csv: row 2.ratio: is no ratio"),
-    ("l.csv", "{head}x,gear,0,1,,,,3/0\n", "l.csv: row 2.ratio: is no ratio"),
-    ("l.csv", "{head}x,rope,0,1\n", "l.csv: row 2.kind: is no kind of part"),
+    ("l.csv", "{head}x,inertia,-1,,2\n", "l.csv: row 2.from: is not a number of a flange"),
+    ("l.csv", "{head}x,gear,0,1,,,,0\n", "l.csv: row 2.ratio: is not a ratio"),
+    ("l.csv", "{head}x,gear,0,1,,,,1e999999999\n", "l.csv: row 2.ratio: is not a ratio"),
+    ("l.csv", "{head}x,gear,0,1,,,,3/0\n", "l.csv: row 2.ratio: is not a ratio"),
+    ("l.csv", "{head}x,rope,0,1\n", "l.csv: row 2.kind: is not a kind of part"),
     ("l.csv", "{head}x,inertia,0,,nan\n", "x.inertia"),
     ("l.csv", "{head}x,inertia,0,,-2\n", "x.inertia = -2: must be positive"),
     ("l.csv", "{head}x,inertia,0,,2\ny,inertia,1,,2\n", "y: hangs on nothing"),
@@ -332,13 +332,13 @@ BAD = [
         "{head}a,drive,0,,,,,,,,10\nx,inertia,1,,2\ns,spring,0,1,,3\nt,spring,1,2,,3\nb,drive,2,,,,,,,,11\n",
         "contradicts",
     ),
-    ("l.mo", "model L", "is no model of a line: cannot be read at its end"),
+    ("l.mo", "model L", "is not a model of a line: cannot be read at its end"),
     ("l.mo", "model L\n ? end L;", "cannot be read in line 2"),
     ("l.mo", SHORT + "Clutch c; end L;", "Clutch, which lines do not have"),
     ("l.mo", SHORT + "Inertia i(J=1, K=2); end L;", "i.K: is not read"),
     ("l.mo", SHORT + "Inertia i; end L;", "i.J: is missing"),
     ("l.mo", SHORT + "Inertia i(J=one); end L;", "i.J = 'one': is not a number"),
-    ("l.mo", SHORT + "Inertia i(J=1); equation connect(i.flange_a, k.flange_a); end L;", "k.flange_a: is no flange"),
+    ("l.mo", SHORT + "Inertia i(J=1); equation connect(i.flange_a, k.flange_a); end L;", "k.flange_a: is not a flange"),
     ("l.mo", SHORT + 'Inertia i(J=1) "a* b"; end L;', "is not a name"),
     ("l.py", "x = (", "cannot be read"),
     ("l.py", "DISKS = [(1, 2)]\nSHAFTS = []\nGEARS = []", "DISKS cannot be read"),
@@ -380,7 +380,7 @@ def test_what_one_target_alone_lacks(tmp_path: Path) -> None:
 
 
 def test_targets_and_endings(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="to = 'simulink': is no target"):
+    with pytest.raises(InputError, match="to = 'simulink': is not a target"):
         tn.export_line(free(), tmp_path / "l.mdl", "simulink")
     with pytest.raises(InputError, match=r"does not end in \.csv"):
         tn.export_line(free(), tmp_path / "l.toml", "csv")

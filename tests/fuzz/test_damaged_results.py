@@ -126,7 +126,7 @@ def test_files_from_elsewhere(content, tmp_path):
     for body in (b"", b"CDF\x01", b"x" * 100_000):
         refused(path, body)
         assert "not a netCDF file" in refused(path, signed(body))
-    assert 'is no "trunnion stability chart' in refused(path, dataset_bytes(xr.Dataset(attrs={"format": "other"})))
+    assert 'is not a "trunnion stability chart' in refused(path, dataset_bytes(xr.Dataset(attrs={"format": "other"})))
     for name in (tmp_path, tmp_path / "none.nc", "a\0b", tmp_path / ("x" * 300)):
         with pytest.raises(InputError):
             read_chart(name)
@@ -197,7 +197,7 @@ WRONG = {
     "a radius beyond numbers": (put("spectral_radius", (0, 0), 1e300), "spectral_radius lies outside"),
     "a negative radius": (put("spectral_radius", (1, 1), -0.5), "spectral_radius lies outside"),
     "an infinite radius": (put("spectral_radius", (1, 1), np.inf), "spectral_radius lies outside"),
-    "a radius that is no multiplier's": (put("spectral_radius", (1, 1), 0.7), "spectral_radius differ"),
+    "a radius that is not a multiplier's": (put("spectral_radius", (1, 1), 0.7), "spectral_radius differ"),
     "a missing radius": (put("spectral_radius", (1, 1), np.nan), "failed points"),
     "a negative error": (put("error_estimate", (2, 3), -1e-9), "error_estimate is negative"),
     "a missing error": (put("error_estimate", (2, 3), np.nan), "error_estimate is negative or missing"),
@@ -208,11 +208,11 @@ WRONG = {
     "another shape": (of_shape("spectral_radius", (4, 3)), "spectral_radius is not 3 × 4 numbers"),
     "one row": (of_shape("error_estimate", (4,)), "error_estimate is not 3 × 4 numbers"),
     "no pixels": (of_shape("verdict", (0, 0), 0), "verdict is not 3 × 4 numbers"),
-    "another patch box": (of_shape("patch_box", (1, 3)), "is no whole stability chart"),
+    "another patch box": (of_shape("patch_box", (1, 3)), "is not a whole stability chart"),
     "an infinite period": (said("period", np.inf), "its period is not positive"),
     "a negative tolerance": (said("tolerance", -1.0), "its tolerance is not positive"),
     "a speed of zero": (said("speed", -3.0), "its speed is not positive"),
-    "deep remarks": (said("remarks", "[" * 30_000), "is no whole stability chart"),
+    "deep remarks": (said("remarks", "[" * 30_000), "is not a whole stability chart"),
     "numbers for remarks": (said("remarks", "[1, 2]"), "its texts are none"),
     "a long remark": (said("remarks", json.dumps(["x" * 100_000])), "its texts are none"),
     "a negative check": (

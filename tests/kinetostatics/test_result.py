@@ -281,7 +281,7 @@ def test_names_in_the_package():
 
 
 def test_joints_that_cancel_turn_uniformly_at_the_operating_speed():
-    """Rounding is no irregularity, and the speed is the one that the description operates at."""
+    """Rounding is not an irregularity, and the speed is the one that the description operates at."""
     parts = [
         tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=1e4), tn.HookeJoint(angle=0.2),
         tn.Disk(inertia=1.0, load_torque=5.0),

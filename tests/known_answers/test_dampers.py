@@ -451,7 +451,7 @@ def test_a_mode_is_a_number_of_one(mode: object) -> None:
             tn.ViscousDamper(name="damper", ring_inertia=0.05, damping=1.0),
         ]
     )  # fmt: skip
-    with pytest.raises(tn.InputError, match="is no elastic mode"):
+    with pytest.raises(tn.InputError, match="is not an elastic mode"):
         tn.damper_optimum(line, "damper", mode)  # type: ignore[arg-type]
 
 

@@ -154,7 +154,7 @@ def test_joints_and_meshes_without_a_common_period_are_refused() -> None:
 
 
 def test_a_free_line_has_a_steady_state_at_every_speed() -> None:
-    """Nothing resists at rest that it turns as a whole, which is no resonance; a soft spring changes nothing."""
+    """Nothing resists at rest that it turns as a whole, which is not a resonance; a soft spring changes nothing."""
     mesh = tn.GearPair(teeth_in=20, teeth_out=20, module=0.003, mesh_stiffness=2e7, mesh_damping=400.0,
                        stiffness_variation=[{"order": 1, "share": 0.2}])  # fmt: skip
     shaken = [{"order": 2, "amplitude": 20.0}]

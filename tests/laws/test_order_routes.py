@@ -84,7 +84,7 @@ def external(order: float, speed: float, **damping: Any) -> tuple[Any, Any]:
 @pytest.mark.parametrize("order", [0.5, 1.0, 1.5, 3.0, 2.0])
 @pytest.mark.parametrize("speed", [18.0, 55.0])
 def test_viscous_lines_by_the_monodromy_matrix(order: float, speed: float) -> None:
-    """Order 3 gives orders 1 and −1, which are one; order 2 has a mean, which is no order."""
+    """Order 3 gives orders 1 and −1, which are one; order 2 has a mean, which is not an order."""
     wanted, found = external(order, speed, damping=4.0)
     parts = folded(forced_part(order, speed, 4.0), order)
     expected = np.array([parts[k] for k in wanted])

@@ -156,7 +156,7 @@ def test_orders_of_teeth_without_a_common_divisor_are_those_of_the_mesh_and_the_
 
 @pytest.mark.slow
 def test_a_transmission_error_makes_no_line_unstable() -> None:
-    """It is no part of the equations of disturbances, but of the amplitudes."""
+    """It is not part of the equations of disturbances, but of the amplitudes."""
     for teeth in ((12, 24), (13, 29)):
         for angle in (0.05, 0.5):
             quiet, loud = (tn.stability(geared(e, teeth, angle), 60.0) for e in (0.0, 1e-5))

@@ -122,8 +122,8 @@ def test_a_run_up_that_is_too_fast_for_the_response_is_said() -> None:
 
 
 REFUSED = (
-    (lambda: tn.measure(WEAK, 150.0, 1.0, {"hubb": 60}), "pickups = 'hubb': is no disk of the line; did you mean"),
-    (lambda: tn.measure(WEAK, 150.0, 1.0, {"hub": 60}, gauges=["hub"]), "gauges = 'hub': is no spring of the line"),
+    (lambda: tn.measure(WEAK, 150.0, 1.0, {"hubb": 60}), "pickups = 'hubb': is not a disk of the line; did you mean"),
+    (lambda: tn.measure(WEAK, 150.0, 1.0, {"hub": 60}, gauges=["hub"]), "gauges = 'hub': is not a spring of the line"),
     (lambda: tn.measure(WEAK, 150.0, 1.0, {"hub": 1}), "pickups.hub = 1: must be a whole number, 2 or more"),
     (lambda: tn.measure(WEAK, 150.0, -1.0, {"hub": 60}), "duration = -1: must be positive"),
     (lambda: tn.measure(WEAK, -3.0, 1.0, {"hub": 60}), "speeds = -3: must be positive"),

@@ -75,10 +75,10 @@ def test_the_command(tmp_path: Path) -> None:
     text = CliRunner().invoke(app, [*words, "-u", "rpm", "-o", str(tmp_path / "a.csv")]).stdout
     assert "2 orders of 2 channels" in text and "Largest of each order" in text
     for wrong, said in (
-        (["--orders", "2,x"], "--orders = '2,x': is no list of orders"),
-        (["--between", "3"], "--between = '3': is no pair of times"),
-        (["--channel", "none"], "channel = 'none': is no channel"),
-        (["--reference", "none"], "channel = 'none': is no channel"),
+        (["--orders", "2,x"], "--orders = '2,x': is not a list of orders"),
+        (["--between", "3"], "--between = '3': is not a pair of times"),
+        (["--channel", "none"], "channel = 'none': is not a channel"),
+        (["--reference", "none"], "channel = 'none': is not a channel"),
     ):
         refused = CliRunner().invoke(app, [*words, *wrong, "-o", str(tmp_path / "b.png")])
         assert refused.exit_code == 2 and said in refused.output, refused.output
@@ -96,7 +96,7 @@ def test_the_command(tmp_path: Path) -> None:
     (low,), (high,) = (json.loads(fit.stdout)[key] for key in ("low", "high"))
     assert low - 3 * (high - low) < 2e4 < high + 3 * (high - low)
     assert abs(tn.load(better).elements[2].torsional_stiffness - 2e4) < 100
-    for words, said in ((["--free", "x:1"], "is no parameter with bounds"), ([], "--free: is missing")):
+    for words, said in ((["--free", "x:1"], "is not a parameter with bounds"), ([], "--free: is missing")):
         refused = CliRunner().invoke(app, ["identify", *data, *words])
         assert refused.exit_code == 2 and said in refused.output, refused.output
     alone = CliRunner().invoke(app, ["compare-measured", data[0], "-o", str(tmp_path / "c.png")])

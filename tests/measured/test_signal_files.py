@@ -179,8 +179,8 @@ WRONG = (
     ({"channel": [{"column": "gauge", "kind": "torque"}]}, "channels channel 1.unit: is missing"),
     ({"channel": [{"column": "gauge", "kind": "torque", "unit": "bar"}]}, "channels channel 1.unit = '1 bar'"),
     ({"channel": [{"column": "gauge", "scale": "2"}]}, "channels channel 1.scale = '2': must be a whole number or"),
-    ({"channel": [{"column": "guage"}]}, "guage.column = 'guage': is no column of the file; did you mean \"gauge\""),
-    ({"channel": [{"column": 9}]}, "9.column = 9: is no column of the file; there are 2"),
+    ({"channel": [{"column": "guage"}]}, "guage.column = 'guage': is not a column of the file; did you mean \"gauge\""),
+    ({"channel": [{"column": 9}]}, "9.column = 9: is not a column of the file; there are 2"),
     ({"channel": [{"column": "pickup", "kind": "pulses", "pulses_per_turn": 30, "level": 9.0}]}, "pickup.level = 9"),
     ({"channel": [{"column": "flat", "kind": "pulses", "pulses_per_turn": 30}]}, "flat.column: does not move"),
     ({"channel": [{"column": "holes", "kind": "other"}]}, "holes.values: has no number in 3 samples, the first"),
@@ -212,13 +212,13 @@ def test_gaps_and_texts_of_a_table(tmp_path: Path) -> None:
     with pytest.raises(tn.InputError, match=r"^t = 0\.\d+: has steps that are not equal: there is a gap"):
         tn.read_measurement(file, {"time": "t", "channel": [{"column": "x"}]})
     file.write_text("t,x\n0,1\n0.1,2\n0.2,oops\n", encoding="utf-8")
-    with pytest.raises(tn.InputError, match=r"^run\.csv line 4\.x = 'oops': is no number"):
+    with pytest.raises(tn.InputError, match=r"^run\.csv line 4\.x = 'oops': is not a number"):
         tn.read_measurement(file, {"time": "t", "channel": [{"column": "x"}]})
     with pytest.raises(tn.InputError, match=r"^x\.rate: is missing"):
         tn.read_measurement(file, {"channel": [{"column": "t", "name": "x"}]})
     other = tmp_path / "run.xlsx"
     other.write_bytes(b"PK")
-    with pytest.raises(tn.InputError, match="is no file of signals; files end in .csv"):
+    with pytest.raises(tn.InputError, match="is not a file of signals; files end in .csv"):
         tn.read_measurement(other)
     with pytest.raises(tn.InputError, match="is not there"):
         tn.read_measurement(tmp_path / "none.wav")

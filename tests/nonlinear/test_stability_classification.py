@@ -1,4 +1,4 @@
-"""One rule for verdicts: rest is no orbit, branches and orbits agree, and a branch is as exact between its points."""
+"""One rule for verdicts: rest is not an orbit, branches and orbits agree, a branch is as exact between its points."""
 
 from __future__ import annotations
 

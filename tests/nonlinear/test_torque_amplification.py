@@ -87,7 +87,7 @@ def test_separations_of_a_mesh_against_a_fine_grid() -> None:
 def test_refusals() -> None:
     line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e3, name="shaft"), tn.Disk(inertia=0.4)])
     run = tn.simulate(line, speed=20.0, turns=1)
-    with pytest.raises(tn.InputError, match="nominal = 'shft': is no shaft of this motion"):
+    with pytest.raises(tn.InputError, match="nominal = 'shft': is not a shaft of this motion"):
         tn.torque_amplification(run, {"shft": 1.0})
     with pytest.raises(tn.InputError, match="must be finite"):
         tn.torque_amplification(run, {"shaft": float("nan")})

@@ -126,13 +126,17 @@ def test_pictures_draw_what_is_there() -> None:
 @pytest.mark.parametrize(
     ("system", "change", "words"),
     [
-        (gear_pair(), {"method": "exakt"}, "is no method for this; did you mean"),
+        (gear_pair(), {"method": "exakt"}, "is not a method for this; did you mean"),
         (gear_pair(), {"harmonics": 3}, "does not belong to this method; leave it out: it takes begin, start"),
         (gear_pair(), {"method": "sweep up", "fit_range": 3}, "it takes start, points, least, most"),
         (gear_pair(), {"method": "describing function", "points": 3}, "it takes none"),
-        (tn.reference_system("duffing"), {"method": "averaging"}, "is no method for this"),
+        (tn.reference_system("duffing"), {"method": "averaging"}, "is not a method for this"),
         (tn.reference_system("lorenz"), {}, "name the one that is the frequency"),
-        (gear_pair().but(damping_law="in contact"), {"method": "harmonic balance"}, "is no spring and no constant"),
+        (
+            gear_pair().but(damping_law="in contact"),
+            {"method": "harmonic balance"},
+            "is neither a spring nor a constant",
+        ),
         (gear_pair(), {"method": "harmonic balance", "harmonics": 0}, "must be 1 or more"),
     ],
 )

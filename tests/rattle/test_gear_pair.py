@@ -122,7 +122,7 @@ def test_sweep_command(tmp_path: Path) -> None:
         (("sweep", "gear-rattle", "--set", "half_gap"), "is not NAME=VALUE"),
         (("sweep", "gear-rattle", "--set", "half_gap=-1"), "must not be negative"),
         (("frequency-response", "gear-rattle", "--set", "gap=1"), "gap"),
-        (("frequency-response", "gear-rattle", "--method", "magic"), "is no method"),
+        (("frequency-response", "gear-rattle", "--method", "magic"), "is not a method"),
         (("frequency-response", "gear-rattle", "-o", "x.txt"), "is nothing this command writes"),
         (("simulate", "gear-rattle"), "use it with frequency-response"),
     ],

@@ -59,7 +59,7 @@ def test_a_continuation_that_stalls_keeps_its_last_point(method: str, options: d
 
 @pytest.mark.parametrize("method", ["exact", pytest.param("harmonic balance", marks=pytest.mark.slow)])
 def test_undamped_growth_is_said_and_nothing_is_made_of_rounding(method: str) -> None:
-    """Linear, undamped, towards its resonance: unbounded; multipliers on the circle all along are no tori."""
+    """Linear, undamped, towards its resonance: unbounded; multipliers on the circle all along are not tori."""
     undamped = PiecewiseOscillator((), (1.0,), 0.0, 0.0, 0.1)
     found = frequency_response(undamped, 0.6, 1.5, method=method, most_points=1500)
     assert found.outcome.kind == "unbounded" and "grows without bound" in found.outcome.sentence
@@ -154,7 +154,7 @@ def test_curves_by_name_and_units_in_words() -> None:
     assert v.curve == "v" and v.half_peak_to_peak[0] == pytest.approx(0.8 * x.half_peak_to_peak[0], rel=0.05)
     assert "of v" in str(v) and "rpm" in v.describe("rpm") and v.plot().get_ylabel() == "half peak-to-peak of v"
     for system in (duffing, gear_pair()):
-        with pytest.raises(InputError, match=r"is no curve of this"):
+        with pytest.raises(InputError, match=r"is not a curve of this"):
             frequency_response(system, 0.8, 0.9, curve="torque")
 
 
@@ -164,7 +164,7 @@ def test_the_exact_branch_has_the_curves_it_knows() -> None:
     assert branch.curves == ("x",) and branch.peak_to_peak.shape == branch.largest.shape == (len(branch.parameter), 1)
     assert np.isfinite(branch.peak_to_peak).all() and np.isfinite(branch.largest).all()
     assert all(np.isfinite(point.peak_to_peak).all() for point in branch.special)
-    with pytest.raises(InputError, match=r"^curve = 'v': is no curve of this branch; known: x$"):
+    with pytest.raises(InputError, match=r"^curve = 'v': is not a curve of this branch; known: x$"):
         branch.plot(curve="v")
 
 

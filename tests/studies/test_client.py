@@ -166,7 +166,7 @@ def test_ends_in_its_time(client) -> None:
 
 
 def test_what_is_no_client_is_refused(client, monkeypatch) -> None:
-    with pytest.raises(tn.InputError, match=r"client = .str.: is no client of Dask; give a distributed.Client"):
+    with pytest.raises(tn.InputError, match=r"client = .str.: is not a client of Dask; give a distributed.Client"):
         tn.basins(GAP, [0.0], [0.0], client="tcp://far:1")
     ours = computed_by()
     with monkeypatch.context() as patch:

@@ -64,7 +64,7 @@ def test_what_is_missing_is_said(study, here: Path) -> None:
     [
         (("stauts", "s.zarr"), 'is nothing that is asked of a store; did you mean "status"?'),
         (("status",), "STORE: is missing; write: trunnion study status truck.zarr"),
-        (("show", "nothing.zarr"), "is no store of a study; name the folder that a study wrote"),
+        (("show", "nothing.zarr"), "is not a store of a study; name the folder that a study wrote"),
         (("study.tml",), 'study.tml: file not found; did you mean "study.toml"?'),
         (("export", "s.zarr"), "--output: is missing; give a file ending in one of .nc, .csv, .parquet"),
     ],
@@ -117,4 +117,4 @@ def test_a_line_of_the_catalogue(study, here: Path) -> None:
     said = 'is neither a file nor a name of the catalogue; did you mean "two-shaft-cardan"?'
     assert wrong.exit_code == 2 and said in wrong.stderr
     (here / "study.toml").write_text(text.replace("line.toml", "gear-rattle"))
-    assert "is no driveline but equations of motion" in study("study.toml").stderr
+    assert "is not a driveline but equations of motion" in study("study.toml").stderr

@@ -74,5 +74,5 @@ def test_refusals() -> None:
         lost = ishigami("saltelli", 64)
         lost.status[3] = 2
         sensitivities(lost, "f")
-    with pytest.raises(tn.InputError, match="is no quantity of the study"):
+    with pytest.raises(tn.InputError, match="is not a quantity of the study"):
         sensitivities(ishigami("saltelli", 64), "g")

@@ -152,11 +152,11 @@ def test_pictures_are_drawn(gridded, tmp_path) -> None:
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"kind": "charts"}, "kind = 'charts': is no picture of a study; did you mean \"chart\"?"),
-        ({"quantity": "growth"}, "is no quantity of the study"),
-        ({"x": "speeds"}, "x = 'speeds': is no parameter with a grid of this study; did you mean \"speed\"?"),
+        ({"kind": "charts"}, "kind = 'charts': is not a picture of a study; did you mean \"chart\"?"),
+        ({"quantity": "growth"}, "is not a quantity of the study"),
+        ({"x": "speeds"}, "x = 'speeds': is not a parameter with a grid of this study; did you mean \"speed\"?"),
         ({"x": "speed", "y": "speed"}, "stands on both axes"),
-        ({"at": {"sped": 1.0}}, "is no parameter that stands still here"),
+        ({"at": {"sped": 1.0}}, "is not a parameter that stands still here"),
         ({"kind": "histogram", "x": "speed"}, "belongs to chart and slices, not to histogram"),
     ],
 )

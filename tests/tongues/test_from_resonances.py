@@ -130,7 +130,7 @@ def test_what_was_not_followed_is_said() -> None:
     found = tn.tongues(
         line, ("factor of Shaft *.stiffness", 0.99, 1.01), ("HookeJoint *.angle", 0.05, 0.1), speed=250.0, rows=3
     )
-    assert "resonances were not followed, as x is no speed" in found.search and not found.complete
+    assert "resonances were not followed, as x is not a speed" in found.search and not found.complete
 
 
 @pytest.mark.slow

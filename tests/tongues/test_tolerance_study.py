@@ -169,10 +169,10 @@ BAD = [
         "speeds = 0.01: is too slow",
     ),
     (lambda: tn.tolerance_study(LINE, {}, 1.0), "tolerances = {}: must name one parameter or more"),
-    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is no tolerance"),
+    (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 2}, 1.0), "Shaft 1.stiffness = 2: is not a tolerance"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": ("range", 2, 1)}, 1.0), "Shaft 1.stiffness = ('range', 2"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 2.fork_offset": 0.1}, 1.0), "Shaft 2.fork_offset: is zero"),
-    (lambda: tn.tolerance_study(LINE, {"speed": 0.1}, 1.0), "speed: is no parameter of the line"),
+    (lambda: tn.tolerance_study(LINE, {"speed": 0.1}, 1.0), "speed: is not a parameter of the line"),
     (lambda: tn.tolerance_study(LINE, {"Shaft 1.stifness": 0.1}, 1.0), "Shaft 1.stifness: is not a parameter"),
     (
         lambda: tn.tolerance_study(LINE, {"Shaft 1.stiffness": 0.1, "factor of Shaft *.stiffness": 0.1}, 1.0),

@@ -115,7 +115,7 @@ def test_the_command(tmp_path: Path) -> None:
     none = CliRunner().invoke(app, [*asked, *angles, "--dry-run", "-o", str(tmp_path / "map.png")])
     assert none.exit_code == 2 and "computes no map" in none.output
     wrong = CliRunner().invoke(app, [*asked, "--y", "factor:1"])
-    assert wrong.exit_code == 2 and "is no range of factors" in wrong.output
+    assert wrong.exit_code == 2 and "is not a range of factors" in wrong.output
 
 
 def _small(store: Path, **more: object) -> CaptureMap:

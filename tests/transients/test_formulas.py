@@ -339,7 +339,7 @@ def test_passing_takes_formulas_that_settle() -> None:
 
 
 def test_passing_ends_where_a_formula_gives_no_number() -> None:
-    """The rigid line is integrated first; a value that is no number once kept it from ending."""
+    """The rigid line is integrated first; a value that is not a number once kept it from ending."""
     for low, text in ((100.0, "50*log(speed - 120)"), (125.0, "10 + 8*sqrt(130 - speed)")):
         torque = tn.AppliedTorque(on="motor", formula=text)
         with pytest.raises(tn.InputError, match="no finite number"):

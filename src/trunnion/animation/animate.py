@@ -85,7 +85,7 @@ def animate(
         97 frames over 0.1 s; twist drawn 1 times as it is
     """
     if what not in WHAT:
-        raise InputError("is no motion of a line", key="what", value=what, remedy=nearest(str(what), WHAT))
+        raise InputError("is not a motion of a line", key="what", value=what, remedy=nearest(str(what), WHAT))
     given = {
         "speed": speed, "mode": mode, "beside": beside, "speeds": speeds, "acceleration": acceleration,
         "scenario": scenario,

@@ -22,7 +22,7 @@ def check_report(path: Path) -> None:
         check_file(path, "report.html")
         return
     if path.suffix.lower() in OTHER_FILES and not path.is_dir():
-        _refuse(path, "is no format of a report", f"write {path.with_suffix('.html')}, or name a folder")
+        _refuse(path, "is not a format of a report", f"write {path.with_suffix('.html')}, or name a folder")
     check_folder(path)
 
 

@@ -91,7 +91,7 @@ def kinetostatics(
     --branch ELEMENT  The output is the end of the branch with this element.
     --friction MU:PIN:ARM  Of the crosses: 0.005:12mm:40mm (pin and arm radius).
     --support SHAFT:AT[:AT]  Bearings: 'Shaft 1:-300mm:-100mm'; repeat it.
-    --length SHAFT:LENGTH  Joint to joint, where it is no tube: 'Shaft 2:0.8m'.
+    --length SHAFT:LENGTH  Joint to joint, where it is not a tube: 'Shaft 2:0.8m'.
     --limit  Irregularity of the output to be kept.
     --phase  Also find the best fork offsets.
     --pitch  Spline pitch for --phase, such as "10 deg".

@@ -34,7 +34,7 @@ def _tolerance(asked: CommandInput, text: str, key: str) -> tuple[str, object]:
     except ValueError:
         share = 0.0
     if not equals or not path or kind not in ("", "normal") or not 0 < share < 1:
-        raise InputError("is no tolerance", key=key, value=text, remedy=TOLERANCE_EXAMPLE)
+        raise InputError("is not a tolerance", key=key, value=text, remedy=TOLERANCE_EXAMPLE)
     return path.strip(), ("normal", share) if kind else share
 
 

@@ -45,7 +45,7 @@ def _orders(asked: CommandInput, text: str, key: str) -> list[float]:
     try:
         return [float(one) for one in text.split(",")]
     except ValueError:
-        raise InputError("is no list of orders", key=key, value=text, remedy='write "0.5,1,2"') from None
+        raise InputError("is not a list of orders", key=key, value=text, remedy='write "0.5,1,2"') from None
 
 
 def _reference_run(asked: CommandInput, text: str, key: str) -> Any:
@@ -61,7 +61,7 @@ def _between(asked: CommandInput, text: str, key: str) -> tuple[float, float]:
     try:
         first, last = (float(one) for one in text.split(":"))
     except ValueError:
-        raise InputError("is no pair of times", key=key, value=text, remedy='write "3:27", in seconds') from None
+        raise InputError("is not a pair of times", key=key, value=text, remedy='write "3:27", in seconds') from None
     return first, last
 
 
@@ -153,7 +153,7 @@ def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[str, s
     parts = text.rsplit(":", 2)
     if len(parts) != 3:
         raise InputError(
-            "is no parameter with bounds", key=key, value=text, remedy='write "tube.stiffness:10kN*m/rad:40kN*m/rad"'
+            "is not a parameter with bounds", key=key, value=text, remedy='write "tube.stiffness:10kN*m/rad:40kN*m/rad"'
         )
     return parts[0], (parts[1], parts[2])
 

@@ -58,7 +58,7 @@ def _even_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
 
     (low, *rest), counted = _stated_speeds(asked, text, key)
     if not rest:
-        raise InputError("is no rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
+        raise InputError("is not a rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
     return np.linspace(low, rest[0], counted or FEW)
 
 
@@ -68,11 +68,11 @@ def _stated_speeds(asked: CommandInput, text: str, key: str) -> tuple[tuple[floa
         return range_of(asked), 0
     ends = text.split(":")
     if len(ends) > 3:
-        raise InputError("is no range", key=key, value=text, remedy=SPEED_EXAMPLE)
+        raise InputError("is not a range", key=key, value=text, remedy=SPEED_EXAMPLE)
     counted = ends.pop() if len(ends) == 3 else None
     read = tuple(read_speed(asked, end.strip(), key) for end in ends)
     if len(read) == 2 and not read[0] < read[1]:
-        raise InputError("is no rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
+        raise InputError("is not a rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
     if counted is not None and not (counted.isdecimal() and 2 <= int(counted) <= 100_000):
         problem = "must end in a whole number of speeds, 2 to 100 000"
         raise InputError(problem, key=key, value=text, remedy=SPEED_EXAMPLE)
@@ -82,7 +82,7 @@ def _stated_speeds(asked: CommandInput, text: str, key: str) -> tuple[tuple[floa
 def _orders(asked: CommandInput, text: str, key: str) -> list[float]:
     parts = text.split(",")
     if not all(is_number(part) and 0 < float(part) < float("inf") for part in parts):
-        raise InputError("is no list of orders", key=key, value=text, remedy='write "0.5,1,2"')
+        raise InputError("is not a list of orders", key=key, value=text, remedy='write "0.5,1,2"')
     return [float(part) for part in parts]
 
 
@@ -94,7 +94,7 @@ def _known_spring(asked: CommandInput, text: str, key: str) -> str:
     names = shaft_names(assemble(asked.line))
     if text not in names:
         remedy = nearest(text, list(names))
-        raise InputError("is no shaft or mesh of the line", key=key, value=text, remedy=remedy)
+        raise InputError("is not a shaft or mesh of the line", key=key, value=text, remedy=remedy)
     return text
 
 

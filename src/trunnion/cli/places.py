@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 DEFAULT_FOLDER = Path("trunnion-out")
 PICTURES_AND_DATA = (".png", ".pdf", ".svg", ".nc")
-"""Endings of commands whose results are no tables."""
+"""Endings of commands whose results are not tables."""
 TABLES = (*PICTURES_AND_DATA, ".csv")
 PAGES = (".html", ".gif", ".json")
 """Endings of what moves."""

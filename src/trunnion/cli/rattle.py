@@ -61,7 +61,7 @@ def _meant(name: str, values: dict[str, float], texts: list[str] | None) -> tupl
     lines = [entry.name for entry in entries()]
     if not Path(name).suffix and not Path(name).exists() and name not in lines:
         remedy = nearest(name, [GEARS, *SYSTEMS, *lines])
-        raise InputError("is no oscillator known here", key="NAME", value=name, remedy=remedy)
+        raise InputError("is not an oscillator known here", key="NAME", value=name, remedy=remedy)
     if values:
         remedy = "edit the file instead"
         raise InputError("belongs to reference systems", key="--set", value=texts, remedy=remedy)
@@ -184,13 +184,13 @@ def sweep(
             remedy=f"use {GEARS}, {DEAD_ZONE} or a line with gears; or frequency-response, periodic-response",
         )  # fmt: skip
     if direction not in ("up", "down", "both"):
-        raise InputError("is no direction", key="--direction", value=direction, remedy="write up, down or both")
+        raise InputError("is not a direction", key="--direction", value=direction, remedy="write up, down or both")
     check_range(low, high)
     if isinstance(subject, tn.PiecewiseOscillator):
         require_forced(subject)
     elif curve and curve not in (springs := staged_line(subject, low).springs):
         remedy = nearest(curve, list(springs))
-        raise InputError("is no shaft or mesh of the line", key="--curve", value=curve, remedy=remedy)
+        raise InputError("is not a shaft or mesh of the line", key="--curve", value=curve, remedy=remedy)
     grid = np.linspace(low, high, points)
     grids = [grid if d == "up" else grid[::-1] for d in ("up", "down") if direction in (d, "both")]
     found: list[Any] = [tn.sweep(subject, values) for values in grids]

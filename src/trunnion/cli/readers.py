@@ -56,7 +56,7 @@ def read_line(file: str, besides: Collection[str] = ()) -> tn.Driveline:
         if not isinstance(line, tn.Driveline):
             rattle, chaos = "frequency-response, sweep", "lyapunov-spectrum, poincare-map, certify-chaos"
             remedy = f"use it with {rattle if file == 'gear-rattle' else chaos} or reproduce {file}"
-            raise InputError("is no driveline but equations of motion", key="FILE", value=file, remedy=remedy)
+            raise InputError("is not a driveline but equations of motion", key="FILE", value=file, remedy=remedy)
         return line
     problem = "is neither a file nor a name of the catalogue" + (" or of a reference system" if besides else "")
     raise InputError(problem, key="FILE", value=file, remedy=nearest(file, [*names, *besides]))
@@ -93,7 +93,7 @@ def read_speed_ends(asked: CommandInput, text: str, key: str) -> tuple[float, fl
     """``LOW:HIGH`` in rad/s."""
     read = [read_speed(asked, end, key) for end in text.split(":")]
     if len(read) != 2 or not read[0] < read[1]:
-        raise InputError("is no rising range", key=key, value=text, remedy='write "300rpm:2400rpm", say')
+        raise InputError("is not a rising range", key=key, value=text, remedy='write "300rpm:2400rpm", say')
     return read[0], read[1]
 
 
@@ -255,5 +255,5 @@ def place_of_line(asked: CommandInput, text: str, key: str) -> Path:
     """Where a line is to be written."""
     best = Path(text)
     if best.suffix.lower() != ".toml" or not best.parent.is_dir() or best.is_dir():
-        raise InputError("is no place for a driveline file", key=key, value=text, remedy="best.toml, say")
+        raise InputError("is not a place for a driveline file", key=key, value=text, remedy="best.toml, say")
     return best

@@ -95,7 +95,7 @@ def _axis(asked: CommandInput, text: str, key: str) -> Axis:
         low, high = float(numbers[0]), float(numbers[1])
         count = int(numbers[2]) if numbers[2:] else CELLS
     except (ValueError, IndexError):
-        problem = "is no range of factors"
+        problem = "is not a range of factors"
         raise InputError(problem, key=key, value=text, remedy="write factor:0.5:2:12, say") from None
     return path, low, high, count
 

@@ -29,7 +29,7 @@ def _rows(value: object) -> object:
 
 def _formula(value: object) -> object:
     if not isinstance(value, str):
-        raise InputError("is no text", value=value, remedy='write formula = "300*exp(-t/0.2)*sin(314*t)", say')
+        raise InputError("is not text", value=value, remedy='write formula = "300*exp(-t/0.2)*sin(314*t)", say')
     from trunnion.laws.formula import formula
 
     formula(value)
@@ -95,7 +95,7 @@ class AppliedTorque(Record):
         default=(), description="over two variables, one row for each point of the first"
     )
     between: Annotated[
-        Between, BeforeValidator(one_of(BETWEEN, "is no way between points", 'write "lines"', near=True))
+        Between, BeforeValidator(one_of(BETWEEN, "is not a way between points", 'write "lines"', near=True))
     ] = Field(default="lines", description="what the torque does between its points")
     hold: Switch = Field(default=False, description="whether the first and last value last beyond the points")
     breakdown_torque: Maybe[Torque] = optional(default=None, description="of an asynchronous motor")

@@ -143,7 +143,7 @@ def find(name: object, line_folder: Path | None = None) -> Component:
     if match is None:
         problem = "is not the name of a component, maker/type"
         if isinstance(name, str) and (".." in name or "\\" in name or name.startswith(("/", "~"))):
-            problem = "leads out of the folders of components, and is no maker/type"
+            problem = "leads out of the folders of components, and is not a maker/type"
         raise InputError(problem, key="component", value=name, remedy=EXAMPLE)
     maker, kind, version = match.groups()
     known: list[str] = []
@@ -262,7 +262,7 @@ def _entry(entry: dict[str, Any], number: int, maker: str, whole: dict[str, Any]
             raise InputError("unknown key", element=label, key=key, value=value, remedy=remedy)
     if not isinstance(name, str) or not _WORD.fullmatch(name):
         remedy = "write letters, digits, points and hyphens, without blanks"
-        raise InputError("is no type of a maker", element=label, key="name", value=name, remedy=remedy)
+        raise InputError("is not a type of a maker", element=label, key="name", value=name, remedy=remedy)
     kind = entry.get("type")
     if not isinstance(kind, str) or kind not in KINDS:
         problem = "is missing" if kind is None else "unknown element type"

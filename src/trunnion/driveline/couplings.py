@@ -248,7 +248,7 @@ def _table(over: str, points: tuple[float, ...], key: str, values: tuple[float, 
         problem = f"has {len(values)} values beside {len(points)} {over}"
         raise InputError(problem, key=key, remedy=f"write one for each of {over}")
     if len(points) < 2:
-        raise InputError("must be two or more", key=over, remedy="one point is no table")
+        raise InputError("must be two or more", key=over, remedy="one point is not a table")
     for before, after in pairwise(points):
         if not after > before:
             said = " after ".join(shown(one, kind) for one in (after, before))

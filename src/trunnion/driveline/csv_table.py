@@ -76,7 +76,7 @@ def _rows(path: Path, kind: TableKind) -> list[list[str]]:
     try:
         rows = [[cell.strip() for cell in row] for row in reader]
     except csv.Error:
-        problem = f"has a cell of more than {csv.field_size_limit()} characters, or one that is no text"
+        problem = f"has a cell of more than {csv.field_size_limit()} characters, or one that is not text"
         where = f"{path.name}: row {reader.line_num}"
         raise InputError(problem, element=where, remedy="write numbers, and close what is quoted") from None
     rows = [row for row in rows if any(row) and not row[0].startswith("#")]

@@ -99,7 +99,7 @@ class Disturbance(Record):
     example: ClassVar[str] = 'on = "mill" and case = "bite and tail-out"'
 
     on: str = Field(description="name of the disk that it acts on")
-    case: Annotated[Kind, BeforeValidator(one_of(tuple(CASES), "is no case", 'write "tip-in", say', near=True))] = (
+    case: Annotated[Kind, BeforeValidator(one_of(tuple(CASES), "is not a case", 'write "tip-in", say', near=True))] = (
         Field(description="what happens")
     )
     since: Time = optional(default=0.0, description="when it begins")

@@ -296,7 +296,7 @@ def _wrong_wheels(line: Driveline) -> Iterator[InputError]:
         if element.to is not None:
             if not isinstance(line.elements[line.index(element.to)], Vehicle):
                 remedy = "name a Vehicle; what joins two disks is a Shaft"
-                yield InputError("is no Vehicle", element=name, key="to", value=element.to, remedy=remedy)
+                yield InputError("is not a Vehicle", element=name, key="to", value=element.to, remedy=remedy)
         elif not any(isinstance(line.elements[k], Vehicle) for k, p in enumerate(line.parents) if p == i):
             vehicles = [n for n, e in line.parts if isinstance(e, Vehicle)]
             remedy = f'write to = "{vehicles[0]}"' if vehicles else "put a Vehicle behind it"

@@ -49,7 +49,7 @@ def _sheet(value: object) -> object:
     if value is None or isinstance(value, Sheet):
         return value
     if not isinstance(value, dict):
-        raise InputError("is no sheet", value=value, remedy='write component = "maker/type", or tn.component(...)')
+        raise InputError("is not a sheet", value=value, remedy='write component = "maker/type", or tn.component(...)')
     return Sheet(**value)
 
 
@@ -103,7 +103,7 @@ class Element(Record):
 
     @property
     def idle(self) -> tuple[str, ...]:
-        """Numbers that do nothing here and are no parameters."""
+        """Numbers that do nothing here and are not parameters."""
         return ()
 
     @property
@@ -210,7 +210,7 @@ class Rotor(Element):
 
     @property
     def tangent(self) -> bool:
-        """Whether equations of motion have its load by the tangent at the mean speed: any that is no polynomial."""
+        """Whether equations of motion have its load by the tangent at the mean speed: any that is not a polynomial."""
         from trunnion.laws.torque_curve import PowerCurve  # a description alone loads without numpy
 
         return not isinstance(self.load, PowerCurve)
@@ -419,7 +419,7 @@ class Ratio(Element):
 
 
 def with_defaults(data: Any, given: str, **defaults: float) -> Any:
-    """Defaults that hold only where `given` is: elsewhere the keys stay unset and are no parameters."""
+    """Defaults that hold only where `given` is: elsewhere the keys stay unset and are not parameters."""
     if isinstance(data, dict) and data.get(given) is not None:
         return data | {k: v for k, v in defaults.items() if data.get(k) is None}
     return data

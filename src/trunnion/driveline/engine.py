@@ -77,14 +77,14 @@ def _firing_order(value: object) -> object:
     if isinstance(value, str):
         value = re.split(r"[-–,\s]+", value.strip())
     if not isinstance(value, Iterable) or isinstance(value, dict):
-        raise InputError("is no order of cylinders", value=value, remedy=_ORDER)
+        raise InputError("is not an order of cylinders", value=value, remedy=_ORDER)
     try:
         numbers = tuple(value)
         if any(isinstance(one, bool | float) for one in numbers):
             raise ValueError
         return tuple(int(one) for one in numbers)
     except (ValueError, TypeError):
-        raise InputError("is no order of cylinders", value=value, remedy=_ORDER) from None
+        raise InputError("is not an order of cylinders", value=value, remedy=_ORDER) from None
 
 
 def _also_one(schema: dict[str, Any]) -> None:
@@ -185,7 +185,7 @@ class Engine(Composite):
     web_width: Maybe[Length] = optional(default=None, description="of a web")
     shear_modulus: Maybe[Pressure] = optional(default=None, description="of the crank, where its dimensions are given")
     stiffness_formula: Annotated[
-        str, BeforeValidator(one_of(tuple(FORMULAS), "is no formula", 'write "carter" or "ker wilson"'))
+        str, BeforeValidator(one_of(tuple(FORMULAS), "is not a formula", 'write "carter" or "ker wilson"'))
     ] = Field(
         default="carter",
         json_schema_extra={"enum": list(FORMULAS)},
@@ -326,7 +326,7 @@ class Engine(Composite):
         positive(self, "bore", "stroke", "rod_length", "reciprocating_mass", "crankcase_pressure")
         if self.stroke is not None and self.rod_length is not None and not self.rod_length > self.stroke / 2:
             remedy = f"longer than half the stroke, {shown(self.stroke / 2, LENGTH)}; check the units"
-            raise InputError("is no longer than the crank", key="rod_length", value=self.rod_length, remedy=remedy)
+            raise InputError("must be longer than the crank", key="rod_length", value=self.rod_length, remedy=remedy)
         self._needs("reciprocating_mass", "stroke", "rod_length")
         self._needs("pressure", "bore", "stroke", "rod_length")
         if not 1 <= self.orders <= HIGHEST_ORDER:

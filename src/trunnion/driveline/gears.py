@@ -114,7 +114,7 @@ class GearPair(Element):
         ``StiffnessVariation``; they take tooth numbers. They follow the mean rotation of the gears.
 
     Linear analyses take the slope that the static load puts the mesh on, times its variation with the mesh phase; the
-    transmission error is no part of them.
+    transmission error is not part of them.
 
     >>> pair = GearPair(teeth_in=25, teeth_out=40, module="3 mm", mesh_stiffness="2e8 N/m", backlash="0.1 mm")
     >>> pair.speed_ratio, pair.total_backlash
@@ -256,7 +256,7 @@ class GearPair(Element):
 
     @property
     def idle(self) -> tuple[str, ...]:
-        """Numbers that do nothing here and are no parameters."""
+        """Numbers that do nothing here and are not parameters."""
         if not self.total_backlash:
             return "backlash", "angular_backlash", "stiffness_ratio", "impact_damping"
         return ("angular_backlash",) if self.backlash else ("backlash",)

@@ -1,7 +1,7 @@
 """Materials by name: elastic moduli, density, and a tensile strength where a grade fixes one.
 
 Moduli and densities are those of common handbooks. Strengths are minimum values of the standard named, for the
-sizes named; a certificate of the part at hand goes before them. Plain "steel" has no strength: it is no grade.
+sizes named; a certificate of the part at hand goes before them. Plain "steel" has no strength: it is not a grade.
 """
 
 from __future__ import annotations

@@ -210,7 +210,7 @@ class Operation(Record):
         every += [(f"passage {one.name}", one.load_case) for one in self.passages]
         for what, name in every:
             if name is not None and name not in known:
-                problem, remedy = "is no load case of this description", nearest(name, known)
+                problem, remedy = "is not a load case of this description", nearest(name, known)
                 yield InputError(problem, element=what, key="load_case", value=name, remedy=remedy)
 
     def load_case(self, name: str) -> LoadCase:

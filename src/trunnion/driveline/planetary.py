@@ -43,7 +43,7 @@ def _one_shaft(value: object) -> object:
     if isinstance(value, list | tuple) and len(value) > 1:
         remedy = f'write held = "{value[0]}": one shaft is held, one drives, one is driven'
         raise InputError("holds two shafts, so that nothing can turn", value=list(value), remedy=remedy)
-    return one_of(SHAFTS, "is no shaft of a planetary set", WRITE)(value)
+    return one_of(SHAFTS, "is not a shaft of a planetary set", WRITE)(value)
 
 
 class Planetary(Elastic):
@@ -80,7 +80,7 @@ class Planetary(Elastic):
 
     teeth_sun: Teeth = Field(description="teeth of the sun")
     teeth_ring: Teeth = Field(description="teeth of the ring")
-    input: Annotated[_Shaft, BeforeValidator(one_of(SHAFTS, "is no shaft of a planetary set", WRITE))] = Field(
+    input: Annotated[_Shaft, BeforeValidator(one_of(SHAFTS, "is not a shaft of a planetary set", WRITE))] = Field(
         description="shaft that hangs on the element in front: sun, carrier or ring"
     )
     held: Annotated[_Shaft | None, BeforeValidator(_one_shaft)] = Field(
@@ -155,7 +155,7 @@ class Planetary(Elastic):
 
     def doubts(self) -> Iterator[Doubt]:
         if (self.teeth_sun + self.teeth_ring) % self.planets:
-            problem = f"cannot be spaced evenly: {self.teeth_sun} + {self.teeth_ring} teeth are no multiple of them"
+            problem = f"cannot be spaced evenly: {self.teeth_sun} + {self.teeth_ring} teeth are not a multiple of them"
             yield ("planets", problem, "check the tooth numbers")
         room = (self.teeth_ring - self.teeth_sun) / 2
         if self.teeth_planet and abs(self.teeth_planet - room) > SHIFTED:

@@ -88,7 +88,7 @@ class Record(BaseModel):
 
     @classmethod
     def quantity_of(cls, key: str) -> QuantityKind | None:
-        """The physical kind of field `key`, or of the members of its list; None where it is no quantity."""
+        """The physical kind of field `key`, or of the members of its list; None where it is not a quantity."""
         return _kind_in(cls.model_fields[key])
 
 
@@ -171,7 +171,7 @@ def one_of(words: Iterable[str], problem: str, remedy: str, near: bool = False) 
 
 
 def by_name(read: Callable[[object], Any], problem: str, remedy: str) -> Callable[[object], dict[str, Any]]:
-    """Reads a table of values by the names of elements, each with ``read``; ``problem``: what is no table."""
+    """Reads a table of values by the names of elements, each with ``read``; ``problem``: what is not a table."""
 
     def one(name: object, value: object) -> tuple[str, Any]:
         try:

@@ -228,7 +228,7 @@ def wrong_places_of(
         *(
             ("crossing of", one.of, disks, "is not a Disk of this driveline")
             if one.key in ("speed", "angle")
-            else ("crossing of", one.of, springs, "is no spring of this driveline")
+            else ("crossing of", one.of, springs, "is not a spring of this driveline")
             for one in crossing
         ),
     ):

@@ -37,7 +37,7 @@ KEYS = {"angles": "angle", "loads": "load_torque"}
 def _list_of(kind: QuantityKind, value: object) -> tuple[float, ...]:
     remedy = f'write two values or more, as ["{kind.example}", …]'
     if not isinstance(value, list | tuple) or len(value) < 2:
-        raise InputError("is no list of values", value=value, remedy=remedy)
+        raise InputError("is not a list of values", value=value, remedy=remedy)
     return tuple(parse(one, kind) for one in value)
 
 

@@ -17,7 +17,7 @@ MOST_LINES = 200
 def _one_line(value: object) -> object:
     if not isinstance(value, str) or not value.strip() or len(value) > LONGEST or not value.isprintable():
         remedy = f"write one line of text, of at most {LONGEST} characters"
-        raise InputError("is no line of text", value=value, remedy=remedy)
+        raise InputError("is not a line of text", value=value, remedy=remedy)
     return value.strip()
 
 
@@ -26,13 +26,13 @@ def _lines(value: object) -> object:
     plain = isinstance(value, dict) and len(value) <= MOST_LINES
     if not plain or not all(isinstance(one, str | int | float) for one in value.values()):  # type: ignore[attr-defined]
         remedy = 'write "C_Tdyn" = "65 kN m/rad", say, as the sheet prints it'
-        raise InputError("is no table of texts", value=value, remedy=remedy)
+        raise InputError("is not a table of texts", value=value, remedy=remedy)
     return {str(_one_line(key)): _one_line(str(one)) for key, one in value.items()}  # type: ignore[attr-defined]
 
 
 def _numbers(value: object) -> object:
     if not isinstance(value, dict) or len(value) > MOST_LINES:
-        raise InputError("is no table", value=value, remedy="leave it to tn.component, which writes it")
+        raise InputError("is not a table", value=value, remedy="leave it to tn.component, which writes it")
     return dict(value)
 
 

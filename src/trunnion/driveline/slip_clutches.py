@@ -114,5 +114,5 @@ class Slipping(SlipClutch, Elastic):
         return 0.0
 
     def damping_of(self, number: Numbers) -> Any:
-        """None: its friction is no damper."""
+        """None: its friction is not a damper."""
         return 0.0

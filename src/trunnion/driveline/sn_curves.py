@@ -35,7 +35,7 @@ BELOW = {
     "original": "nothing is damaged",
 }
 """Forms of Miner's rule: what holds for amplitudes below the one stated."""
-_FORMS = one_of(BELOW, "is no form of Miner's rule", 'write "elementary", "modified" or "original"', near=True)
+_FORMS = one_of(BELOW, "is not a form of Miner's rule", 'write "elementary", "modified" or "original"', near=True)
 
 
 class SNCurve(Addressed):

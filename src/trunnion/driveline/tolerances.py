@@ -102,7 +102,7 @@ class Tolerance(Addressed):
 
     Raises
     ------
-    InputError : nothing scatters; what is no tolerance.
+    InputError : nothing scatters; what is not a tolerance.
 
     >>> Tolerance(of="Shaft *", stiffness="5 %", fork_offset="0.5 deg").shown
     {'stiffness': 0.05, 'fork_offset': '0.5 deg'}
@@ -118,7 +118,7 @@ class Tolerance(Addressed):
         wrong: list[InputError] = []
         made: list[Scatter] = []
         if not isinstance(of, str):
-            what = "is missing" if of is None else "is no name"
+            what = "is missing" if of is None else "is not a name"
             wrong.append(InputError(what, element=label, key="of", value=of, remedy='write of = "Shaft 1", say'))
         for key, value in numbers.items():
             try:
@@ -149,7 +149,7 @@ class Tolerance(Addressed):
         having = [(n, e, v) for n, e in concerned if (v := _nominal(e, key)) is not None]
         if not having:
             known = [one for one in SCATTERING if _nominal(concerned[0][1], one) is not None]
-            problem = f"is no number that {concerned[0][0]} states"
+            problem = f"is not a number that {concerned[0][0]} states"
             yield InputError(problem, **where, remedy=nearest(key, known))
         for name, element, nominal in having:
             yield from _impossible(where, name, element, scatter, nominal)
@@ -159,11 +159,11 @@ def _scatter(key: str, value: object) -> Scatter:
     if key not in SCATTERING:
         close = difflib.get_close_matches(key, list(SCATTERING), n=1, cutoff=0.7)
         example = 'give the number its own key: of = "Shaft 1" and stiffness = "5 %", say'
-        raise InputError("is no number that can scatter", remedy=nearest(key, SCATTERING) if close else example)
+        raise InputError("is not a number that can scatter", remedy=nearest(key, SCATTERING) if close else example)
     kind = SCATTERING[key]
     if isinstance(value, dict):
         if set(value) != {"deviation"}:
-            raise InputError("is no distribution", remedy='write { deviation = "2 %" }')
+            raise InputError("is not a distribution", remedy='write { deviation = "2 %" }')
         form, size = _size(value["deviation"], kind)
         if form == "share" and size * FARTHEST >= 1:
             raise InputError("reaches zero at three standard deviations", remedy='write { deviation = "2 %" }')

@@ -249,7 +249,7 @@ class CalledFunction:
 
         Raises
         ------
-        InputError : what the function gives is no number. Anything that the function raises.
+        InputError : what the function gives is not a number. Anything that the function raises.
         """
         found = self.function(time, speed, angle)
         try:

@@ -170,7 +170,7 @@ def assemble(line: Driveline | Assembly, load_case: str | None = None) -> Assemb
     if isinstance(line, Assembly):
         return line
     if not isinstance(line, Driveline):
-        raise InputError("is no driveline", key="line", value=line, remedy='tn.load("line.toml"), say')
+        raise InputError("is not a driveline", key="line", value=line, remedy='tn.load("line.toml"), say')
     for known in tuple(_RECENT):
         if known.line is line:
             return known

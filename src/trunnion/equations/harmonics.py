@@ -42,7 +42,7 @@ class BaseOfExcitation:
 
     relative (case, time, station): r from a group's first station; rotation (case, time, station): deviation of the
     base motion from uniform rotation [rad]; turning (case, time, station, n): rotation per rotation of every unknown,
-    of a line that is no tree.
+    of a line that is not a tree.
     """
 
     relative: Array

@@ -41,7 +41,7 @@ class LineMatrices:
     """Matrices in time (not divided by Ω), shapes (case, time, n, n) and (case, time, n).
 
     ``ratio`` (case, time, compliance) is r of each compliance's near end, ``wave`` its stiffness over the mean.
-    Of a line that is no tree and varies: ``elongations`` (case, time, compliance, n), twist of every compliance per
+    Of a line that is not a tree and varies: ``elongations`` (case, time, compliance, n), twist of every compliance per
     rotation of every unknown; ``base_twist`` (case, time, compliance), of those that close loops by the base motion.
     """
 

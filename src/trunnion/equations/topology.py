@@ -7,7 +7,8 @@ dynamics see groups that carry inertia, joined by compliances; massless shafts i
 compliance. The root group is prescribed if the line starts with a ConstantSpeed, otherwise it is free.
 
 Most lines are trees. A differential ties one shaft rigidly to two others: its station turns by a sum of theirs, and is
-a group that is no unknown. ``Topology.turning`` says what every station turns by with every unknown of a straight line.
+a group that is not an unknown. ``Topology.turning`` says what every station turns by with every unknown of a
+straight line.
 """
 
 from __future__ import annotations
@@ -183,7 +184,7 @@ class Topology:
 
     @cached_property
     def graph(self) -> bool:
-        """Whether it is no tree: a shaft is tied to two others, or springs close a loop."""
+        """Whether it is not a tree: a shaft is tied to two others, or springs close a loop."""
         return bool(self.sums) or any(c.far is not None for c in self.compliances)
 
     @cached_property

@@ -59,7 +59,7 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple
     ('ConstantSpeed 1', 'Shaft 1', 'Disk 1')
     """
     if to not in ENDINGS:
-        raise InputError("is no target", key="to", value=to, remedy=nearest(str(to), list(ENDINGS)))
+        raise InputError("is not a target", key="to", value=to, remedy=nearest(str(to), list(ENDINGS)))
     if Path(path).suffix.lower() != ENDINGS[to]:
         raise InputError(
             f"does not end in {ENDINGS[to]}", key="output", value=str(path), remedy=f"a file for {to} does"

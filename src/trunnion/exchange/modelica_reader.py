@@ -154,7 +154,7 @@ class _Statements:
     def wrong(self, word: str, expected: str = "") -> InputError:
         found = f"at {short(word, 40)}" if word else "at its end"
         wanted = f", where {expected} is expected" if expected else ""
-        return InputError(f"is no model of a line: cannot be read {found}{wanted}", key=self.source, remedy=_WRITTEN)
+        return InputError(f"is not a model of a line: cannot be read {found}{wanted}", key=self.source, remedy=_WRITTEN)
 
 
 def _words(text: str, source: str) -> list[str]:
@@ -162,7 +162,7 @@ def _words(text: str, source: str) -> list[str]:
     while at < len(text):
         match = _TOKEN.match(text, at)
         if match is None:
-            problem = f"is no model of a line: cannot be read in line {text.count(chr(10), 0, at) + 1}"
+            problem = f"is not a model of a line: cannot be read in line {text.count(chr(10), 0, at) + 1}"
             raise InputError(problem, key=source, remedy=_WRITTEN)
         if match.lastgroup:
             found.append(match.group())
@@ -191,7 +191,7 @@ def _flanges(components: list[_Component], joints: list[tuple[str, str]], source
     for first, other in [*within, *joints]:
         for port in (first, other):
             if port not in over:
-                raise InputError("is no flange of the model", element=source, key=short(port, 60), remedy=_WRITTEN)
+                raise InputError("is not a flange of the model", element=source, key=short(port, 60), remedy=_WRITTEN)
         over[root(other)] = root(first)
     numbers: dict[str, int] = {}
     return {port: numbers.setdefault(root(port), len(numbers)) for port in over}
@@ -274,7 +274,7 @@ class _Made:
         except (ValueError, ZeroDivisionError):
             value = short(one.values["ratio"], 40)
             remedy = "write 41/10 or 4.1, say, and not zero"
-            raise InputError("is no ratio", element=one.name, key="ratio", value=value, remedy=remedy) from None
+            raise InputError("is not a ratio", element=one.name, key="ratio", value=value, remedy=remedy) from None
 
 
 _LEADING = ("Components.Inertia", "Components.SpringDamper", "Components.IdealGear")

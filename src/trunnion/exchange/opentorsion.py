@@ -160,4 +160,4 @@ def _number(value: object, name: str, source: str) -> float | int:
 
 def _unlike(source: str, what: str) -> InputError:
     remedy = "write it with trunnion export FILE --to opentorsion"
-    return InputError(f"is no script that Trunnion wrote: {what} cannot be read", key=source, remedy=remedy)
+    return InputError(f"is not a script that Trunnion wrote: {what} cannot be read", key=source, remedy=remedy)

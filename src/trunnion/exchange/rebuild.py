@@ -21,7 +21,7 @@ def line_of(network: Network) -> Driveline:
 
     Raises
     ------
-    InputError : it is no line: parts that nothing joins, gears that close a loop, drives that contradict each other.
+    InputError : it is not a line: parts that nothing joins, gears that close a loop, drives that contradict each other.
     """
     return _Rebuilt(network).line()
 

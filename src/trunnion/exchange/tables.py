@@ -62,7 +62,7 @@ def read_table(text: str, source: str) -> Network:
     try:
         rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
     except csv.Error:
-        raise InputError("is no CSV table", key=source, remedy=_SAVED) from None
+        raise InputError("is not a CSV table", key=source, remedy=_SAVED) from None
     if not rows or tuple(cell.strip() for cell in rows[0]) != HEAD:
         raise InputError("does not begin with the columns of a line", key=source, remedy=_SAVED)
     found = Network("")
@@ -89,7 +89,7 @@ class _TableRow:
     def flange(self, column: str) -> int:
         text = self.cells[column]
         if not (text.isascii() and text.isdigit() and len(text) < 10):
-            raise self.wrong("is no number of a flange", column, "write 0, 1, 2, …")
+            raise self.wrong("is not a number of a flange", column, "write 0, 1, 2, …")
         return int(text)
 
     def number(self, column: str, usual: float | None = None) -> float:
@@ -108,7 +108,7 @@ class _TableRow:
         try:
             return read_ratio(self.cells["ratio [1]"])
         except (ValueError, ZeroDivisionError):
-            raise self.wrong("is no ratio", "ratio", "write 41/10 or 4.1, say, and not zero") from None
+            raise self.wrong("is not a ratio", "ratio", "write 41/10 or 4.1, say, and not zero") from None
 
 
 def _read_row(found: Network, row: _TableRow) -> None:
@@ -134,4 +134,4 @@ def _read_row(found: Network, row: _TableRow) -> None:
         case "gear":
             found.items.append(FlangeGear(row.name, row.flange("from"), row.flange("to"), row.ratio()))
         case _:
-            raise row.wrong("is no kind of part", "kind", "write drive, inertia, spring or gear")
+            raise row.wrong("is not a kind of part", "kind", "write drive, inertia, spring or gear")

@@ -180,7 +180,7 @@ class _Compiler:
         if name in CONSTANTS:
             return self.constant(CONSTANTS[name])
         if name not in VARIABLES:
-            what = "is no function without an argument" if name in FUNCTIONS else "is no name that it knows"
+            what = "is not a function without an argument" if name in FUNCTIONS else "is not a name that it knows"
             raise self.wrong(f"says {_short(name)}, which {what}", _KNOWN)
         self.instructions.append(Instruction(VARIABLES[name]))
         key = "time" if name == "t" else name
@@ -189,7 +189,7 @@ class _Compiler:
 
     def call(self, name: str, arguments: list[Any], depth: int) -> frozenset[str]:
         if name not in FUNCTIONS:
-            raise self.wrong(f"calls {_short(name)}, which is no function that it knows", _KNOWN)
+            raise self.wrong(f"calls {_short(name)}, which is not a function that it knows", _KNOWN)
         code, count = FUNCTIONS[name]
         if len(arguments) != count:
             raise self.wrong(f"gives {name} {len(arguments)} arguments", f"{name} takes {count}")
@@ -207,7 +207,7 @@ class _Compiler:
     def keep_sign(self, since: int) -> None:
         """Let what bends among the instructions from ``since`` on be as it is wherever a step tries it.
 
-        On the side where a step began, |x| goes on as −x behind its zero; a root or a power of that is no number.
+        On the side where a step began, |x| goes on as −x behind its zero; a root or a power of that is not a number.
         """
         for k, one in enumerate(self.instructions[since:], since):
             if one.code in BENDS:

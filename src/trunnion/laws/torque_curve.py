@@ -315,7 +315,7 @@ class FlowCurve:
     """A torque T by the square of the speed whose slope is ``factor`` T/ω and not 2 T/ω: the flow does not follow.
 
     ``quadratic`` c₂ [N m s²/rad²] gives the mean torque c₂ω|ω|; the slope is that of speeds which swing about a mean
-    speed of the flow, so it is no derivative of ``value``.
+    speed of the flow, so it is not a derivative of ``value``.
 
     >>> wheel = FlowCurve(0.02, factor=2.8)
     >>> print(float(wheel.value(100.0)), round(float(wheel.slope(100.0)), 9))

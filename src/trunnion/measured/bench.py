@@ -146,7 +146,7 @@ def measure(
     for key, names in {"pickups": teeth, "gauges": gauges}.items():
         for name in names:
             if name not in known[key]:
-                what = "is no disk of the line" if key == "pickups" else "is no spring of the line"
+                what = "is not a disk of the line" if key == "pickups" else "is not a spring of the line"
                 raise InputError(what, key=key, value=name, remedy=nearest(name, known[key]))
     channels: list[Channel] = []
     drifts = dict(clock_drift or {})

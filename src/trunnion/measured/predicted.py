@@ -89,7 +89,7 @@ def predicted_channels(assembly: Assembly, data: MeasuredOrders) -> PredictedCha
             even.append(True)
             continue
         if place not in known:
-            what = "is no spring of the line" if kind == "torque" else "is no disk of the line"
+            what = "is not a spring of the line" if kind == "torque" else "is not a disk of the line"
             raise InputError(what, element=name, key="at", value=place, remedy=nearest(place, known))
         columns.append(column)
         places.append(known.index(place))

@@ -96,7 +96,7 @@ def damped_modes(damping: Array, stiffness: Array | Complex, least: float) -> tu
     """Eigenvalues of λ² + λC + K with an imaginary part above ``least`` [rad/s], by modulus; their shapes (n, values).
 
     C and K stand for unit masses. The pair at 0 of a line that turns freely, which rounding parts by the root of its
-    own size, is no oscillation: ``least`` keeps it out.
+    own size, is not an oscillation: ``least`` keeps it out.
     """
     values, vectors = _eigenvalues(damping, stiffness)
     above = np.flatnonzero(values.imag > least)

@@ -82,7 +82,9 @@ def damper_optimum(line: Driveline | Assembly, damper: str, mode: int = 1) -> Da
     element = described.elements[place] if place >= 0 else None
     if not isinstance(element, Damper):
         dampers = [name for name, one in described.parts if isinstance(one, Damper)]
-        raise InputError("is no damper of this driveline", key="damper", value=damper, remedy=nearest(damper, dampers))
+        raise InputError(
+            "is not a damper of this driveline", key="damper", value=damper, remedy=nearest(damper, dampers)
+        )
     compliance = next(e for e, one in enumerate(topo.compliances) if place in one.shafts)
     ring, near = topo.ends[compliance][0], topo.compliances[compliance].near
     co = assembly.coefficients(assembly.table(1), any_frequency=True)
@@ -95,7 +97,7 @@ def damper_optimum(line: Driveline | Assembly, damper: str, mode: int = 1) -> Da
     rigid = topo.still - (compliance in topo.dragged)
     elastic = len(kept) - rigid
     if isinstance(mode, bool) or not isinstance(mode, int | np.integer) or not 1 <= mode <= elastic:
-        raise InputError("is no elastic mode", key="mode", value=mode, remedy=f"write a number from 1 to {elastic}")
+        raise InputError("is not an elastic mode", key="mode", value=mode, remedy=f"write a number from 1 to {elastic}")
     frequency = float(np.sqrt(squares[rigid + mode - 1]))
     shape = masses.rotations(shapes[:, [rigid + mode - 1]])[:, 0]
     turned = float(topo.turning[near, kept] @ shape)

@@ -1,7 +1,7 @@
 """Machine code in files that know whether they are whole, and of what they are.
 
 A file is one line with the SHA-256 of all that follows, one line of JSON that names function, versions and processor,
-and the pickled code. Whatever cannot be read, does not fit its checksum or does not unpickle is no code: it is deleted
+and the pickled code. Whatever cannot be read, does not fit its checksum or does not unpickle is not code: it is deleted
 where that is possible, and compiled anew. Nothing of a damaged file is run.
 """
 

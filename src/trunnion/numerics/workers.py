@@ -120,7 +120,7 @@ def workers_of_client(client: Any) -> Workers | None:
     if client is None:
         return None
     if not all(callable(getattr(client, name, None)) for name in ("submit", "run", "nthreads")):
-        raise InputError("is no client of Dask", key="client", value=type(client).__name__,
+        raise InputError("is not a client of Dask", key="client", value=type(client).__name__,
                          remedy="give a distributed.Client")  # fmt: skip
     try:
         threads = _answered(client.nthreads)

@@ -82,7 +82,7 @@ def study(
     """
     chosen = kind or _usual(result)
     if chosen not in KINDS:
-        raise InputError("is no picture of a study", key="kind", value=kind, remedy=nearest(kind, KINDS))
+        raise InputError("is not a picture of a study", key="kind", value=kind, remedy=nearest(kind, KINDS))
     shown = _shown(result, quantity)
     if chosen == "chart":
         return _chart(result, shown, x, y, at or {})
@@ -133,7 +133,7 @@ def _grids(result: Study) -> list[StudyAxis]:
 def _shown(result: Study, path: str) -> ShownQuantity:
     known = [one.path for one in result.quantities]
     if path and path not in known:
-        raise InputError("is no quantity of the study", key="quantity", value=path, remedy=nearest(path, known))
+        raise InputError("is not a quantity of the study", key="quantity", value=path, remedy=nearest(path, known))
     one = result.quantities[known.index(path) if path else 0]
     axis = result.quantity_axis(one)
     done = np.asarray(result.status == DONE)
@@ -158,7 +158,7 @@ def _axes(result: Study, x: str, y: str, most: int) -> list[StudyAxis]:
     for key, path in (("x", x), ("y", y)):
         if path and path not in by_name:
             remedy = nearest(path, by_name) if by_name else 'kind = "histogram"'
-            raise InputError("is no parameter with a grid of this study", key=key, value=path, remedy=remedy)
+            raise InputError("is not a parameter with a grid of this study", key=key, value=path, remedy=remedy)
     if x and x == y:
         raise InputError("stands on both axes", key="y", value=y, remedy="give another parameter")
     rest = sorted((one for one in grids if one.path not in (x, y)), key=lambda one: one.path != SPEED)
@@ -174,7 +174,7 @@ def _section(
     for path in at:
         if path in names or path not in [one.path for one in result.design.axes]:
             known = [one.path for one in result.design.axes if one.path not in names]
-            raise InputError("is no parameter that stands still here", key="at", value=path,
+            raise InputError("is not a parameter that stands still here", key="at", value=path,
                              remedy=nearest(path, known) if known else "leave it out")  # fmt: skip
     sampled = 1 if result.design.sampling else 0
     pick: list[Any] = [slice(None)] * sampled

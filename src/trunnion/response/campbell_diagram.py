@@ -211,7 +211,7 @@ def campbell_diagram(
 
     Raises
     ------
-    InputError : fewer than two speeds, or none in ascending order; a margin that is no share.
+    InputError : fewer than two speeds, or none in ascending order; a margin that is not a share.
 
     Examples
     --------

@@ -263,10 +263,10 @@ def read_chart(path: str | os.PathLike[str]) -> StabilityChart:
         chart = _chart_of(data)
         wrong = what_is_wrong(chart)
     except (KeyError, ValueError, TypeError, AttributeError, IndexError, RecursionError):  # of another hand
-        raise InputError("is no whole stability chart", key=str(path), remedy=remedy) from None
+        raise InputError("is not a whole stability chart", key=str(path), remedy=remedy) from None
     if wrong:
         raise InputError(
-            f"is no stability chart that this program could have saved: {wrong}", key=str(path), remedy=remedy
+            f"is not a stability chart that this program could have saved: {wrong}", key=str(path), remedy=remedy
         )
     return chart
 

@@ -108,7 +108,7 @@ def read_dataset(path: str | os.PathLike[str], kind: str) -> xr.Dataset:
     _require_plain(path, content)
     try:
         data = xr.load_dataset(io.BytesIO(content), engine="h5netcdf", phony_dims="access")
-    except Exception:  # the bytes are those that were written, so they are no dataset: xarray has many errors for it
+    except Exception:  # the bytes are those that were written, so they are not a dataset: xarray has many errors for it
         raise _refusal(path, "is not a netCDF file") from None
     if data.attrs.get("format_version") != FORMAT_VERSION:
         raise _refusal(path, "is of another version of the format", data.attrs.get("format_version"))
@@ -122,7 +122,7 @@ def _refuse_kind(path: str | os.PathLike[str], kind: str, data: xr.Dataset) -> N
     found = str(data.attrs.get("format"))
     (what, _, number), (its, _, other) = kind.rpartition(" "), found.rpartition(" ")
     if its != what or not other.isdecimal() or len(other) > 4:
-        raise _refusal(path, f'is no "{kind}"', data.attrs.get("format"))
+        raise _refusal(path, f'is not a "{kind}"', data.attrs.get("format"))
     older = int(other) < int(number)
     writer = short(str(data.attrs.get("trunnion", "unknown")), 20)
     remedy = f"compute it again, or read it with Trunnion {writer}, which wrote it" if older else "use a newer Trunnion"
@@ -135,7 +135,7 @@ def _require_plain(path: str | os.PathLike[str], content: bytes) -> None:
 
     Raises
     ------
-    InputError : so, or these bytes are no HDF5 file.
+    InputError : so, or these bytes are not an HDF5 file.
     """
     import h5py
 

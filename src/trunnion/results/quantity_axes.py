@@ -78,7 +78,7 @@ def state_axes(system: System) -> list[QuantityAxis]:
 
 
 def _words(label: str) -> str:
-    """``HookeJoint *.angle`` → ``angle of all Hooke's joints``; labels that are no paths stay as they are."""
+    """``HookeJoint *.angle`` → ``angle of all Hooke's joints``; labels that are not paths stay as they are."""
     factor = label.startswith("factor of ")
     owner, dot, key = label.removeprefix("factor of ").rpartition(".")
     if not dot:

@@ -39,7 +39,7 @@ def angle_words(angle: float, most: int = 3) -> str:
 
 
 def order_words(order: float) -> str:
-    """ "order 2", "order 0.9474": behind gears orders are no whole numbers."""
+    """ "order 2", "order 0.9474": behind gears orders are not whole numbers."""
     return f"order {figures(order)}"
 
 

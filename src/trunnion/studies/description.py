@@ -132,7 +132,7 @@ class StudySampling(Record):
     @model_validator(mode="after")
     def _known(self) -> StudySampling:
         if self.method not in METHODS:
-            raise InputError("is no sampling", element=self.what, key="method", value=self.method,
+            raise InputError("is not a sampling", element=self.what, key="method", value=self.method,
                              remedy=nearest(self.method, METHODS))  # fmt: skip
         _whole(self.points, "points", 1, MOST_LATIN if self.method == "latin" else LARGEST, self.what)
         _whole(self.seed, "seed", 0, 1 << 32, self.what)
@@ -235,7 +235,7 @@ def _line(stated: str, folder: Path, tables_anywhere: bool) -> Driveline:
         raise InputError("is neither a file nor a name of the catalogue", element="study", key="line", value=stated,
                          remedy=error.remedy) from None  # fmt: skip
     if not isinstance(line, Driveline):
-        raise InputError("is no driveline but equations of motion", element="study", key="line", value=stated,
+        raise InputError("is not a driveline but equations of motion", element="study", key="line", value=stated,
                          remedy="name a driveline: two-shaft-cardan, say")  # fmt: skip
     return line
 
@@ -258,8 +258,8 @@ def _design(stated: StudyDescription, line: Driveline, question: StudyQuestion) 
         nominal = question.speed if one.path == SPEED else assembly.packed.value(one.path)
         if one.sampled:
             if one.path == SPEED:
-                raise InputError("is no number of the line that scatters", element="parameter", key="path", value=SPEED,
-                                 remedy="give points or values")  # fmt: skip
+                raise InputError("is not a number of the line that scatters", element="parameter", key="path",
+                                 value=SPEED, remedy="give points or values")  # fmt: skip
             spreads[one.path] = _scatter(one, columns.unit)
         elif one.values is not None:
             axes.append(StudyAxis(one.path, columns.unit, nominal, _values(one, columns.unit)))
@@ -327,7 +327,7 @@ def _require_rise(one: StudyParameter, low: float, high: float) -> None:
 def _values(one: StudyParameter, unit: str) -> Array:
     stated = one.values
     if not isinstance(stated, list | tuple | np.ndarray):
-        raise InputError("is no list", element=f"parameter {one.path}", key="values", value=stated,
+        raise InputError("is not a list", element=f"parameter {one.path}", key="values", value=stated,
                          remedy="write values = [1.0, 2.0], say")  # fmt: skip
     if not len(stated):
         raise InputError("is empty", element=f"parameter {one.path}", key="values", remedy="give one value or more")

@@ -170,7 +170,7 @@ class Sampling:
 
 def _sobol(size: int, seed: int, first: int, last: int) -> Array:
     with _TURN, warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of a number that is no power of two: these continue
+        warnings.simplefilter("ignore", UserWarning)  # of a number that is not a power of two: these continue
         sequence = _sequence(size, seed)
         sequence.reset()
         if first:

@@ -213,7 +213,7 @@ def _sentence(error: Exception) -> str:
 
 
 def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: bool) -> None:
-    """Refuse what is no analysis of a line, and arguments that it does not take.
+    """Refuse what is not an analysis of a line, and arguments that it does not take.
 
     Raises
     ------
@@ -225,7 +225,7 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
     takes = {key: list(inspect.signature(function).parameters) for key, function in known.items()}
     of_lines = [key for key, names in takes.items() if names[0] == "line"]
     if not isinstance(name, str) or name not in known:
-        raise InputError("is no analysis", key="analysis", value=name, remedy=nearest(name, of_lines))
+        raise InputError("is not an analysis", key="analysis", value=name, remedy=nearest(name, of_lines))
     if name not in of_lines:
         raise InputError(
             "takes no driveline alone",
@@ -236,10 +236,10 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
     rest = [key for key in takes[name][1:] if key not in ("progress", "within", "client", "processes", "threads")]
     for key, value in arguments.items():
         if key not in rest:
-            raise InputError(f"is no argument of {name}", element="arguments", key=key, value=value,
+            raise InputError(f"is not an argument of {name}", element="arguments", key=key, value=value,
                              remedy=nearest(key, rest))  # fmt: skip
     if speed_varies and "speed" not in rest:
-        problem = f"is no number of the line, and {name} takes no speed"
+        problem = f"is not a number of the line, and {name} takes no speed"
         raise InputError(problem, element="parameter", key="path", value=SPEED, remedy="vary another parameter")
     if speed_varies and "speed" in arguments:
         problem = "is stated, and varied by a parameter too"

@@ -56,7 +56,7 @@ class StudyQuantity:
 
         Raises
         ------
-        InputError : it has no such quantity (the nearest is named), or one that is no number, word or verdict.
+        InputError : it has no such quantity (the nearest is named), or one that is not a number, word or verdict.
         """
         value, owner, last = followed(result, path)
         label = labels(type(owner)).get(last)
@@ -71,7 +71,7 @@ class StudyQuantity:
             return cls(path, "word")
         if value is None or (np.ndim(value) == 0 and isinstance(value, int | float | np.number)):
             return cls(path, "number", unit)
-        raise InputError(f"is no number, word or verdict but {_what(value)}", key=path, remedy=_inside(path, value))
+        raise InputError(f"is not a number, word or verdict but {_what(value)}", key=path, remedy=_inside(path, value))
 
     def read(self, result: object) -> float | str:
         """Its value in a result: a number, a code, or a word.
@@ -126,7 +126,7 @@ def followed(result: object, path: str) -> tuple[Any, object, str]:
     InputError : there is none; names the nearest.
     """
     if not isinstance(path, str) or not path or "".join(m.group(0) for m in STEP.finditer(path)) != path:
-        raise InputError("is no path of a quantity", key="quantities", value=path, remedy='"growth_rate", say')
+        raise InputError("is not a path of a quantity", key="quantities", value=path, remedy='"growth_rate", say')
     value, owner, last = result, result, ""
     for step in STEP.finditer(path):
         name, indices = step.group(1), INDEX.findall(step.group(2))
@@ -146,7 +146,7 @@ def _named(value: Any, name: str, path: str) -> Any:
         return None  # a check that does not bind, say
     known = names_of(value)
     if name not in known:
-        what = f"is no quantity of {type(value).__name__}"
+        what = f"is not a quantity of {type(value).__name__}"
         raise UnknownQuantity(what, key="quantities", value=path, remedy=nearest(name, known))
     return getattr(value, name)
 

@@ -106,7 +106,7 @@ class Study(Result):
         from trunnion.driveline.refusals import nearest
 
         if path not in known:
-            raise InputError(f"is no {what} of the study", key=path, remedy=nearest(path, known))
+            raise InputError(f"is not a {what} of the study", key=path, remedy=nearest(path, known))
         return path
 
     def _quantity(self, path: str) -> StudyQuantity:

@@ -395,7 +395,7 @@ def answered(question: Callable[..., Any], *arguments: Any, **more: Any) -> Any:
 
 
 def memory_of(client: Any) -> int:
-    """Bytes that all workers hold; 0 where the scheduler does not say, which is no reason to end a study."""
+    """Bytes that all workers hold; 0 where the scheduler does not say, which is not a reason to end a study."""
     try:
         workers = answered(client.scheduler_info, n_workers=-1)["workers"].values()
     except (OSError, TimeoutError):
@@ -486,7 +486,7 @@ def workers_of(scheduler: str) -> Iterator[Any]:
     try:
         client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
-        why = "answers nothing" if isinstance(error, OSError | TimeoutError) else f"is no address ({error})"
+        why = "answers nothing" if isinstance(error, OSError | TimeoutError) else f"is not an address ({error})"
         raise InputError(why, key="scheduler", value=scheduler,
                          remedy='write "tcp://host:8786", and start it with: dask scheduler') from None  # fmt: skip
     with client, _quiet():

@@ -76,7 +76,7 @@ def study_sensitivities(study: Study, quantity: str, *, confidence: float = 0.95
 
     Raises
     ------
-    InputError : nothing was sampled; a quantity that is no number.
+    InputError : nothing was sampled; a quantity that is not a number.
     ComputationError : points are missing or failed, so that the design is not whole; too few of them; no variance.
 
     Examples
@@ -100,7 +100,7 @@ def study_sensitivities(study: Study, quantity: str, *, confidence: float = 0.95
         raise InputError("must lie between 0 and 1", key="confidence", value=confidence, remedy="0.95, say")
     values = study.quantity(quantity)
     if values.dtype.kind not in "fiu":
-        raise InputError("is no number", key="quantity", value=quantity, remedy="take another")
+        raise InputError("is not a number", key="quantity", value=quantity, remedy="take another")
     names = tuple(one.path for one in plan.scattering)
     known = (study.status == DONE) & np.isfinite(values)
     if plan.method != "saltelli":

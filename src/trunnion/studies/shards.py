@@ -105,7 +105,7 @@ def write_shard(
         for name, content in _contents(part, quantities, values, found):
             (beside / name).mkdir()
             shutil.copyfile(folder / name / "zarr.json", beside / name / "zarr.json")
-            # Which is no part of the description, nor read from it: else a shard of nothing but NaN has no file.
+            # Which is not part of the description, nor read from it: else a shard of nothing but NaN has no file.
             with zarr().config.set({"array.write_empty_chunks": True}):
                 array = zarr().open_array(str(beside / name), mode="r+")
             array[first:last] = content

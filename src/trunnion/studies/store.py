@@ -80,7 +80,7 @@ class Store:
 
         Raises
         ------
-        InputError : the folder cannot be made, or is no store, or another study's.
+        InputError : the folder cannot be made, or is not a store, or another study's.
         """
         if path.exists() and not (path / "study.json").is_file() and (not path.is_dir() or any(path.iterdir())):
             raise InputError("is there, and no store of a study", key="store", value=str(path), remedy=KEEP_NAME)
@@ -111,7 +111,7 @@ class Store:
         InputError : there is none; it is damaged, or of another format.
         """
         if not (path / "study.json").is_file():
-            raise InputError("is no store of a study", key="store", value=str(path),
+            raise InputError("is not a store of a study", key="store", value=str(path),
                              remedy="name the folder that a study wrote, truck.zarr say")  # fmt: skip
         about = _unsealed(path / "study.json")
         if about["format"] != FORMAT:

@@ -363,7 +363,7 @@ class StroboscopicMap(_Applied):
 
     Raises
     ------
-    InputError : an autonomous system, periods that are no whole number from 1.
+    InputError : an autonomous system, periods that are not a whole number from 1.
 
     >>> import trunnion as tn
     >>> section = StroboscopicMap(tn.reference_system("duffing"))

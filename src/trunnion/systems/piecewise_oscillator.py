@@ -224,7 +224,7 @@ class PiecewiseOscillator:
         symmetric = len(self.breakpoints) == 2 and self.breakpoints[0] == -self.breakpoints[1]
         if not symmetric or self.slopes[0] != self.slopes[2] or self.damping_law != "always" or self.harmonics:
             raise InputError(
-                "is no symmetric gap with damping always on and one harmonic of force", element=self.name,
+                "is not a symmetric gap with damping always on and one harmonic of force", element=self.name,
                 key="as_system", remedy="its exact motion is there for every other piecewise oscillator",
             )  # fmt: skip
         m, k = self.inertia, self.slopes[0]

@@ -160,7 +160,7 @@ class SecondOrder:
         """
         if oscillator.damping_law != "always":
             raise InputError(
-                "is no spring and no constant damper", element=oscillator.name, key="damping_law",
+                "is neither a spring nor a constant damper", element=oscillator.name, key="damping_law",
                 value=oscillator.damping_law, remedy='use the method "exact"',
             )  # fmt: skip
         force = oscillator.coefficients * oscillator.inertia

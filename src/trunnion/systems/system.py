@@ -269,7 +269,7 @@ class System(Portable):
         return self.with_parameters(parameters)
 
     def with_parameters(self, parameters: Mapping[str, float]) -> System:
-        """As ``but``, for names that are no Python names."""
+        """As ``but``, for names that are not Python names."""
         for key in parameters:
             if key not in self.parameters:
                 known = ", ".join(self.parameters) or "none"

@@ -140,7 +140,7 @@ def takes(function: Callable[..., Any], counts: tuple[int, ...], what: str) -> i
 
 
 def parameter_tuple(names: tuple[str, ...]) -> Callable[..., Any]:
-    """The type of ``p``: a named tuple; what is no name in Python is there by its place alone."""
+    """The type of ``p``: a named tuple; what is not a name in Python is there by its place alone."""
     return namedtuple("Parameters", names, rename=True)
 
 

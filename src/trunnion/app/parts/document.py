@@ -342,7 +342,7 @@ def _section(path: Path) -> tuple[str, ...] | None:
 
 
 def _listed(data: dict[str, Any], section: Path) -> list[Any]:
-    """The tables of a list, none where it is no list."""
+    """The tables of a list, none where it is not a list."""
     owner: Any = data
     for key in section:
         owner = owner.get(key, []) if isinstance(owner, dict) else []

@@ -58,7 +58,7 @@ SYSTEMS: dict[str, Call] = {
     "double-tripod-output": Call("system", ("output",), of=Call("tn.catalogue", ("double-tripod",))),
     "gear-rattle": Call("as_system", of=Call("tn.catalogue", ("gear-rattle",))),
 }
-"""Published equations that are no driveline, for the motions that take any system."""
+"""Published equations that are not a driveline, for the motions that take any system."""
 SUBJECTS = {
     "this driveline": OF_LINE,
     "double tripod, input element (catalogue)": "double-tripod",

@@ -305,7 +305,7 @@ class LoadCaseResponse:
 
     def peak(self, name: str, speed: float) -> float:
         """The speed of the top that the measure called ``name`` has about ``speed``, located to differentiate there;
-        ``speed`` where it is no top."""
+        ``speed`` where it is not a top."""
         measure = next((one for one in self.measures if one.name == name), None)
         grid, at = self.speeds, int(np.searchsorted(self.speeds, speed))
         if measure is None or self.given or not 0 < at < len(grid) - 1 or grid[at] != speed:

@@ -54,7 +54,7 @@ TAKEN = {
 
 KINDS = {"heat_rating": POWER, "largest_travel": LENGTH}
 LIMITED = {"vibratory_torque": "T_KW/S_t"}
-"""How a picture calls the limit, where it is no rating by itself."""
+"""How a picture calls the limit, where it is not a rating by itself."""
 
 
 def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:

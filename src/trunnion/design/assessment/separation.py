@@ -3,7 +3,7 @@
     |kΩ/ω − 1| ≥ 10 %   for every order k that shakes the line and every mode ω, over the running range
 
 (API 617/684, typical); of a frequency ν in time, or beside an order, |kΩ + ν| stands for kΩ. A mode that an order
-comes nearer to is no fault by itself: the standard then asks that it be moved, or for a check of torque or stress
+comes nearer to is not a fault by itself: the standard then asks that it be moved, or for a check of torque or stress
 there, which limits of the description give; who takes that for an answer switches the rule off with this reason. Orders
 below 1 % of the largest torque by one order are left out. ω is the damped frequency of the loaded line, all joints
 straight.

@@ -52,7 +52,7 @@ def compare(
 
     Raises
     ------
-    InputError : a range that is reversed; no such load case; what is no driveline.
+    InputError : a range that is reversed; no such load case; what is not a driveline.
 
     Examples
     --------

@@ -88,7 +88,9 @@ class LoadHistory:
         elif not isinstance(self.source, LineSimulation | RunUp | Transient | Passing | OrderResponse):
             remedy = "give what simulate, run_up, transient, passing or order_response returns, or torques by element"
             kind = type(self.source).__name__
-            raise InputError(f"is no history but of type {kind}", element=self._label, key="source", remedy=remedy)
+            raise InputError(
+                f"is not a load history but of type {kind}", element=self._label, key="source", remedy=remedy
+            )
 
     @property
     def _label(self) -> str:
@@ -98,7 +100,7 @@ class LoadHistory:
         found = np.asarray(values, dtype=float)
         where = {"element": self._label, "key": name}
         if found.ndim != 1 or len(found) < FEWEST:
-            problem = f"is too short: {found.size} values" if found.ndim == 1 else "is no row of torques"
+            problem = f"is too short: {found.size} values" if found.ndim == 1 else "is not a row of torques"
             raise InputError(problem, **where, remedy=f"give {FEWEST} torques or more: it goes and comes back")
         if not np.all(np.isfinite(found)):
             at = int(np.flatnonzero(~np.isfinite(found))[0])
@@ -145,7 +147,7 @@ def torque_history(history: LoadHistory, place: int) -> TorqueHistory:
         if history.speed is not None and abs(source.speed[at] - history.speed) > 1e-9 * history.speed:
             known = ", ".join(source.words.speed(float(one)) for one in source.speed[:8])
             raise InputError(
-                "is no speed of the response", key="speed", value=history.speed, remedy=f"there are {known}"
+                "is not a speed of the response", key="speed", value=history.speed, remedy=f"there are {known}"
             )
         return of_response(source, at, name, share=history.share, per_hour=history.per_hour)
     if isinstance(source, LineSimulation | RunUp | Transient | Passing):

@@ -183,7 +183,7 @@ def _aim(line: Driveline, given: object) -> Aim:
         if aim.name == given:
             return aim
     remedy = f'{nearest(str(given), [aim.name for aim in known])}; "margin of CHECK", or a function of a line'
-    raise InputError("is no aim", key="aims", value=given, remedy=remedy)
+    raise InputError("is not an aim", key="aims", value=given, remedy=remedy)
 
 
 def _unsettled(check: Check) -> bool:

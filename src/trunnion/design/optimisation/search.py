@@ -76,7 +76,7 @@ class DesignSearch:
         if key not in self.tried:
             keep_time()
             found = self._computed(shares, quick=True)
-            keep_time()  # what a limit cut short is no answer
+            keep_time()  # what a limit cut short is not an answer
             self.tried[key] = found
             if self.progress:
                 self.progress(min(len(self.tried) / self.most, 0.99))

@@ -3,7 +3,7 @@
 f′ ≈ (f₋₂ − 8f₋₁ + 8f₁ − f₂)/12h,    f′ ≈ (−25f₀ + 48f₁ − 36f₂ + 16f₃ − 3f₄)/12h
 
 A largest value has kinks, where another place or curve becomes the largest one or a sum cancels: the slopes on the two
-sides differ, and what the central formula gives between them is no derivative.
+sides differ, and what the central formula gives between them is not a derivative.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def directions_of(assembly: Assembly, parameters: Iterable[str | Parameter] | No
         columns = packed.resolve(one)
         if 0 in columns.index:
             raise InputError(
-                "is no parameter of the line but its speed", key="parameters", value=SPEED, remedy="leave it out"
+                "is not a parameter of the line but its speed", key="parameters", value=SPEED, remedy="leave it out"
             )
         found.append(direction(assembly, columns))
     return tuple(found)
@@ -114,7 +114,7 @@ def along_each(
     found = np.full((2, *shape, len(directions)), np.nan)
     for d, one in enumerate(directions):
         both = look(one)
-        keep_time()  # what a limit cut short is no derivative
+        keep_time()  # what a limit cut short is not a derivative
         if both is not None:
             found[..., d] = np.array(both) / one.size
         if progress:

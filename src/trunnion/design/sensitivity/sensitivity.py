@@ -120,7 +120,7 @@ def sensitivity(
             refusals.append(error)
     if tips is not None:
         if not isinstance(tips, Tongues):
-            raise InputError("are no tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
+            raise InputError("are not tongues", key="tips", value=tips, remedy="tips=tn.tongues(line, …)")
         rows += tip_slopes(problem.near, tips, problem.directions)
     if not rows and refusals:
         raise refusals[0]

@@ -125,7 +125,7 @@ class Design:
         return tuple(self._variables())
 
     def changed(self, variable: DesignVariable, value: float) -> Driveline | None:
-        """The line with one number changed; None where it, or the line with it, is refused, or is no tube any more."""
+        """The line with one number changed; None where it, or the line with it, is refused, or is no longer a tube."""
         numbers = self.packed.values.copy()
         numbers[variable.column] = value
         if not isfinite(value) or self._worn(variable, value):

@@ -6,7 +6,7 @@ by the balance of their harmonics, and followed in both directions wherever neig
 where one direction ends in another motion than the other, the curve of motions folds back, several motions belong to
 one point, and which of them runs depends on how one came there. Such points are not judged.
 
-Motions are no analytic functions of the parameters across a fold, so that no patches are made: every point has its own
+Motions are not analytic functions of the parameters across a fold, so that no patches are made: every point has its own
 equations, linearised about its own motion. Some are compared with ``stability``'s way, which finds the motion by
 shooting, and a chart that differs from it by more than the errors of both is refused.
 """

@@ -28,7 +28,7 @@ class SteadyStateMultipliers:
 
 
 def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
-    """Of all motions, without what is no disturbance of them; ``tolerance`` as of ``exponential_monodromies``."""
+    """Of all motions, without what is not a disturbance of them; ``tolerance`` as of ``exponential_monodromies``."""
     count, size = len(motions.value), 2 * len(motions.solved.balance.turn)
     there = np.flatnonzero(motions.found)
     radius, error = np.full(count, np.nan), np.full(count, np.nan)

@@ -72,7 +72,7 @@ class FloquetModes:
 def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> FloquetModes | None:
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where some mode is not
     found."""
-    if topo.still or not _pays(topo, co, turns):  # the turn of what no spring holds is no mode by itself
+    if topo.still or not _pays(topo, co, turns):  # the turn of what no spring holds is not a mode by itself
         return None
     line = HillLine(topo, co, turns)
     start, shape = line.starts()

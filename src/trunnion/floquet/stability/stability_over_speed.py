@@ -116,7 +116,7 @@ def straight_decay(assembly: Assembly, speed: float, row: Array | None = None) -
     """Decay [1/s] of the slowest disturbance of the line at ``speed`` with its joints straight and its meshes even;
     ``row`` (column,): its packed numbers there, where they follow the speed.
 
-    What is no disturbance is left out: a turn of the whole free–free line, its speed where no torque depends on
+    What is not a disturbance is left out: a turn of the whole free–free line, its speed where no torque depends on
     it. What rounding cannot tell from no decay is 0.
     """
     topo, table = assembly.topology, assembly.table(1, speed) if row is None else row[None]

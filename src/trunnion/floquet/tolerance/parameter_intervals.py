@@ -38,7 +38,7 @@ def columns_of(assembly: Assembly, path: str) -> Columns:
     """
     columns = assembly.packed.resolve(path)
     if 0 in columns.index:
-        raise InputError("is no parameter of the line but its speed", key=path, remedy="give speeds instead")
+        raise InputError("is not a parameter of the line but its speed", key=path, remedy="give speeds instead")
     return columns
 
 

@@ -87,7 +87,7 @@ def _read(path: str, given: object) -> Scatter:
             inside = len(numbers) == 1 and 0 < numbers[0] < (np.inf if form == "deviation" else 1)
             if form == "range" and rises or form in ("share", "normal", "deviation") and inside:
                 return Scatter(path, form, tuple(map(float, numbers)))
-    raise InputError("is no tolerance", key=path, value=given, remedy=EXAMPLE)
+    raise InputError("is not a tolerance", key=path, value=given, remedy=EXAMPLE)
 
 
 def tables(assembly: Assembly, spreads: tuple[Spread, ...], shares: Array, speed: float) -> Array:

@@ -33,7 +33,7 @@ looked at closely."""
 TIGHT = 1e-7
 """Half of the first bracket about a zero of the patches, as a share of the box."""
 OPEN_ERROR = 1e-6
-"""An error of ρ above which an open verdict is no answer; below, ρ is 1 as far as anybody asks."""
+"""An error of ρ above which an open verdict is not an answer; below, ρ is 1 as far as anybody asks."""
 EXACT = 1e-14
 """How closely edges are solved, as a share of the box."""
 LOOKS = 9

@@ -26,7 +26,7 @@ from trunnion.results.verdict import Verdict
 RISES = 0.02
 """Growth is largest on a level where it rises by this share of itself above that beside."""
 SAMPLES = 49
-"""Places of a row along a parameter that is no speed."""
+"""Places of a row along a parameter that is not a speed."""
 WORDS = (
     "were searched at an even grid of speeds and at every meeting of two Floquet exponents that joints and meshes can "
     "open: a heuristic, so narrow regions may be missing"

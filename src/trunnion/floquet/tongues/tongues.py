@@ -249,7 +249,7 @@ def _search(region: Region) -> tuple[Search, Said]:
                 lambda apart, traces: f"{rows_in_words(region, apart)}; {in_words(found, [s.by for s in traces])}",
             )
         line = isinstance(region.family, LineFamily)
-        why = "x is no speed" if line else "a family of your own has no straight line"
+        why = "x is not a speed" if line else "a family of your own has no straight line"
         alone = f"; resonances were not followed, as {why}"
     return lambda v: unstable_intervals(region, v), lambda apart, traces: rows_in_words(region, apart) + alone
 

@@ -227,7 +227,7 @@ def minimum_damping(
 
     Raises
     ------
-    InputError : see ``stable_windows``; a parameter that is no damping, or a line without any to multiply.
+    InputError : see ``stable_windows``; a parameter that is not damping, or a line without any to multiply.
 
     Examples
     --------
@@ -241,7 +241,9 @@ def minimum_damping(
     refuse_pendulums(assembly.line, NOT_ALIKE)
     chosen = all_damping(assembly) if damping is None else damping
     if isinstance(chosen, str) and not any(word in chosen for word in DAMPING):
-        raise InputError("is no damping", key="damping", value=damping, remedy='as "Shaft 2.damping"')
+        raise InputError(
+            "is not the damping of an element", key="damping", value=damping, remedy='as "Shaft 2.damping"'
+        )
     if not 0 < one_number(maximum, "maximum", "100, say") < np.inf:
         raise InputError("must be positive and finite", key="maximum", value=maximum, remedy="100, say")
     return stable_windows(

@@ -107,7 +107,7 @@ def read_description(path: Path) -> FileDescription:
     try:
         content = tomllib.loads(regular_bytes(path, LARGEST, what="the description of channels").decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(f"is no TOML ({error})", key="channels", value=path.name) from None
+        raise InputError(f"is not TOML ({error})", key="channels", value=path.name) from None
     return description_of(content, path.name)
 
 

@@ -55,7 +55,7 @@ def rising_edges(chunks: Iterable[Array], rate: float, level: float | None, name
         if not np.isfinite(samples[:: max(1, len(samples) // 4096)]).all() or not np.isfinite(samples.sum()):
             at = (done + int(np.argmax(~np.isfinite(samples)))) / rate
             raise InputError(
-                f"has samples that are no numbers, the first at {at:.6g} s", element=name, key="column",
+                f"has samples that are not numbers, the first at {at:.6g} s", element=name, key="column",
                 remedy="cut the gap out, or read the parts on either side",
             )  # fmt: skip
         if known is None:

@@ -138,7 +138,7 @@ class SampledSignal(Portable):
 
     Raises
     ------
-    InputError : values that are no row of numbers, a rate that is not positive, a kind that is not known.
+    InputError : values that are not a row of numbers, a rate that is not positive, a kind that is not known.
 
     Examples
     --------
@@ -163,7 +163,7 @@ class SampledSignal(Portable):
             raise InputError("must be one row of numbers", element=self.name, key="values", remedy="one channel each")
         if self.kind not in SAMPLED:
             raise InputError(
-                "is no kind of sampled signal", element=self.name, key="kind", value=self.kind,
+                "is not a kind of sampled signal", element=self.name, key="kind", value=self.kind,
                 remedy=nearest(self.kind, SAMPLED),
             )  # fmt: skip
         gaps = ~np.isfinite(self.values)
@@ -256,7 +256,7 @@ class Measurement(Portable):
             if one.name == name:
                 return one
         known = [one.name for one in self.channels]
-        raise InputError("is no channel", key="channel", value=name, remedy=nearest(name, known))
+        raise InputError("is not a channel", key="channel", value=name, remedy=nearest(name, known))
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -323,7 +323,7 @@ def even_times(values: ArrayLike, key: str) -> tuple[float, float]:
     """
     times = np.asarray(values, dtype=float)
     if len(times) < 2 or not np.all(np.isfinite(times)):
-        raise InputError("is no column of times", key=key, remedy="name another, or give rate")
+        raise InputError("is not a column of times", key=key, remedy="name another, or give rate")
     step = (times[-1] - times[0]) / (len(times) - 1)
     off = np.abs(np.diff(times) - step)
     if not step > 0 or off.max() > 0.5 * step:

@@ -42,7 +42,7 @@ def read_measurement(
     Raises
     ------
     InputError : a file or description that cannot be read; a column that is not there; a rate that nobody says; gaps
-        and samples that are no numbers.
+        and samples that are not numbers.
 
     Examples
     --------

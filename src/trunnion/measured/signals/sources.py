@@ -82,7 +82,7 @@ class TextColumns:
             with path.open(encoding="utf-8-sig", newline="") as stream:
                 head = stream.read(20_000)
         except UnicodeDecodeError:
-            _unreadable(path, "it is no text")
+            _unreadable(path, "it is not text")
         if not head.strip():
             _unreadable(path, "it is empty")
         first = head.splitlines()[0]
@@ -132,7 +132,8 @@ class TextColumns:
             if line.strip() and not (len(cells) > place and _is_number(cells[place])):
                 where = f"{self.path.name} line {k}"
                 raise InputError(
-                    "is no number", element=where, key=column, value=cells[place].strip() if len(cells) > place else "",
+                    "is not a number", element=where, key=column,
+                    value=cells[place].strip() if len(cells) > place else "",
                     remedy="write numbers alone, and no line that is cut off",
                 ) from None  # fmt: skip
         return np.zeros(0)
@@ -221,7 +222,7 @@ def _mdf(path: Path) -> SignalSource:
 
     with path.open("rb") as raw:  # what is no such file leaves the library with halves of itself
         if not raw.read(168).ljust(168, b"\0").startswith(b"MDF  ") or path.stat().st_size < 300:
-            raise ValueError("it is no MDF, or is cut off")
+            raise ValueError("it is not MDF, or is cut off")
     columns: dict[str, Any] = {}
     rates: dict[str, float] = {}
     with closing(MDF(path)) as stream:
@@ -292,7 +293,7 @@ def opened(path: Path) -> SignalSource:
     ending = path.suffix.lower()
     if ending not in OPENED:
         remedy = f"files end in {', '.join(OPENED)}"
-        raise InputError("is no file of signals", key="data", value=path.name, remedy=remedy)
+        raise InputError("is not a file of signals", key="data", value=path.name, remedy=remedy)
     if not path.is_file():
         raise InputError("is not there", key="data", value=str(path), remedy="correct the path")
     maker, library = OPENED[ending]
@@ -326,10 +327,10 @@ def column_of(source: SignalSource, column: str | int, where: str) -> str:
     if isinstance(column, int):
         if not 1 <= column <= len(names):
             remedy = f"there are {len(names)}: {', '.join(names[:8])}"
-            raise InputError("is no column of the file", element=where, key="column", value=column, remedy=remedy)
+            raise InputError("is not a column of the file", element=where, key="column", value=column, remedy=remedy)
         return names[column - 1]
     if column in names:
         return column
     raise InputError(
-        "is no column of the file", element=where, key="column", value=column, remedy=nearest(column, names)
+        "is not a column of the file", element=where, key="column", value=column, remedy=nearest(column, names)
     )

@@ -64,7 +64,7 @@ class MeasuredOrders(Result):
     deviation: Array = variable("window order channel", "", "standard deviation of either part, by noise")
     hidden: Flags = variable("order channel", "1", "1 where pitch errors of the wheel stand at the order too")
     floor: Array = variable("order channel", "", "rms amplitude that pitch errors leave")
-    residual: Array = variable("window channel", "", "rms of what is no order asked for")
+    residual: Array = variable("window channel", "", "rms of what is not an order asked for")
     acceleration: float = attribute("of the input, the middle of all windows", "rad/s^2")
     window: int = attribute("turns")
     calibrated: bool = attribute("whether pitch errors are taken off")
@@ -86,7 +86,7 @@ class MeasuredOrders(Result):
         InputError : there is none of this name.
         """
         if channel not in self.channels:
-            raise InputError("is no channel", key="channel", value=channel, remedy=nearest(channel, self.channels))
+            raise InputError("is not a channel", key="channel", value=channel, remedy=nearest(channel, self.channels))
         return self.channels.index(channel)
 
     def row(self, order: float) -> int:
@@ -122,12 +122,12 @@ class MeasuredOrders(Result):
 
         Raises
         ------
-        InputError : no such channel, or one that is no rotation.
+        InputError : no such channel, or one that is not a rotation.
         """
         columns = [self.column(first), self.column(second)]
         for name, column in zip((first, second), columns, strict=True):
             if self.kinds[column] != "rotation":
-                raise InputError("is no rotation", key="channel", value=name, remedy="name two pulse trains")
+                raise InputError("is not a rotation", key="channel", value=name, remedy="name two pulse trains")
         a, b = columns
         ratio = self.ratios[b] / self.ratios[a]
         spread = np.sqrt(self.deviation[:, :, b] ** 2 + (ratio * self.deviation[:, :, a]) ** 2)

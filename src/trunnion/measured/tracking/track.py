@@ -111,7 +111,7 @@ def track_orders(
         )  # fmt: skip
     main = trains[0] if not reference else measurement.channel(reference)
     if not isinstance(main, PulseTrain):
-        raise InputError("is no pulse train", key="reference", value=reference, remedy=f"take {trains[0].name}")
+        raise InputError("is not a pulse train", key="reference", value=reference, remedy=f"take {trains[0].name}")
     turns = whole_number(window, "window", 1)
     given = None if line is None else assemble(line)
     problem = _Tracking(measurement, main, {} if given is None else speed_ratios(given), calibration, turns)
@@ -570,7 +570,7 @@ def standing_out(train: PulseTrain, pattern: Array, turns: int) -> list[tuple[fl
         row[place] = fit.residual
         power += np.abs(2 * np.fft.rfft(row) / len(row)) ** 2
     size = np.sqrt(power / len(fits))
-    # Each order against what stands around it at orders that are no halves.
+    # Each order against what stands around it at orders that are not halves.
     noise = float(np.median(size[1:])) * 1.2
     step = length // 2
     halves = np.arange(step, len(size), step)

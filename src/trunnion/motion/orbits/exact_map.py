@@ -181,7 +181,7 @@ class OscillatorMap(ExactMap):
 class LineMap(ExactMap):
     """Twists and rates over ``periods`` of the excitation; sliders ``fixed`` are kept from slipping.
 
-    Of a free–free line with a viscous load the rotation itself need not close, only its rate: it is no state of
+    Of a free–free line with a viscous load the rotation itself need not close, only its rate: it is not a state of
     the map, whose states stand at the places ``kept`` of the line's.
     """
 

@@ -187,7 +187,7 @@ def place_of(curves: Sequence[str], curve: str) -> int:
     if not curve:
         return 0
     if curve not in curves:
-        raise InputError("is no curve of this", key="curve", value=curve, remedy=nearest(curve, curves))
+        raise InputError("is not a curve of this result", key="curve", value=curve, remedy=nearest(curve, curves))
     return list(curves).index(curve)
 
 
@@ -279,7 +279,7 @@ def frequency_response(
     known = methods_of(system)
     chosen = method or known[0]
     if chosen not in known:
-        raise InputError("is no method for this", key="method", value=chosen, remedy=nearest(chosen, list(known)))
+        raise InputError("is not a method for this", key="method", value=chosen, remedy=nearest(chosen, list(known)))
     if curve:
         place_of(_curves(system, high), curve)  # before anything is computed
     given: dict[str, Any] = {

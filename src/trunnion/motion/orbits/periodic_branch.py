@@ -232,7 +232,7 @@ def _free(
 
 
 def check_range(low: float, high: float, least: float = 0.0) -> None:
-    """Refuse what is no rising range of numbers above ``least``.
+    """Refuse what is not a rising range of numbers above ``least``.
 
     Raises
     ------

@@ -213,7 +213,7 @@ class PeriodicResponse(Result, OfShafts, IntegratedOrbit):
         times = self.trajectory.time_of_state
         found = fourier(lambda times: self.motion_at(times).torque, times, count - 1)
         begun = self.speed * times[0]
-        if self.line.assembly.topology.free:  # a shift of time is no change there: count from where the input turns
+        if self.line.assembly.topology.free:  # a shift of time is not a change there: count from where the input turns
             begun += float(fourier(lambda times: self.motion_at(times).rotation[:, :1], times, 0)[0, 0].real)
         return orders, np.asarray(found * np.exp(-1j * orders * begun)[:, None])
 

@@ -179,7 +179,7 @@ class LineSweep(Result, TorqueRange, Sweep):
     def _place(self, spring: str) -> int:
         if spring not in self.springs:
             raise InputError(
-                "is no spring of the line", element=self.line.name, key="spring", value=spring,
+                "is not a spring of the line", element=self.line.name, key="spring", value=spring,
                 remedy=f"name one of {', '.join(self.springs)}",
             )  # fmt: skip
         return self.springs.index(spring)

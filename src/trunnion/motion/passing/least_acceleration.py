@@ -174,5 +174,5 @@ def _drive(line: Driveline, torque: Sequence[AppliedTorque], scenario: Scenario 
         raise InputError(what, key="drive", remedy=remedy)
     rotors = [name for name, e in line.parts if isinstance(e, Rotor)]
     if drive is not None and drive not in rotors:
-        raise InputError("is no disk of this line", key="drive", value=drive, remedy=f"it has {few(rotors, 5)}")
+        raise InputError("is not a disk of this line", key="drive", value=drive, remedy=f"it has {few(rotors, 5)}")
     return drive or known[0]

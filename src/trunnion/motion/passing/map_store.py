@@ -46,7 +46,7 @@ class MapStore:
         says = _says(asked)
         head = self.folder / OF_MAP
         if self.folder.exists() and not self.folder.is_dir():
-            raise InputError("is no folder", key="store", value=str(folder), remedy="name a new folder")
+            raise InputError("is not a folder", key="store", value=str(folder), remedy="name a new folder")
         if self.folder.is_dir() and not head.exists() and any(self.folder.iterdir()):
             raise InputError("holds something else", key="store", value=str(folder), remedy="name a new folder")
         self.folder.mkdir(parents=True, exist_ok=True)

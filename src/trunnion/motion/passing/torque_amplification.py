@@ -120,7 +120,7 @@ def torque_amplification(
 def _given(nominal: Mapping[str, float], shafts: tuple[str, ...]) -> Mapping[str, float]:
     for name, value in nominal.items():
         if name not in shafts:
-            raise InputError("is no shaft of this motion", key="nominal", value=name, remedy=nearest(name, shafts))
+            raise InputError("is not a shaft of this motion", key="nominal", value=name, remedy=nearest(name, shafts))
         if not np.isfinite(value):
             raise InputError("must be finite", key=f"nominal {name}", value=value, remedy="give N m")
     return nominal

@@ -193,7 +193,7 @@ class Stepper:
             place = hit.act(place)
 
     def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[WatchedValue]) -> Outcome:
-        """The outcome of a run whose integration ended at ``place``, and what of its torques is no number there."""
+        """The outcome of a run whose integration ended at ``place``, and what of its torques is not a number there."""
         if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
             return wrong
         system = self.line.system

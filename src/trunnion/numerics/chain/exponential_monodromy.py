@@ -67,7 +67,7 @@ def exponential_monodromies(
     tolerance : difference of radii between N and 2N steps that is small enough, ``SHARE`` of their distance from 1 is
         as well; the last is sixty times better.
     least_steps : as many as follow the fastest change of A.
-    aside : (case numbers, matrices) → matrices without what is no disturbance, for the radius.
+    aside : (case numbers, matrices) → matrices without what is not a disturbance, for the radius.
     """
 
     def march(which: Places, count: int) -> Array:

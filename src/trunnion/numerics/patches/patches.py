@@ -236,7 +236,7 @@ def _transform(values: Array, errors: Array, nodes: int, tolerance: float) -> tu
     size = np.abs(coefficients)
     tail_u, tail_v = size[:, :, -TAIL:].max(axis=2).sum(axis=1), size[:, -TAIL:, :].max(axis=1).sum(axis=1)
     allowed = tolerance * np.maximum(np.abs(samples).max(axis=(1, 2)), 1.0)
-    # The median: a corner that is badly known is no reason to resolve the rest badly.
+    # The median: a corner that is badly known is not a reason to resolve the rest badly.
     allowed = np.maximum(allowed, np.median(errors, axis=0))
     worst_u, worst_v = (tail_u / allowed).max(), (tail_v / allowed).max()
     if not np.isfinite(worst_u + worst_v):

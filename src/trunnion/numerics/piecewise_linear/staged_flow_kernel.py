@@ -6,7 +6,7 @@ With q the twists of the springs of a tree (m,), f their torques and G = E M⁻�
 
 Within a combination of stages this is linear with constant coefficients, so the Taylor coefficients of the motion
 follow from each other, q_{k+1} = v_k/(k+1) and v_{k+1} = (−G f_k − D v_k + b_k)/(k+1), and a step is so long that the
-last of them is below rounding. Nothing is divided by an eigenvalue: free flight and resonance are no exceptions.
+last of them is below rounding. Nothing is divided by an eigenvalue: free flight and resonance are not exceptions.
 
 A slider (Jenkins element: spring in series with dry friction) is one more row on the twist of its ``source``, whose
 rate it has: q is the deflection of its spring, which stands still in the stages where it slips (``moves`` 0), so that

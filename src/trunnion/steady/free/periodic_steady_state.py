@@ -1,7 +1,7 @@
 """A line with joint angles, about its own periodic motion: the base of the stability of one that is free–free, and of
 one behind a prescribed speed where it is asked for.
 
-About the motion of rigid shafts at constant input speed, which is no motion of a free line, its rigid-body pair
+About the motion of rigid shafts at constant input speed, which is not a motion of a free line, its rigid-body pair
 grows by 0.36 β²Ω (two equal inertias, one joint): an artefact. Excitations of disks and transmission errors, whose
 periods are others, are left out: they do not change how a small disturbance grows.
 """

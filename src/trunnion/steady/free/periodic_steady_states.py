@@ -60,7 +60,7 @@ class Break:
 
 @dataclass(frozen=True)
 class SteadyStateSlopes:
-    """Slopes along the motions, and what is no disturbance of them.
+    """Slopes along the motions, and what is not a disturbance of them.
 
     solved, value: what knows the motions, and where; found (value,); period [rad of input angle]; slopes: Fourier
     coefficients (value, harmonic ≥ 0, 2n, 2n) of A in x′ = A(τ)x, states in energy-like units; shift, drift (value,

@@ -76,7 +76,7 @@ def motion_channels(topo: Topology, x: Complex, ratio: Array, relative: Array) -
 def graph_channels_of_harmonics(
     topo: Topology, x: Complex, h: Integers, times: int, elongations: Array, turning: Array
 ) -> Complex:
-    """The same as ``channels_of_harmonics`` of a line that is no tree: elongations (case, time, compliance, n) and
+    """The same as ``channels_of_harmonics`` of a line that is not a tree: elongations (case, time, compliance, n) and
     turning (case, time, station, n) of its equations."""
     places, at = channels_of(topo), _seen_stations(topo)
     spectrum = np.zeros((len(x), times, topo.size), dtype=complex)

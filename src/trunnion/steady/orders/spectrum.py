@@ -133,7 +133,7 @@ def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
         if column >= 0 and np.ptp(numbers[:, column]) > 0:
             label = assembly.packed.labels[column]
             raise InputError(
-                "is a frequency of excitation, which is no parameter of the orders", key=label, remedy=remedy
+                "is a frequency of excitation, which is not a parameter of the orders", key=label, remedy=remedy
             )
     return numbers
 
