@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Ends = Annotated[
     tuple[float, float] | None,
-    typer.Option("--speeds", metavar="LOW:HIGH", help="Of a run-up; default: the file's range."),
+    typer.Option("--speeds", metavar="LOW:HIGH", help="Speeds of a run-up; default: the file's range."),
     OptionReader(read_speed_ends),
 ]
 
@@ -41,10 +41,10 @@ def animate(
 
     trunnion animate truck.toml --what disturbance --speed 1500rpm -o why.gif
 
-    --what  turning, mode, response, motion, disturbance, run-up, transient or passing.
+    --what  What is shown: turning, mode, response, motion, disturbance, run-up, transient or passing.
     --mode  Number of a mode, from 1 among those that vibrate.
     --beside  Speed of the other disturbance; default: the nearest one where it does the opposite.
-    --acceleration  Of a run-up [rad/s²]; default: what takes ten seconds.
+    --acceleration  Acceleration of a run-up [rad/s²]; default: what takes ten seconds.
     --scenario  Name of a [[scenario]] of the file; default: its first.
     """
     found = tn.animate(

@@ -38,7 +38,7 @@ def assess(
 ) -> CommandOutput:
     """Example: trunnion assess truck.toml --load-case climb --remedies
 
-    --remedies  What would help: the smallest single changes for what is exceeded.
+    --remedies  Also search for what would help: the smallest single changes for what is exceeded.
     """
     helping = tn.remedies(line, load_case=load_case, unit=unit, progress=progress) if remedies else None
     result = helping.assessment if helping else tn.assess(line, load_case=load_case, unit=unit)
@@ -92,8 +92,8 @@ def envelope(
 ) -> CommandOutput:
     """Example: trunnion envelope truck.toml -o envelope.png
 
-    --points  Of each schedule, beside those it states.
-    --parameter, -p PARAMETER  Also its largest stable value everywhere.
+    --points  Points of each schedule, beside those it states.
+    --parameter, -p PARAMETER  Also find its largest stable value at every point.
     """
     return CommandOutput(tn.envelope(line, speeds, points=points, parameter=parameter, unit=unit, progress=progress))
 

@@ -66,9 +66,9 @@ System = Annotated[
     ),
 ]
 Periods = Annotated[int | None, typer.Option("--periods", help="Forcing periods to average over.", min=1)]
-Duration = Annotated[float | None, typer.Option("--duration", help="Instead of periods [s].")]
+Duration = Annotated[float | None, typer.Option("--duration", help="Time to average over, instead of periods [s].")]
 Starts = Annotated[int, typer.Option("--starts", help="Motions to follow and compare.", min=1)]
-Transient = Annotated[int | None, typer.Option("--transient", help="Periods to let pass before; default 500.", min=0)]
+Transient = Annotated[int | None, typer.Option("--transient", help="Periods to let pass before; default: 500.", min=0)]
 Section = Annotated[
     "tn.Event | None",
     typer.Option("--section", metavar="STATE=LEVEL[:-]", help='Crossings upwards, or downwards with ":-".'),
@@ -156,7 +156,7 @@ def certify_chaos(
 ) -> CommandOutput:
     """Example: trunnion certify-chaos driven-pendulum --set force=2.5 -o pendulum.png
 
-    --sweep NAME:LOW:HIGH:N  Exponents over this in the figure.
+    --sweep NAME:LOW:HIGH:N  Parameter over which the figure shows the exponents.
     """
     result = tn.certify_chaos(
         system, periods, duration=duration, section=section, start=start, starts=starts, transient=transient,

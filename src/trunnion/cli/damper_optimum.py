@@ -38,7 +38,7 @@ def damper_optimum(
 ) -> CommandOutput:
     """Example: trunnion damper-optimum ship.toml --damper "front damper" --mode 2
 
-    --damper NAME  By default the line's only one.
+    --damper NAME  Name of the damper; default: the line's only one.
     --mode  Number among the elastic modes of the line without the damper's ring.
     """
     return CommandOutput(tn.damper_optimum(line, damper or only_damper(line), mode))

@@ -39,7 +39,9 @@ def catalogue(
 
 
 def components(
-    name: Annotated[str | None, typer.Argument(metavar="[MAKER/TYPE]", help="Print this one as an element.")] = None,
+    name: Annotated[
+        str | None, typer.Argument(metavar="[MAKER/TYPE]", help="Print this component as an element.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """List the components whose sheets are typed in, or print one as an element of a file."""
@@ -74,7 +76,9 @@ def components(
 
 
 def new(
-    starter: Annotated[str | None, typer.Argument(metavar="[STARTER]", help="Without one, list what there is.")] = None,
+    starter: Annotated[
+        str | None, typer.Argument(metavar="[STARTER]", help="Starter to write; without one, list them.")
+    ] = None,
     path: Annotated[Path | None, typer.Argument(help="File to write; default: STARTER.toml here.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,

@@ -63,7 +63,7 @@ def _direction(asked: CommandInput, text: str, key: str) -> str:
 @Command("comparison", unasked=False)
 def compare(
     before: Before,
-    after: Annotated[str, typer.Argument(metavar="AFTER", help="The other one.")],
+    after: Annotated[str, typer.Argument(metavar="AFTER", help="Driveline file or name to compare it with.")],
     *,
     speed: Annotated[tuple[float, float] | None, OptionReader(read_speed_ends)],
     load_case: LoadCase = None,
@@ -73,7 +73,7 @@ def compare(
 ) -> CommandOutput:
     """Example: trunnion compare truck.toml truck-stiffer.toml
 
-    --speed LOW:HIGH  Of both; default the range of each file.
+    --speed LOW:HIGH  Lowest and highest input speed of both; default: the range of each file.
     """
     found = tn.compare(before, read_line(after), speed, load_case=load_case, unit=unit, progress=progress)
     names = (Path(file).stem, Path(after).stem)
@@ -102,11 +102,11 @@ def optimise(
 
     Example: trunnion optimise truck.toml --free "rear tube.fork_offset:-90deg:90deg" --aim irregularity
 
-    --free, -f PARAMETER:LOW:HIGH  A number to choose; repeat it.
-    --aim, -a AIM  As "irregularity", "peak torque of Shaft 1"; one or two.
+    --free, -f PARAMETER:LOW:HIGH  A number to choose and its bounds; repeat it for more.
+    --aim, -a AIM  What is to be best: "irregularity", "peak torque of Shaft 1"; one or two.
     --checks/--no-checks  Whether limits and ratings of assess must be satisfied.
-    --designs  Designs of the search from everywhere.
-    --seed  Of the search.
+    --designs  Designs computed in the global search, about.
+    --seed  Seed of the search; the same seed gives the same design.
     --write PATH  Write the best design as a driveline file, with the comments of the one given.
     """
     found = tn.optimise(
@@ -133,12 +133,12 @@ def sensitivity(
 ) -> CommandOutput:
     """Example: trunnion sensitivity truck.toml --speed 1500rpm -p "Shaft *.stiffness" -p "HookeJoint *.angle"
 
-    --speed, -s SPEED  Repeat it for more; default the file's.
-    --parameter, -p PARAMETER  Repeat it for more; default all of the file.
-    --of KIND  frequencies, growth, torques or checks; default all.
-    --check NAME  A check of assess; default the tightest six.
-    --tips PARAMETER:LOW:HIGH[:ROWS]  Tips of tongues over the file's speeds.
-    --draw QUANTITY  What the picture shows; default the first check.
+    --speed, -s SPEED  Input speed; repeat it for more; default: the file's.
+    --parameter, -p PARAMETER  Number to vary; repeat it for more; default: all of the file.
+    --of KIND  frequencies, growth, torques or checks; default: all.
+    --check NAME  A check of assess; default: the six with the least margin.
+    --tips PARAMETER:LOW:HIGH[:ROWS]  Also the tips of the tongues over the file's speeds.
+    --draw QUANTITY  Quantity that the picture shows; default: the first check.
     """
     from trunnion.design.sensitivity.sensitivity import KINDS
 

@@ -35,8 +35,8 @@ def fatigue(
 ) -> CommandOutput:
     """Example: trunnion fatigue truck.toml --life "20000 h" -o cycles.png
 
-    --life  Operating time that it is to last: "20000 h"; default: of the file.
-    --element  Whose cycles are drawn; default: the one that lasts shortest.
+    --life  Operating time that the line is to last: "20000 h"; default: the file's.
+    --element  Element whose cycles are drawn; default: the one that lasts shortest.
     """
     found = tn.fatigue(line, life=life, progress=progress)
     found.spectrum(element)

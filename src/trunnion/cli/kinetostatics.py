@@ -87,12 +87,12 @@ def kinetostatics(
 
     --elastic  Let the shafts twist under their torque.
     --inertia  Count the inertia torques of the rigid line.
-    --output-torque  At the end of the line or branch, beside its loads: "150 N*m".
+    --output-torque  Torque at the end of the line or branch, beside its loads: "150 N*m".
     --branch ELEMENT  The output is the end of the branch with this element.
-    --friction MU:PIN:ARM  Of the crosses: 0.005:12mm:40mm (pin and arm radius).
+    --friction MU:PIN:ARM  Bearing friction of the crosses, with pin and arm radius: 0.005:12mm:40mm.
     --support SHAFT:AT[:AT]  Bearings: 'Shaft 1:-300mm:-100mm'; repeat it.
-    --length SHAFT:LENGTH  Joint to joint, where it is not a tube: 'Shaft 2:0.8m'.
-    --limit  Irregularity of the output to be kept.
+    --length SHAFT:LENGTH  Length from joint to joint of a shaft that is not a tube: 'Shaft 2:0.8m'.
+    --limit  Largest irregularity of the output that is allowed.
     --phase  Also find the best fork offsets.
     --pitch  Spline pitch for --phase, such as "10 deg".
     --turns  Turns of the input.

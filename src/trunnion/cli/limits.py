@@ -61,8 +61,8 @@ def tongues(
 ) -> CommandOutput:
     """Example: trunnion tongues two-shaft-cardan --x speed:0.2rad/s:2rad/s --y "HookeJoint 1.angle:0deg:60deg"
 
-    --x PARAMETER:LOW:HIGH  Or PARAMETER for the file's range.
-    --y PARAMETER:LOW:HIGH[:ROWS]  Or an angle alone.
+    --x PARAMETER:LOW:HIGH  What varies along x; PARAMETER alone takes the file's range.
+    --y PARAMETER:LOW:HIGH[:ROWS]  What varies along y; a joint angle alone takes the file's range.
     """
     found = tn.tongues(
         line, x[0], y[0], speed=speed, rows=y[1], about_steady_state=about_steady_state, progress=progress
@@ -85,8 +85,8 @@ def minimum_damping(
 ) -> CommandOutput:
     """Example: trunnion minimum-damping two-shaft-cardan --speed 1.4:1.8 --maximum 40
 
-    --damping PARAMETER  A damping; default a factor of all.
-    --maximum  The largest value of it, SI units.
+    --damping PARAMETER  Damping to vary; default: one factor for all damping of the line.
+    --maximum  Largest damping tried, in SI units.
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     found = tn.minimum_damping(
@@ -109,7 +109,7 @@ def stable_windows(
 ) -> CommandOutput:
     """Example: trunnion stable-windows two-shaft-cardan -p "HookeJoint 1.angle:0deg:60deg" --speed 1.4:1.8
 
-    --parameter, -p PARAMETER:LOW:HIGH[:ROWS]  Or an angle alone.
+    --parameter, -p PARAMETER:LOW:HIGH[:ROWS]  What varies; a joint angle alone takes the file's range.
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     ends, rows = parameter
@@ -133,11 +133,11 @@ def tolerance_study(
 ) -> CommandOutput:
     """Example: trunnion tolerance-study truck.toml -t "Shaft *.stiffness=10%" -t "HookeJoint 1.angle=5%" --speed 25Hz
 
-    --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=10%" or "…=normal 3%"; default those of the file.
-    --speed SPEED  Repeat it for more; default the file's.
-    --checks  Lines judged by every check too; -1 for as many as half a minute allows.
-    --samples  Lines in all.
-    --seed  Of the random scrambles.
+    --tolerance, -t PARAMETER=SHARE  What scatters: "Shaft 1.stiffness=10%" or "…=normal 3%"; default: the file's.
+    --speed SPEED  Input speed; repeat it for more; default: the file's.
+    --checks  How many lines every check judges too; -1 for as many as half a minute allows.
+    --samples  Number of lines drawn.
+    --seed  Seed of the random numbers; the same seed draws the same lines.
     """  # fmt: skip
     found = tn.tolerance_study(
         line, dict(tolerance) if tolerance else None, speed,
@@ -160,8 +160,8 @@ def certify_stability(
 ) -> CommandOutput:
     """Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
 
-    --tolerance, -t PARAMETER=SHARE  As "Shaft 1.stiffness=1%"; default those of the file, or none.
-    --boxes  Boxes judged before the rest is left undecided.
+    --tolerance, -t PARAMETER=SHARE  What scatters: "Shaft 1.stiffness=1%"; default: the file's, or nothing.
+    --boxes  Largest number of boxes judged; the rest is left undecided.
     --write PATH  Write the line of a counterexample as a driveline file.
     """
     given = dict(tolerance) if tolerance else None

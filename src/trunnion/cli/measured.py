@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 DATA = typer.Argument(metavar="DATA", help="Measured signals: .csv, .mat, .h5, .wav, .mf4, .tdms, .uff.")
 Channels = Annotated[
     str | None,
-    typer.Option("--channels", metavar="TOML", help="What its columns are; default: DATA ending in .channels.toml."),
+    typer.Option(
+        "--channels", metavar="TOML", help="Description of its columns; default: DATA ending in .channels.toml."
+    ),
 ]
 
 
@@ -83,11 +85,11 @@ def track_orders(
 
     --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
     --line FILE  Driveline that the channels are of: gives speed ratios.
-    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --reference  Channel that the rotation is taken from; default: the first with pulses.
     --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
-    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
-    --window  Turns of a window.
-    --channel  What is drawn; default the first.
+    --between FIRST:LAST  Part of the recording, times in seconds; default: the longest run-up or run-down.
+    --window  Turns of one window.
+    --channel  Channel that is drawn; default: the first.
     """
     found = tn.track_orders(
         measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
@@ -130,11 +132,11 @@ def compare_measured(
 
     --line FILE  Driveline that the data are of.
     --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
-    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --reference  Channel that the rotation is taken from; default: the first with pulses.
     --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
-    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
-    --window  Turns of a window.
-    --channel  What is drawn; default the first that moves.
+    --between FIRST:LAST  Part of the recording, times in seconds; default: the longest run-up or run-down.
+    --window  Turns of one window.
+    --channel  Channel that is drawn; default: the first that moves.
     """
     data = tn.track_orders(
         measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
@@ -187,13 +189,13 @@ def identify(
     --line FILE  Driveline that the data are of, as it is thought to be.
     --free PARAMETER:LOW:HIGH  What may differ, with its bounds; repeat it for more.
     --orders K,K,…  Cycles per turn of the input; default: those that stand out of the noise.
-    --reference  Channel that the rotation is taken from; default the first with pulses.
+    --reference  Channel that the rotation is taken from; default: the first with pulses.
     --calibration DATA  Reference run: pitch errors of the wheels are taken from it.
-    --between FIRST:LAST  Times in seconds; default: the longest run-up or run-down.
-    --window  Turns of a window.
-    --tongue-at SPEED,…  Speeds at which the distance from the nearest instability is told.
-    --write FILE  Writes the driveline with the values found.
-    --channel  What is drawn; default the first that moves.
+    --between FIRST:LAST  Part of the recording, times in seconds; default: the longest run-up or run-down.
+    --window  Turns of one window.
+    --tongue-at SPEED,…  Input speeds at which to give the distance from the nearest instability.
+    --write FILE  Write the driveline with the values found.
+    --channel  Channel that is drawn; default: the first that moves.
     """
     if not free:
         raise InputError("is missing", key="--free", remedy='write --free "tube.stiffness:10kN*m/rad:40kN*m/rad"')

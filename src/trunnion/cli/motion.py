@@ -84,9 +84,9 @@ def simulate(
 ) -> CommandOutput:
     """Example: trunnion simulate truck.toml --turns 200 -o truck.png -o truck.nc
 
-    --to-speed  Speed at the end, reached evenly.
-    --turns  Turns of the input; default 20.
-    --duration SECONDS  Instead of turns.
+    --to-speed  Input speed at the end, reached at a constant acceleration.
+    --turns  Turns of the input; default: 20.
+    --duration SECONDS  Length of the motion, instead of turns.
     """
     if isinstance(subject, tn.Driveline):
         length = None if duration is not None else 20.0 if turns is None else turns
@@ -110,7 +110,7 @@ def periodic_response(
 ) -> CommandOutput:
     """Example: trunnion periodic-response truck.toml --load-case climb --speed "1500 rpm"
 
-    --periods  Of the excitation in one of the motion.
+    --periods  Periods of the excitation in one period of the motion.
     --period  Guess for a system without excitation: "1.5 s", or a number in s.
     """
     if not isinstance(subject, tn.Driveline):
@@ -135,8 +135,8 @@ def linearity_check(
 ) -> CommandOutput:
     """Example: trunnion linearity-check truck.toml --load-case climb --speed "1500 rpm" --acceleration 20
 
-    --allowed  Difference up to which linear theory holds, of the largest order.
-    --acceleration  Also run through the speed, in rad/s².
+    --allowed  Largest difference at which linear theory still holds, relative to the largest order.
+    --acceleration  Also run through the speed at this acceleration, in rad/s².
     --spring  Shaft or mesh to draw; default: where the two differ most.
     """
     found = tn.linearity_check(line, speed, allowed=allowed, acceleration=acceleration)
@@ -159,9 +159,9 @@ def run_up(
 
     --from  First speed; default: of the file's range.
     --to  Last speed; default: of the file's range.
-    --acceleration, -a  Per second, as a speed: 100rpm.
+    --acceleration, -a  Change of the input speed in a second: 100rpm.
     --ramp  Seconds over which it sets in; default: three periods of the slowest mode.
-    --limit  Torque to be kept by every shaft: "2 kN*m".
+    --limit  Largest torque allowed in every shaft: "2 kN*m".
     """
     found = tn.run_up(line, from_, to, acceleration=acceleration, ramp=ramp)
     content, said = _run_up_json(found, unit), found.describe(unit)

@@ -17,7 +17,9 @@ FILE = typer.Argument(metavar="FILE", help="Driveline file (TOML) or a name of t
 SPEED = typer.Option(
     "--speed", "-s", help='Input speed: "1500 rpm", "25 Hz", "157 rad/s", or a number in --unit; default: the file\'s.'
 )
-SPEED_RANGE = typer.Option("--speed", metavar="LOW:HIGH", help="Default the file's range.")
+SPEED_RANGE = typer.Option(
+    "--speed", metavar="LOW:HIGH", help="Lowest and highest input speed, 300rpm:2400rpm say; default: the file's range."
+)
 Unit = Annotated[
     str | None,
     typer.Option("--unit", "-u", metavar="rpm|Hz|rad/s", help="Unit of speeds; default: the file's."),
@@ -43,5 +45,9 @@ Speed = Annotated[float | None, SPEED, OptionReader(read_speed)]
 SpeedEnds = Annotated[tuple[float, float] | None, SPEED_RANGE, OptionReader(read_speed_ends)]
 SpeedRange = Annotated[tuple[float, float], SPEED_RANGE, OptionReader(read_speed_ends, missing=range_of)]
 Start = Annotated[
-    list[float] | None, typer.Option("--start", metavar="X,Y,…", help="State to start from."), OptionReader(read_state)
+    list[float] | None,
+    typer.Option(
+        "--start", metavar="X,Y,…", help="State to start from; default: the system's own, or a line without twist."
+    ),
+    OptionReader(read_state),
 ]

@@ -141,7 +141,7 @@ def order_response(
 def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: SpeedUnit) -> CommandOutput:
     """Example: trunnion misfire ship.toml --speed 300rpm:800rpm -o misfire.png
 
-    --cut-out/--misfiring  Nothing is left of the gas torque of a cylinder, or what compression does.
+    --cut-out/--misfiring  Leave a cylinder no gas torque at all, or that of its compression.
     """
     result = tn.misfire(line, speeds, cut_out=cut_out).in_unit(unit)
     seen = result.response.in_unit(unit)
@@ -198,8 +198,8 @@ def stable_limit(
 
     --parameter, -p PARAMETER:LOW:HIGH[:STEPS]  What is raised until the line is unstable, or PARAMETER alone for
         angles: 0 to the file's range. STEPS are those at which the file's limits are compared.
-    --margin  Share by which the speeds between are widened, 0.1 for 10 %.
-    --between/--listed  Every speed between too, or those listed alone.
+    --margin  Share by which the range of speeds is widened at either end, 0.1 for 10 %.
+    --between/--listed  Judge every speed between too, or only those listed.
     """
     label, low, high, points = parameter
     result = tn.stable_limit(

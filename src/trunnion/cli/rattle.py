@@ -118,9 +118,9 @@ def frequency_response(
 ) -> CommandOutput:
     """Example: trunnion frequency-response gear-rattle --method all -o response.png
 
-    --method  exact, harmonic balance, averaging, …; repeat it, or write all.
-    --fit-range  Of the cubic fit of averaging and multiple scales [x].
-    --harmonics  Of harmonic balance.
+    --method  Method: exact, harmonic balance, averaging, …; repeat it, or write all.
+    --fit-range  Largest |x| of the cubic fit of averaging and multiple scales.
+    --harmonics  Number of harmonics of harmonic balance.
     --curve  State of a system or shaft of a line to look at; default: the first.
     """
     from trunnion.motion.orbits.frequency_response import ResponseComparison, methods_of
@@ -165,8 +165,8 @@ def sweep(
 ) -> CommandOutput:
     """Example: trunnion sweep gear-rattle --set mean_force=0 -o sweep.png
 
-    --points  Frequencies.
-    --direction  up, down or both.
+    --points  Number of frequencies.
+    --direction  Direction of the sweep: up, down or both.
     --curve  Shaft or mesh of a longer line to draw.
     """
     import numpy as np

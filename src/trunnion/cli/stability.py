@@ -59,7 +59,8 @@ def analyze(
     unit: Unit = None,
     load_case: LoadCase = None,
     points: Annotated[
-        str | None, typer.Option("--points", metavar="NXxNY", help="Of the chart; default as its picture needs.")
+        str | None,
+        typer.Option("--points", metavar="NXxNY", help="Points of the chart; default: as its picture needs."),
     ] = None,
     within: Annotated[
         str | None,
@@ -74,11 +75,12 @@ def analyze(
         bool,
         typer.Option(
             "--submission",
-            help="Instead of the report with charts: the report that is handed in and signed, NAME-submission.html.",
+            help="Write the report to hand in and sign, NAME-submission.html, instead of the one with charts.",
         ),
     ] = False,
     moving: Annotated[
-        bool, typer.Option("--live", help="Also a page on which the line moves, NAME-live.html beside the report.")
+        bool,
+        typer.Option("--live", help="Also write a page on which the line moves, NAME-live.html beside the report."),
     ] = False,
     as_json: Json = False,
 ) -> None:
@@ -254,9 +256,9 @@ def stability_chart(
 ) -> CommandOutput:
     """Example: trunnion stability-chart a.toml --x speed:300rpm:2400rpm:400 --y "joint 2.angle:0deg:30deg:300"
 
-    --x PARAMETER:LOW:HIGH[:POINTS][:log]  Or PARAMETER alone for the file's range.
-    --y PARAMETER:LOW:HIGH[:POINTS][:log]  The same.
-    --points NXxNY  Points along x and y where not said there.
+    --x PARAMETER:LOW:HIGH[:POINTS][:log]  What varies along x; PARAMETER alone takes the file's range.
+    --y PARAMETER:LOW:HIGH[:POINTS][:log]  What varies along y, likewise.
+    --points NXxNY  Points along x and y, where the axes do not say how many.
     """
     from trunnion.cli.report import chart_json, chart_text
 
@@ -291,8 +293,8 @@ def resonance_speeds(
 ) -> CommandOutput:
     """Example: trunnion resonance-speeds truck.toml --orders 3 --all
 
-    --orders  Highest order k.
-    --all  Also those outside the file's speed_range.
+    --orders  Highest order k of the resonances.
+    --all  Also list those outside the file's speed_range.
     """
     from trunnion.cli.report import resonances_json
 

@@ -29,7 +29,8 @@ EVERY = 0.2
 
 def study(
     what: Annotated[
-        str, typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what of a STORE.")
+        str,
+        typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what to do with a STORE."),
     ],
     store: Annotated[
         str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say, or its file.")
@@ -40,34 +41,40 @@ def study(
             "--output",
             "-o",
             metavar="PATH",
-            help="Of export: file ending in .nc, .csv or .parquet; of show: a picture, .png, .pdf or .svg; repeat it.",
+            help="File to write: .nc, .csv or .parquet of export, .png, .pdf or .svg of show; repeat it for more.",
         ),
     ] = None,
     of: Annotated[
-        str | None, typer.Option("--of", metavar="QUANTITY", help="That a picture shows; default: the first.")
+        str | None,
+        typer.Option("--of", metavar="QUANTITY", help="Quantity that the picture shows; default: the first."),
     ] = None,
     kind: Annotated[
         str | None,
-        typer.Option("--kind", metavar="KIND", help="Of picture: chart, slices, histogram, parallel or shares."),
+        typer.Option("--kind", metavar="KIND", help="Kind of picture: chart, slices, histogram, parallel or shares."),
     ] = None,
     x: Annotated[
-        str | None, typer.Option("--x", metavar="PARAMETER", help="Along the picture; default: the speed first.")
+        str | None,
+        typer.Option("--x", metavar="PARAMETER", help="Parameter along x of the picture; default: the speed."),
     ] = None,
-    y: Annotated[str | None, typer.Option("--y", metavar="PARAMETER", help="Up the chart, or of the slices.")] = None,
+    y: Annotated[
+        str | None, typer.Option("--y", metavar="PARAMETER", help="Parameter along y of the chart, or of the slices.")
+    ] = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=0, help="Processes of this machine; default: one per core; 0 computes here."),
     ] = None,
     scheduler: Annotated[
         str | None,
-        typer.Option("--scheduler", metavar="ADDRESS", help="Of a Dask scheduler instead: tcp://host:8786."),
+        typer.Option(
+            "--scheduler", metavar="ADDRESS", help="Address of a Dask scheduler to use instead: tcp://host:8786."
+        ),
     ] = None,
     memory: Annotated[
         str | None,
-        typer.Option("--memory", metavar="SIZE", help='Of a process of this machine at most: "2 GiB".'),
+        typer.Option("--memory", metavar="SIZE", help='Most memory of one process: "2 GiB".'),
     ] = None,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Compute a few points alone, and say what all would cost.")
+        bool, typer.Option("--dry-run", help="Compute a few points only, and say what all would cost.")
     ] = False,
     verify: Annotated[
         bool, typer.Option("--verify", help="First read back all that is there; compute anew what is damaged.")

@@ -35,7 +35,7 @@ def transient(
     """Example: trunnion transient mill.toml --scenario start -o start.png -o start.nc
 
     --scenario  Name of a [[scenario]] of the file; default: its only one.
-    --speed  Of the input when it begins, instead of the scenario's.
+    --speed  Input speed at the start, instead of the scenario's.
     """
     found = tn.transient(line, _scenario(line, scenario), speed=speed, tolerance=tolerance, progress=progress)
     return CommandOutput(found, content=lambda: _content(found, unit), outcome=found.outcome)
@@ -72,8 +72,8 @@ def passing(
 
     --from  First speed; default: of the file's range.
     --to  Last speed; default: of the file's range.
-    --scenario  Whose torques and friction act; default: the only one of the file.
-    --phase RADIANS  Angle of the input when it begins.
+    --scenario  Scenario whose torques and friction act; default: the file's only one.
+    --phase RADIANS  Angle of the input at the start.
     """
     acting = _acting(line, scenario)
     found = tn.passing(line, (from_, to), scenario=acting, phase=phase, progress=progress)
@@ -114,22 +114,22 @@ def capture_map(
     processes: Annotated[int, NumberBounds(1)] = 1,
     store: str = "",
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Compute a few cells alone, and say how long all would take.")
+        bool, typer.Option("--dry-run", help="Compute a few cells only, and say how long all would take.")
     ] = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
     """Example: trunnion capture-map mill.toml --from 0rpm --to 1400rpm --x "HookeJoint 1.angle:2deg:15deg:10"
 
-    --x PARAMETER:LOW:HIGH[:CELLS]  Or factor:LOW:HIGH[:CELLS] of the drive torque.
-    --y PARAMETER:LOW:HIGH[:CELLS]  The same.
+    --x PARAMETER:LOW:HIGH[:CELLS]  What varies along x, or factor:LOW:HIGH[:CELLS] of the drive torque.
+    --y PARAMETER:LOW:HIGH[:CELLS]  What varies along y, likewise.
     --from  First speed; default: of the file's range.
     --to  Last speed; default: of the file's range.
-    --scenario  Whose torques and friction act; default: the only one of the file.
-    --drive DISK  Whose torque the factor scales, where torques act on several.
+    --scenario  Scenario whose torques and friction act; default: the file's only one.
+    --drive DISK  Disk whose torque the factor scales, where torques act on several.
     --phases  Starting phases of every cell.
-    --processes  That compute.
-    --store FOLDER  Where cells are written in pieces, and from where it goes on.
+    --processes  Number of processes that compute.
+    --store FOLDER  Folder for the cells as they are computed; a second call goes on from there.
     """
     acting, driver = _acting(line, scenario), drive or None
     if dry_run:

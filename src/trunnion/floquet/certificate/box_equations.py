@@ -213,8 +213,8 @@ class _BoxLine:
             q̇ = E M⁻¹π,   π̇ = −Eᵀk q − (EᵀcE + loads) M⁻¹π  [− ν M₀ρ (ρᵀπ)/(ρᵀM₀ρ)].
 
         A turn ρ of the whole twists nothing, Eρ = 0, and is not a state. Where no load goes with the speed, neither
-        does its momentum ρᵀπ change: the last term gives it a decay of its own, and leaves every motion without it as it
-        is.
+        does its momentum ρᵀπ change: the last term gives it a decay of its own, and leaves every motion without it
+        as it is.
         """
         topo, co, n = self.assembly.topology, self.co, self.assembly.topology.size
         waves, twists = self._mesh_waves(), topo.elongations
