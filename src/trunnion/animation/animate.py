@@ -54,12 +54,13 @@ def animate(
     Parameters
     ----------
     line : a ``Driveline`` or its ``Assembly``.
-    what : "turning", shafts rigid, joints at work; "mode", of the straight line; "response", linear, to all that
-        excites it; "motion", its true periodic motion, gaps and all; "disturbance", that which grows fastest beside one
-        that decays; "run-up", through its resonances; "transient", a scenario of the file;
-        "passing", whether it comes from one speed to another under the torques of a scenario or of its motor.
-    speed : of the input [rad/s], a number or a text with its unit; default the operating speed of the file. Of turning,
-        response, motion and disturbance.
+    what : what is shown. "turning": shafts are rigid, joints at work. "mode": a mode of the straight line.
+        "response": the linear response to all that excites it. "motion": its true periodic motion, gaps and all.
+        "disturbance": the one that grows fastest, beside one that decays. "run-up": the way through its resonances.
+        "transient": a scenario of the file. "passing": whether the line comes from one speed to another under the
+        torques of a scenario or of its motor.
+    speed : of the input [rad/s], a number or a text with its unit; default the operating speed of the file. It belongs
+        to turning, response, motion and disturbance.
     mode : its number, counted from 1 among those that vibrate; default 1.
     beside : speed of the other disturbance [rad/s]; default the nearest one looked at where it does the opposite.
     speeds : first and last of a run-up or a passing [rad/s]; default the range of the file.

@@ -38,9 +38,10 @@ class Excitation(Record):
     disk: order = -2 and frequency = "100 Hz" is at 100 Hz at rest and at nothing at 50 turns a second. The rotation
     counts in the disk's own sense, also behind a gear that reverses it.
 
-    Several orders together are an engine-order table. A is one ``amplitude``; or grows with the square of the disk's
-    speed; or is a ``share`` of the mean torque there, as of blades and of motors; or stands in a table over the disk's
-    speed or over the mean torque it drives with, A e^{i phase} linear between its points and refused beyond its ends.
+    Several orders together are an engine-order table. A is stated in one of four ways: as one
+    ``amplitude``; by the square of the disk's speed; as a ``share`` of the mean torque there, as of blades and motors;
+    or as a table over the disk's speed or the mean torque it drives with. Between the points of a table A e^{i phase}
+    is linear. Speeds and torques beyond its ends are refused.
 
     Parameters
     ----------

@@ -173,9 +173,9 @@ class Motor(ElectricMachine):
     """A motor: by points of its torque over speed, by Kloss's formula, or on a converter that controls its speed.
 
     It drives by its curve, so that a free–free line turns at a balance of torques (``mean_speed``). With a
-    ``drive_share`` a converter sets it to any speed asked for: Kloss's curve is moved along the speed as it is until it
-    carries its share of the loads (voltage and frequency in proportion), a controller's set speed likewise; what is
-    beyond the breakdown torque or the torque limit is refused. Linear analyses have the slope there.
+    ``drive_share`` a converter sets it to any speed asked for. It moves Kloss's curve along the speed until the motor
+    carries its share of the loads (voltage and frequency in proportion), or a controller's set speed likewise. More
+    than the breakdown torque or the torque limit is refused. Linear analyses have the slope there.
 
     Parameters
     ----------

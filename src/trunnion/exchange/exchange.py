@@ -36,10 +36,10 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple
     line : any driveline of inertias, springs with one stiffness, rigid gears, and constant and viscous loads, its
         joints straight; for "c" any whose nonlinear equations have no friction that sticks.
     path : of the file, ending in .csv, .mat, .py, .mo or .c; one that is there is replaced.
-    to : "csv", a table with a row for each of them, in SI units; "matlab", a state space A, B, C, D with the names of
-        its states, inputs and outputs; "opentorsion", a script that builds the assembly; "modelica", a model of
-        Modelica.Mechanics.Rotational; "c", the equations of motion x' = f(t, x) at the operating speed in ANSI C, with
-        joints, excitations, meshes and stages.
+    to : the kind of file. "csv": a table with a row for each part, in SI units. "matlab": a state space A, B, C, D
+        with the names of its states, inputs and outputs. "opentorsion": a script that builds the assembly.
+        "modelica": a model of Modelica.Mechanics.Rotational. "c": the equations of motion x' = f(t, x) at the
+        operating speed in ANSI C, with joints, excitations, meshes and stages.
 
     Returns what the description says besides and the file does not: limits, scenarios and the like.
 

@@ -144,7 +144,7 @@ def resonance_speeds(line: Driveline | Assembly, orders: int = 2) -> ResonanceSp
     Parameters
     ----------
     line : a ``Driveline`` or its ``Assembly``.
-    orders : highest order k [1].
+    orders : highest order k [-].
 
     Raises
     ------

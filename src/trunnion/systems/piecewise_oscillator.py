@@ -44,9 +44,9 @@ class PiecewiseOscillator:
     breakpoints : rising places where the slope changes, (n,).
     slopes : of g below, between and above them, (n + 1,), none negative.
     damping, damping_law : c, and when it acts: "always", "in contact" (outside the softest piece only) or "never
-        pulling" (there too, and so that a surface never pulls nor more than doubles its push: with τ the elastic force
-        pressed on and d = c x′, τ + min(τ, d), and 0 where τ + d ≤ 0, mirrored below; the law of
-        Modelica.Mechanics.Rotational.Components.ElastoBacklash).
+        pulling". The last acts in contact too, and so that a surface never pulls nor more than doubles its push: with
+        the elastic push τ and d = c x′ the force is τ + min(τ, d), and 0 where τ + d ≤ 0, mirrored below. It is the
+        law of Modelica.Mechanics.Rotational.Components.ElastoBacklash.
     mean_force : B₀.
     force : p₁, the amplitude at the frequency itself.
     harmonics : further harmonics (k, p_k, q_k).

@@ -64,10 +64,10 @@ def optimise(
     free : path → (low, high), SI units or texts, as {"joint 2.angle": ("2 deg", "8 deg")}; a pattern as
         "Shaft *.stiffness" frees each number by itself, "factor of Shaft *.stiffness" all together. What ranges
         over more than a factor of ten is searched by its logarithm.
-    aims : one of these, or two: "irregularity" of the output, shafts rigid; "growth rate", the largest over the range;
-        "peak torque of SPRING", "vibratory torque of SPRING", the largest over the range and all load cases, all to be
-        smallest; "margin of CHECK", "least spare margin" of all checks that decide, to be largest; or a function of a
-        ``Driveline`` to be smallest.
+    aims : one or two of these. To be smallest: "irregularity" of the output, shafts rigid; "growth rate", the largest
+        over the range; "peak torque of SPRING" and "vibratory torque of SPRING", the largest over the range and all
+        load cases; or a function of a ``Driveline``. To be largest: "margin of CHECK", or "least spare margin" of all
+        checks that decide.
     speeds : lowest and highest input speed [rad/s]; default the range of the description. "irregularity" needs none.
     checks : True: every check of ``assess`` that decides is to be satisfied; names: those; False or (): none. Without
         speeds nothing is judged.

@@ -50,9 +50,9 @@ def remedies(
 ) -> Remedies:
     """The smallest single changes of stiffness, inertia, damping, joint angle or phase that satisfy a check.
 
-    Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase,
-    and verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
-    worse; ``verified`` of the result says at which speeds. Of free–free lines with joint angles sensitivities are those
+    Each was found by moving one number step by step, up to a factor of two, 21° of a joint or half a turn of a phase.
+    It was verified by judging the whole line again: no check that was satisfied is broken, none that was exceeded gets
+    worse. ``verified`` of the result says at which speeds. Of free–free lines with joint angles sensitivities are those
     about the motion of rigid shafts. A range of values narrower than a step (3 to 10 %, of free–free lines with joint
     angles 5 to 20 %) can be missed. What is zero is not varied.
 

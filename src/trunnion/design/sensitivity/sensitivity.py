@@ -59,9 +59,10 @@ def sensitivity(
 ) -> Sensitivities:
     """Derivatives of what the line does by the numbers of its description, plain and logarithmic, ranked.
 
-    Natural frequencies and damping ratios through the modes, growth rates through the Floquet mode and its adjoint,
-    torques and what is limited of them through the equations of the response, all exact; tips by implicit
-    differentiation; other checks, and the torques of free–free lines with joint angles, by differences of fourth order.
+    These are exact: natural frequencies and damping ratios, through the modes; growth rates, through the Floquet mode
+    and its adjoint; torques and their limits, through the equations of the response; tips, by implicit
+    differentiation. Other checks, and the torques of free–free lines with joint angles, take differences of fourth
+    order.
 
     Parameters
     ----------

@@ -240,9 +240,9 @@ def frequency_response(
     system : a ``PiecewiseOscillator``; a ``SecondOrder`` system, by harmonic balance; a ``System`` forced at its
         parameter ``frequency``; or a ``Driveline`` over its input speed.
     low, high : ends of the range [rad/s].
-    method : one of ``METHODS`` ("exact" by default) for a piecewise oscillator; "harmonic balance" (default) or
-        "shooting" (default of drivelines with backlash or stages, the only one of those that are free–free) for the
-        others; "exact" also for a driveline that ``exact_motion`` takes.
+    method : of a piecewise oscillator one of ``METHODS``, by default "exact". Of other systems "harmonic balance", the
+        default, or "shooting". Drivelines with backlash or stages take "shooting" by default, and no other where they
+        are free–free; "exact" is open to a driveline that ``exact_motion`` takes.
     parameter : of a system, by default "frequency"; of a driveline "speed".
     curve : which to look at, a state of a system or a shaft of a line; by default the first.
     begin : frequency [rad/s] to begin at, ``low`` by default; the branch is followed both ways from it.

@@ -241,10 +241,10 @@ def run_up(
     """Run a line from speed ``first`` to ``last`` at an acceleration that sets in smoothly and then stays.
 
     The run begins on the periodic motion at ``first`` where there is one, otherwise without twist (a line that starts
-    free: twisted by its mean torques). A free–free line and is behind at the end is followed further, its drives
-    holding their last torque, until it reaches the last speed or hangs: ``outcome.kind`` is "reached", "captured",
-    "short of torque", "stalled" or "undecided". Where it was behind on the way, another run at another tolerance must
-    end alike.
+    free: twisted by its mean torques). A free–free line that lags behind at the end is followed further. Its
+    drives hold their last torque until it reaches the last speed or hangs. ``outcome.kind`` is "reached", "captured",
+    "short of torque", "stalled" or "undecided". Where the line lagged on the way, a second run at another tolerance
+    must end alike.
 
     Parameters
     ----------

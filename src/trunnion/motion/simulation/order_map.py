@@ -96,7 +96,7 @@ def order_map(run: TurningRun, *, window: int = WINDOW, highest: float = 12.0) -
 
     Raises
     ------
-    InputError : fewer turns than two windows; a free–free line and turns back, where orders mean nothing.
+    InputError : fewer turns than two windows; a free–free line that turns back, where orders mean nothing.
 
     Examples
     --------

@@ -110,7 +110,7 @@ def simulate(
     Raises
     ------
     InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
-        excitation by the speed on a free–free line and leaves the speed it begins with.
+        excitation that depends on the speed, on a free–free line that leaves the speed it begins with.
 
     Examples
     --------

@@ -22,7 +22,7 @@ class CrossFriction:
 
     Parameters
     ----------
-    coefficient : μ of the pin bearings [1]; a few thousandths for needle bearings.
+    coefficient : μ of the pin bearings [-]; a few thousandths for needle bearings.
     pin_radius : r, where the bearing slides or rolls on the pin [m].
     arm : R, distance of the bearings' middle from the centre of the cross [m].
 
@@ -70,6 +70,6 @@ class CrossFriction:
 
     @property
     def pin_moment(self) -> float:
-        """κ′ [1]: friction moment about either pin axis over the moment along the cross's normal."""
+        """κ′ [-]: friction moment about either pin axis over the moment along the cross's normal."""
         ratio = self.coefficient * self.pin_radius / self.arm
         return ratio / sqrt(1 - ratio**2)

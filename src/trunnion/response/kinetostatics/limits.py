@@ -29,7 +29,7 @@ def check_limits(
     Parameters
     ----------
     result : of ``kinetostatics``.
-    irregularity : of the output [1]; the default is the guideline of cardan-shaft makers, None leaves it out.
+    irregularity : of the output [-]; the default is the guideline of cardan-shaft makers, None leaves it out.
     output_acceleration, shaft_acceleration : largest angular acceleration [rad/s²] of the output (which
         shakes what it drives) and of any shaft in between (whose inertia shakes its neighbours). Makers'
         catalogues give values for their class of vehicle.

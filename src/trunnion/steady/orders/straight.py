@@ -45,8 +45,8 @@ def straight_response(
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
     ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad], ``lags`` of what they have as damping. NaN where
-    the line resonates without damping. Of a free–free line and is driven away the deviations are those beside what it
-    turns as a whole.
+    the line resonates without damping. Where a free–free line is driven away, the deviations are those beside what
+    it turns as a whole.
     With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
     orders, cases, n = right.shape
