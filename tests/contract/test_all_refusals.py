@@ -70,7 +70,7 @@ def test_mistakes_between_elements_have_theirs():
     assert [line.partition(";")[0] for line in found] == [
         "a.name: names elements 1 and 2",
         "a.after = 'b': is not an earlier element",
-        "driveline.damping_ratio_frequency = 3: stands without damping_ratio",
+        "driveline.damping_ratio_frequency = 3: is given without damping_ratio",
         "load case c.d = 1: is not a Disk of this driveline",
     ]
 

@@ -91,5 +91,7 @@ def check_ending(path: str | os.PathLike[str]) -> str:
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS:
         remedy = f"end it in one of {', '.join(ENDINGS)}"
-        raise InputError("is nothing an animation is written to", key="output", value=str(path), remedy=remedy)
+        raise InputError(
+            "is not a file that an animation can be written to", key="output", value=str(path), remedy=remedy
+        )
     return ending

@@ -137,7 +137,9 @@ class AppliedTorque(Record):
         elif self.by_program:
             self._check_program()
         elif self.factor:
-            raise InputError("is of motors", key="factor", remedy="multiply the torques, or write breakdown_torque")
+            raise InputError(
+                "belongs to motors", key="factor", remedy="multiply the torques, or write breakdown_torque"
+            )
         elif self.table:
             self._check_table()
         else:
@@ -179,7 +181,7 @@ class AppliedTorque(Record):
         if not 0 < slip < 1:
             raise InputError("must lie between 0 and 1", key="breakdown_slip", value=slip, remedy="write 0.2, say")
         if len(self.factor) != len(self.time):
-            problem = f"has {len(self.factor)} values for {len(self.time)} points of time"
+            problem = f"must have one value for each of {len(self.time)} points of time, and has {len(self.factor)}"
             raise InputError(problem, key="factor", remedy="give one share for each point")
 
     @property
@@ -204,7 +206,9 @@ class AppliedTorque(Record):
         if beside:
             raise InputError(f"conflicts with {what}", key=beside, remedy="leave one of the two out")
         if self.between != "lines":
-            raise InputError("is of tables", key="between", value=self.between, remedy=f"leave it out beside {what}")
+            raise InputError(
+                "belongs to tables", key="between", value=self.between, remedy=f"leave it out beside {what}"
+            )
         if self.since is not None and self.until is not None and not self.since < self.until:
             raise InputError("must lie behind since", key="until", value=self.until, remedy="leave it out, or raise it")
 
@@ -216,16 +220,18 @@ class AppliedTorque(Record):
             problem = "must be two positive speeds beside power"
             raise InputError(problem, key="speed", remedy='write speed = ["100 rpm", "3000 rpm"], say')
         if self.between != "lines":
-            raise InputError("is of tables", key="between", value=self.between, remedy="leave it out beside power")
+            raise InputError("belongs to tables", key="between", value=self.between, remedy="leave it out beside power")
 
     def _check_table(self) -> None:
         if len(self.variables) != 2 or self.torque:
             raise InputError("goes over two variables", key="table", remedy="give two of time, speed and angle")
         if self.between == "cubic":
-            raise InputError("is of one variable", key="between", value="cubic", remedy='write between = "lines"')
+            raise InputError(
+                "belongs to a table of one variable", key="between", value="cubic", remedy='write between = "lines"'
+            )
         rows, columns = (len(getattr(self, key)) for key in self.variables)
         if len(self.table) != rows or any(len(row) != columns for row in self.table):
-            problem = f"has not {rows} rows of {columns} torques"
+            problem = f"must have {rows} rows of {columns} torques"
             remedy = f"give one row for each {self.variables[0]}, one torque for each {self.variables[1]}"
             raise InputError(problem, key="table", remedy=remedy)
 
@@ -240,7 +246,7 @@ class AppliedTorque(Record):
             raise InputError(problem, key="torque", remedy=remedy)
         points = getattr(self, self.variables[0])
         if len(self.torque) != len(points):
-            problem = f"has {len(self.torque)} values for {len(points)} points"
+            problem = f"must have one value for each of {len(points)} points, and has {len(self.torque)}"
             raise InputError(problem, key="torque", remedy="give one torque for each point")
 
 

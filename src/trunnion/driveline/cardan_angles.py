@@ -79,7 +79,10 @@ def _one_per_shaft(values: object, key: str, joints: int, kind: QuantityKind = A
     found = _numbers(values, key, kind)
     if len(found) != joints - 1:
         raise InputError(
-            f"has {len(found)} values for {joints} joints", key=key, value=found, remedy=f"give {joints - 1}"
+            f"must have one value fewer than the {joints} joints, and has {len(found)}",
+            key=key,
+            value=found,
+            remedy=f"give {joints - 1}",
         )
     return found
 

@@ -104,7 +104,7 @@ def checked(elements: Iterable[Element]) -> tuple[Element, ...]:
     """
     remedy = "write tn.Driveline([tn.ConstantSpeed(), tn.Shaft(...), tn.Disk(...)])"
     if isinstance(elements, Element) or not isinstance(elements, Iterable):
-        raise InputError(f"must be a list, not a {type(elements).__name__}", key="elements", remedy=remedy)
+        raise InputError(f"must be a list, not of type {type(elements).__name__}", key="elements", remedy=remedy)
     found = tuple(elements)
     if not found:
         raise InputError("has no elements", element="driveline", remedy=remedy)

@@ -245,7 +245,7 @@ def _hat(points: tuple[float, ...], i: int, at: float, x: Any) -> Any:
 def _table(over: str, points: tuple[float, ...], key: str, values: tuple[float, ...], kind: QuantityKind) -> None:
     """Refuse tables that do not rise, are too short or unlike in length."""
     if len(points) != len(values):
-        problem = f"has {len(values)} values beside {len(points)} {over}"
+        problem = f"must have one value for each of {len(points)} {over}, and has {len(values)}"
         raise InputError(problem, key=key, remedy=f"write one for each of {over}")
     if len(points) < 2:
         raise InputError("must be two or more", key=over, remedy="one point is not a table")

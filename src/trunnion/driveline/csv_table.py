@@ -46,7 +46,7 @@ def read_numbers(path: str | os.PathLike[str], kind: TableKind) -> list[tuple[st
 
     Raises
     ------
-    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; no
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a cell without number; no
         rows.
     """
     place = Path(path)

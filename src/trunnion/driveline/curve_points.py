@@ -85,7 +85,7 @@ def read_curve(path: str | os.PathLike[str]) -> tuple[TorquePoint, ...]:
 
     Raises
     ------
-    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none;
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a cell without number;
         speeds that do not rise.
 
     Examples

@@ -155,7 +155,7 @@ class Disturbance(Record):
         stray = next((key for key in fields if key not in known and getattr(self, key) != fields[key].default), None)
         if stray:
             remedy = f"it takes {', '.join((*needed, *taken))}"
-            raise InputError("is of another case", key=stray, value=getattr(self, stray), remedy=remedy)
+            raise InputError("belongs to another case", key=stray, value=getattr(self, stray), remedy=remedy)
         self._check_signs()
         self._check_times()
         self._check_tables()
@@ -183,7 +183,7 @@ class Disturbance(Record):
 
     def _check_tables(self) -> None:
         if len(self.speeds) != len(self.amplitudes):
-            problem = f"has {len(self.amplitudes)} values for {len(self.speeds)} speeds"
+            problem = f"must have one value for each of {len(self.speeds)} speeds, and has {len(self.amplitudes)}"
             raise InputError(problem, key="amplitudes", remedy="give one for each speed")
         for i, (a, b) in enumerate(zip(self.speeds, self.speeds[1:], strict=False)):
             if not b > a:

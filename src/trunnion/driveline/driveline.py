@@ -51,8 +51,8 @@ class Driveline(ElementChain):
 
     Raises
     ------
-    InputError : names twice, a branch from nowhere, a drive in mid-line, damping stated twice, limits or tolerances of
-        elements that cannot have them.
+    InputError : a name given twice, a branch from nowhere, a drive in the middle of a line, damping stated twice,
+        limits or tolerances of elements that cannot have them.
 
     >>> import trunnion as tn
     >>> line = Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness="10 kN*m/rad"), tn.Disk(inertia=0.8)])
@@ -266,7 +266,7 @@ def _wrong_damping(line: Driveline) -> Iterator[InputError]:
     if line.damping_ratio is None:
         if line.damping_ratio_frequency is not None:
             remedy = "write damping_ratio = 0.02, say, or leave it out"
-            yield InputError("stands without damping_ratio", key="damping_ratio_frequency", remedy=remedy)
+            yield InputError("is given without damping_ratio", key="damping_ratio_frequency", remedy=remedy)
         return
     if line.damping_ratio_frequency is not None and not line.damping_ratio_frequency > 0:
         yield InputError("must be positive", key="damping_ratio_frequency", remedy='write "50 Hz", say')
@@ -327,7 +327,7 @@ def _wrong_loads(line: Driveline) -> Iterator[InputError]:
 
 
 def _wrong_schedules(line: Driveline) -> Iterator[InputError]:
-    having = {"angle": "no joint with an angle", "load_torque": "not a Disk"}
+    having = {"angle": "not a joint with an angle", "load_torque": "not a Disk"}
     for schedule in line.operation.schedules if line.operation else ():
         for name, key in schedule.elements:
             known = [n for n, e in line.parts if key in type(e).model_fields]

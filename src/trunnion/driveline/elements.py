@@ -342,7 +342,7 @@ class Disk(Loaded, DiskInertia):
         count, value = len(self.firing_angles), self.misfiring
         if value is not None and not 1 <= value <= count:
             remedy = f"write a number from 1 to {count}" if count else "write firing_angles beside it"
-            raise InputError("is the number of no cylinder", key="misfiring", value=value, remedy=remedy)
+            raise InputError("is not the number of a cylinder", key="misfiring", value=value, remedy=remedy)
         if not self.firing_angles:
             return
         if not self.excitation:

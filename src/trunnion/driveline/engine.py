@@ -364,7 +364,7 @@ class Engine(Composite):
             value = getattr(self, key)
             if value is not None and value not in self.firing_order:
                 remedy = f"write a number from 1 to {len(self.firing_order)}"
-                raise InputError("is the number of no cylinder", key=key, value=value, remedy=remedy)
+                raise InputError("is not the number of a cylinder", key=key, value=value, remedy=remedy)
         if self.misfiring is not None and self.misfiring == self.cut_out:
             raise InputError(
                 "names a cylinder that is cut out",

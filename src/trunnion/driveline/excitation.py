@@ -130,7 +130,9 @@ class Excitation(Record):
         for key in ("amplitudes", "phases"):
             values = getattr(self, key)
             if values and len(values) != len(points):
-                raise InputError(f"must be {len(points)} quantities, as {over} are", key=key, value=list(values))
+                raise InputError(
+                    f"must be {len(points)} quantities, one for each of {over}", key=key, value=list(values)
+                )
         if any(b <= a for a, b in zip(points, points[1:], strict=False)):
             raise InputError("must rise", key=over, value=list(points), remedy="sort them; each once")
         if self.speeds and self.speeds[0] < 0:

@@ -41,7 +41,7 @@ def read_excitation(path: str | os.PathLike[str]) -> tuple[Excitation, ...]:
 
     Raises
     ------
-    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; an
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a cell without number; an
         order with two rows for one speed.
 
     Examples

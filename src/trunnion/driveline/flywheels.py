@@ -57,7 +57,7 @@ class DualMassFlywheel(Clutch):
         positive(self, "primary_inertia", "secondary_inertia")
         if not self.friction and self.linear_amplitude is not None:
             raise InputError(
-                "stands without friction", key="linear_amplitude", value=self.linear_amplitude,
+                "is given without friction", key="linear_amplitude", value=self.linear_amplitude,
                 remedy="leave it out: linear analyses take the stage that the static load puts the springs in",
             )  # fmt: skip
         return self

@@ -181,16 +181,17 @@ class Operation(Record):
         if self.angle_range and not all(abs(angle) < 90 * DEGREE for angle in self.angle_range):
             remedy = 'write ["0 deg", "15 deg"], say'
             wrong.append(InputError("must stay below 90 deg", key="angle_range", remedy=remedy))
-        for key, what, names, remedy in (
-            ("load_case", "load cases", [one.name for one in self.load_cases], "rename one of them"),
-            ("schedule", "schedules", [one.name for one in self.schedules], "rename one of them"),
-            ("passage", "passages", [one.name for one in self.passages], "rename one of them"),
-            ("switched_off", "reasons", [one.rule for one in self.switched_off], "keep one of them"),
+        for key, problem, names, remedy in (
+            ("load_case", "is the name of {} load cases", [one.name for one in self.load_cases], "rename one of them"),
+            ("schedule", "is the name of {} schedules", [one.name for one in self.schedules], "rename one of them"),
+            ("passage", "is the name of {} passages", [one.name for one in self.passages], "rename one of them"),
+            ("switched_off", "is switched off {} times", [one.rule for one in self.switched_off], "keep one of them"),
         ):
             for name, count in Counter(names).items():
                 if count > 1:
-                    problem = f"names two {what}" if count == 2 else f"names {count} {what}"
-                    wrong.append(InputError(problem, element=self.what, key=key, value=name, remedy=remedy))
+                    wrong.append(
+                        InputError(problem.format(count), element=self.what, key=key, value=name, remedy=remedy)
+                    )
         wrong += self._wrong_duty()
         if wrong:
             raise InputError.together(wrong)

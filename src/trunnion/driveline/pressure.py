@@ -72,7 +72,7 @@ class PressureCurve(Record):
                 f"has {count} points, and a curve needs {FEWEST_POINTS} at least", key="angles", remedy=remedy
             )
         if len(self.pressures) != count:
-            problem = f"must be {count} quantities, as angles are, and are {len(self.pressures)}"
+            problem = f"must be {count} quantities, one for each of angles, and are {len(self.pressures)}"
             raise InputError(problem, key="pressures", remedy="give one at every angle")
         if any(b <= a for a, b in pairwise(self.angles)):
             raise InputError("must rise", key="angles", remedy="sort them; each once")
@@ -112,7 +112,7 @@ def read_pressure(path: str | os.PathLike[str]) -> tuple[PressureCurve, ...]:
 
     Raises
     ------
-    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none; too
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a cell without number; too
         few rows of a load; an angle twice.
 
     Examples

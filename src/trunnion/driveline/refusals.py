@@ -72,7 +72,11 @@ def _complaint(
     cause = found.get("ctx", {}).get("error")
     if isinstance(cause, InputError):
         return cause.each(lambda one: _placed(one, key, given, element))
-    return InputError(found["msg"][:1].lower() + found["msg"][1:], element=element, key=key, value=given.get(key))
+    problem, remedy = next(
+        (words for kind, words in _PLAIN.items() if found["type"].startswith(kind)),
+        (found["msg"][:1].lower() + found["msg"][1:], ""),
+    )
+    return InputError(problem, element=element, key=key, value=given.get(key), remedy=remedy)
 
 
 def _placed(cause: InputError, key: str, given: dict[str, Any], element: str) -> InputError:
@@ -82,3 +86,12 @@ def _placed(cause: InputError, key: str, given: dict[str, Any], element: str) ->
 
 
 _RANK = {"extra_forbidden": 0, "missing": 2}
+_PLAIN = {
+    "bool_": ("is neither true nor false", "write true or false, without quotes"),
+    "int_": ("must be a whole number", "write 3, say, without quotes"),
+    "string_type": ("must be text", "write it in quotes"),
+    "tuple_type": ("must be a list", "write it in square brackets"),
+    "model_": ("is not a table", "write a table of its keys"),
+    "callable_type": ("must be a function", "write function=lambda time, speed, angle: 20.0, say"),
+}
+"""Problem and remedy by how the name of pydantic's complaint begins."""

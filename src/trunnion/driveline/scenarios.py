@@ -201,7 +201,9 @@ def wrong_scenarios(scenarios: Sequence[Scenario], parts: Sequence[tuple[str, El
     for one in scenarios:
         where = f"scenario {one.name}"
         if one.name in seen:
-            yield InputError("names two scenarios", key="scenario", value=one.name, remedy="rename one of them")
+            yield InputError(
+                "is the name of two scenarios", key="scenario", value=one.name, remedy="rename one of them"
+            )
         seen.add(one.name)
         yield from wrong_places_of(one.torque, one.friction, one.crossing, parts, where, one.disturbance)
 

@@ -114,7 +114,8 @@ class Schedule(Named):
             raise InputError("must be positive", key="speed", remedy="begin above standstill")
         wrong = [
             InputError(
-                f"has {len(numbers)} values for {len(self.points)} points", key=f"{key}.{name}",
+                f"must have one value for each of {len(self.points)} points, and has {len(numbers)}",
+                key=f"{key}.{name}",
                 remedy="give one value for each point",
             )
             for key in FOLLOWING

@@ -35,7 +35,7 @@ def read_torque(path: str | os.PathLike[str]) -> dict[str, tuple[float, ...]]:
 
     Raises
     ------
-    InputError : the file cannot be read; a column that is unknown, missing or without unit; a number that is none.
+    InputError : the file cannot be read; a column that is unknown, missing or without unit; a cell without number.
 
     Examples
     --------

@@ -468,7 +468,7 @@ def mesh_harmonics(
     packed: PackedLine, mesh: Mesh, what: Literal["transmission_error", "stiffness_variation"], table: Array
 ) -> tuple[Harmonic, ...]:
     """Harmonics of a mesh by turns of the input, at rows of packed numbers (column,) or (case, column): of its error
-    along the line of action [m], or of its stiffness over the mean [1]."""
+    along the line of action [m], or of its stiffness over the mean [-]."""
     orders, size = (mesh.error, "amplitude") if what == "transmission_error" else (mesh.stiffness, "share")
 
     def number(i: int, key: str) -> Array:

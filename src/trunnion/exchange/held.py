@@ -51,7 +51,7 @@ def refuse_unheld(line: Driveline) -> None:
     """
     wrong = [
         InputError(
-            "bends, and such a file holds straight joints alone", element=name, key="angle", value=_angle(element),
+            "is bent, and such a file holds straight joints only", element=name, key="angle", value=_angle(element),
             remedy="write angle = 0, for the line with straight joints",
         )
         for name, element in line.parts

@@ -20,7 +20,7 @@ from trunnion.laws.hooke import CrossLaw
 
 
 def halves(angle: ArrayLike, distance_ratio: ArrayLike = 1.0) -> tuple[Array, Array]:
-    """β₁, β₂ [rad] for a bend β and ``distance_ratio`` a/b: first centre's distance over the second's [1].
+    """β₁, β₂ [rad] for a bend β and ``distance_ratio`` a/b: first centre's distance over the second's [-].
 
     From the sine rule tan β₁ = sin β/(a/b + cos β); a/b = 1 gives the centred joint's halves.
     """

@@ -192,7 +192,7 @@ class _Compiler:
             raise self.wrong(f"calls {_short(name)}, which is not a function that it knows", _KNOWN)
         code, count = FUNCTIONS[name]
         if len(arguments) != count:
-            raise self.wrong(f"gives {name} {len(arguments)} arguments", f"{name} takes {count}")
+            raise self.wrong(f"has a wrong number of arguments in {name}, {len(arguments)}", f"{name} takes {count}")
         found: frozenset[str] = frozenset()
         begin = len(self.instructions)
         for one in arguments:

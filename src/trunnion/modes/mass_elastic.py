@@ -20,7 +20,7 @@ ROUNDING = 1e-9
 
 @dataclass(frozen=True)
 class MassRow:
-    """One rotation. inertia [kg m²] at its own speed; speed_ratio: that speed over the input's [1]."""
+    """One rotation. inertia [kg m²] at its own speed; speed_ratio: that speed over the input's [-]."""
 
     name: str
     inertia: float
@@ -37,7 +37,7 @@ class SpringRow:
     """One spring between two rotations, at the speed of the one behind it.
 
     between: names of the rotations; what drives the line in front where it is prescribed. stiffness [N m/rad];
-    damping [N m s/rad]; loss: loss factor at all frequencies [1]; diameter [m]: smallest outer one stated, NaN without.
+    damping [N m s/rad]; loss: loss factor at all frequencies [-]; diameter [m]: smallest outer one stated, NaN without.
     """
 
     name: str
@@ -58,7 +58,7 @@ class SpringRow:
 class HolzerTable:
     """One mode of the undamped straight line.
 
-    mode: its number; frequency [rad/s]; amplitude (mass,) [1]: rotation of each mass, the largest 1; inertia_torque
+    mode: its number; frequency [rad/s]; amplitude (mass,) [-]: rotation of each mass, the largest 1; inertia_torque
     (mass,) and torque (spring,) [N m/rad]: per radian of the largest rotation; nodes: springs in which rotation changes
     its sign, and where, as the share of the spring's twist in front of the node.
     """

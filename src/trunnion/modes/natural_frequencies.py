@@ -69,7 +69,7 @@ class NaturalFrequencies(Result):
     @property
     @computed(variable("mode", "1"))
     def damping_ratio(self) -> Array:
-        """ζ = −Re λ/|λ| of each mode (mode,) [1]; NaN of an overdamped mode, 0 of the rigid body."""
+        """ζ = −Re λ/|λ| of each mode (mode,) [-]; NaN of an overdamped mode, 0 of the rigid body."""
         first, size = self.eigenvalue[:, 0], np.abs(self.eigenvalue[:, 0])
         ratio = np.divide(-first.real, size, out=np.zeros(len(size)), where=first.imag > 0)
         return np.where(self.overdamped, np.nan, ratio + 0.0)

@@ -42,7 +42,7 @@ def branch(result: PeriodicBranch, *, curve: str = "", unit: str = "", jumps: bo
     ------
     InputError : no such curve.
     """
-    i = place_of(curve, result.curves, 0, "curve", "no curve of this branch", nearest(curve, result.curves))
+    i = place_of(curve, result.curves, 0, "curve", "not a curve of this branch", nearest(curve, result.curves))
     across = result.axis if not unit or result.label != "speed" else Words(unit).parameter("speed", result.unit)
     x, y, stable = result.parameter * across.factor, result.peak_to_peak[:, i], result.stable
     # A fold or a doubling belongs to both sides, so that the line has no gap.

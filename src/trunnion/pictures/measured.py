@@ -36,7 +36,7 @@ def orders(found: MeasuredOrders, *, channel: str = "") -> Picture:
     ------
     InputError : no such channel.
     """
-    column = place_of(channel, found.channels, 0, "channel", "no channel", f"there are {', '.join(found.channels)}")
+    column = place_of(channel, found.channels, 0, "channel", "not a channel", f"there are {', '.join(found.channels)}")
     symbol, size = unit_of(found.kinds[column], float(np.nanmax(np.abs(found.amplitude[:, :, column]), initial=0.0)))
     x, y = found.speed * speed_factor(found.unit), np.abs(found.amplitude[:, :, column]) / size
     half, rank = found.half_width[:, :, column] / size, np.argsort(x)
@@ -91,7 +91,7 @@ def _over(found: MeasuredComparison, channel: str) -> Picture:
     curves = np.abs(found.curve.amplitude)
     moves = int(np.argmax(curves.max(axis=(0, 1)) > 0))
     known = f"there are {', '.join(found.channels)}"
-    column = place_of(channel, found.channels, moves, "channel", "no channel", known)
+    column = place_of(channel, found.channels, moves, "channel", "not a channel", known)
     size_of, factor = np.abs(found.measured[:, :, column]), speed_factor(found.unit)
     symbol, size = unit_of(found.kinds[column], float(np.nanmax(size_of, initial=0.0)))
     rank = np.argsort(found.speed)

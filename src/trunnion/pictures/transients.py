@@ -31,7 +31,7 @@ def history(result: Transient, *, shafts: tuple[str, ...] = (), unit: str = "") 
     """Torque of the springs above, speed of the disks below; where a level was crossed."""
     words = Words(unit or result.unit)
     remedy = f"it has: {', '.join(result.shafts)}"
-    chosen = [place_of(s, result.shafts, 0, "shaft", "is not a spring of this line", remedy) for s in shafts]
+    chosen = [place_of(s, result.shafts, 0, "shaft", "not a spring of this line", remedy) for s in shafts]
     across = Axis("time", "s", float(result.time[0]), float(result.time[-1]))
     times = [at for at, _ in result.crossings]
     crossed: list[Item] = [Level(at, "hangs", "" if k else "crossed", "x") for k, at in enumerate(times)]
@@ -53,7 +53,7 @@ def plane(result: Transient, *, disk: str = "", unit: str = "") -> Picture:
     words = Words(unit or result.unit)
     acted = next((one.on for one in result.asked[0]), result.disks[0])
     remedy = f"it has: {', '.join(result.disks)}"
-    i = place_of(disk or None, result.disks, result.disks.index(acted), "disk", "is not a Disk of this line", remedy)
+    i = place_of(disk or None, result.disks, result.disks.index(acted), "disk", "not a Disk of this line", remedy)
     j = int(np.argmax(result.peak_torque))
     speed, spring = result.speed[:, i] * words.factor, result.torque[:, j]
     items: list[Item] = [
@@ -75,7 +75,7 @@ def passing(result: Passing, *, shaft: str = "", unit: str = "") -> Picture:
     words, run = Words(unit or result.unit), result.run
     remedy = f"it has: {', '.join(result.shafts)}"
     most = int(np.argmax(result.peak_torque))
-    i = place_of(shaft or None, result.shafts, most, "shaft", "is not a spring of this line", remedy)
+    i = place_of(shaft or None, result.shafts, most, "shaft", "not a spring of this line", remedy)
     speed = run.whole.speed(run.time) * words.factor
     hung = result.ending.kind == "captured"
     items: list[Item] = [

@@ -228,7 +228,7 @@ def require_analysis(name: object, arguments: Mapping[str, Any], speed_varies: b
         raise InputError("is not an analysis", key="analysis", value=name, remedy=nearest(name, of_lines))
     if name not in of_lines:
         raise InputError(
-            "takes no driveline alone",
+            "needs more than a driveline",
             key="analysis",
             value=name,
             remedy="take assess, stability or order_response, say",

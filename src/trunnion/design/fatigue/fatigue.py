@@ -80,7 +80,7 @@ def fatigue(
     line, operation = assembly.line, assembly.line.operation or Operation()
     if not line.sn_curves_by_element:
         raise InputError(
-            "is stated of no element", element=line.name or "driveline", key="sn_curve",
+            "is not stated for any element", element=line.name or "driveline", key="sn_curve",
             remedy=f"write [[sn_curve]] with {SNCurve.example}",
         )  # fmt: skip
     if histories is None:

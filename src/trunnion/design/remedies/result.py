@@ -70,7 +70,7 @@ class Remedies(Result):
         return tuple(remedy for remedy in self.remedies if remedy.check == check)
 
     def strongest(self, check: str, most: int = STRONGEST) -> list[tuple[DesignVariable, float]]:
-        """Variables that a check's value follows most, with its change [1] for +1 % of a factor, +1 deg of a joint's
+        """Variables that a check's value follows most, with its change [-] for +1 % of a factor, +1 deg of a joint's
         angle, +10 deg of a phase; none that is within its error, or too small to matter."""
         at = self.checks.index(check)
         step = np.array([STEPS[v.scale][0] for v in self.variables])

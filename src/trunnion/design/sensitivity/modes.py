@@ -28,7 +28,7 @@ COINCIDE = 1e-7
 
 
 def mode_slopes(near: Neighbourhood, directions: Sequence[Direction]) -> Iterator[SensitivityRows]:
-    """Frequencies [rad/s] and damping ratios [1] of every elastic mode of the aligned line along every direction."""
+    """Frequencies [rad/s] and damping ratios [-] of every elastic mode of the aligned line along every direction."""
     assembly = near.assembly
     topo = assembly.topology
     found = natural_frequencies(assembly)

@@ -96,7 +96,7 @@ class Sensitivities(Result):
     @property
     @computed(variable("quantity parameter", "1", "d ln(quantity)/d ln(parameter)"))
     def logarithmic(self) -> Array:
-        """d ln q/d ln p (quantity, parameter) [1]; NaN where a quantity or a parameter is zero."""
+        """d ln q/d ln p (quantity, parameter) [-]; NaN where a quantity or a parameter is zero."""
         with np.errstate(divide="ignore", invalid="ignore"):
             found = self.derivative * self.parameter_value / self.value[:, None]
         usable = (self.value[:, None] != 0) & (self.parameter_value != 0)

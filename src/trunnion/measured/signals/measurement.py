@@ -233,7 +233,9 @@ class Measurement(Portable):
             raise InputError("has no channel", element="measurement", key="channels", remedy="give one or more")
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
-            raise InputError("names two channels", element="measurement", key="name", value=twice, remedy="name each")
+            raise InputError(
+                "is the name of two channels", element="measurement", key="name", value=twice, remedy="name each"
+            )
 
     @property
     def pulses(self) -> tuple[PulseTrain, ...]:

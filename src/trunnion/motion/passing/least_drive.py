@@ -113,7 +113,7 @@ def least_drive(
 
     Raises
     ------
-    InputError : a range that is not one, less than two points, an accuracy that is none; what ``passing`` refuses.
+    InputError : a range that is not one, less than two points, an accuracy out of range; what ``passing`` refuses.
 
     Examples
     --------

@@ -168,7 +168,9 @@ def _values(line: Driveline, key: str, request: Request) -> Array:
         raise InputError("must be a parameter, its first and last value and how many", key=key, remedy=remedy)
     path, low, high, count = request
     if path == SPEED:
-        raise InputError("is what the line runs through", key=key, value=path, remedy="vary another parameter")
+        raise InputError(
+            "is the parameter that the line runs through", key=key, value=path, remedy="vary another parameter"
+        )
     if path != FACTOR:
         pack(line).resolve_axis(path)
     ends = one_number(low, key, remedy), one_number(high, key, remedy)

@@ -46,7 +46,7 @@ def lasting(
         description = line.line if isinstance(line, Assembly) else line
         stated = description.scenario(scenario) if isinstance(scenario, str) else scenario
         if torque or friction:
-            problem = "says what acts by itself"
+            problem = "already says what acts"
             raise InputError(problem, key="scenario", value=stated.name, remedy="leave out torque and friction, or it")
         torque, friction = stated.torques, stated.frictions
     for one in torque:

@@ -95,7 +95,7 @@ def transient(
     if isinstance(duration, Scenario):
         scenario = duration
         if torque or friction or crossing or disturbance:
-            raise InputError("says what acts by itself", key="scenario", value=scenario.name, remedy="give a duration")
+            raise InputError("already says what acts", key="scenario", value=scenario.name, remedy="give a duration")
         duration, name = scenario.duration, scenario.name
         torque, friction, crossing = scenario.torque, scenario.friction, scenario.crossing
         disturbance = scenario.disturbance

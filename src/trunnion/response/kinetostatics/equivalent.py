@@ -67,13 +67,13 @@ def departure(product: Array) -> Array:
 
 
 def irregularity(product: Array) -> Array:
-    """U of M [1]."""
+    """U of M [-]."""
     a, b, c, d = product[..., 0, 0], product[..., 0, 1], product[..., 1, 0], product[..., 1, 1]
     return np.hypot(a - d, b + c) * np.hypot(a + d, b - c)
 
 
 def least_irregularity(chain: KinematicChain) -> float:
-    """What the best phasing of the forks can reach [1]."""
+    """What the best phasing of the forks can reach [-]."""
     rapidities = [-np.log(np.cos(chain.steps[i].angle)) for i in chain.way if chain.steps[i].cross]
     rest = max(0.0, 2 * max(rapidities, default=0.0) - sum(rapidities))
     return float(2 * np.sinh(rest))

@@ -15,7 +15,7 @@ ROUNDING = 1e-12
 
 
 def irregularity(speed: Array, mean: float) -> float:
-    """(largest − smallest)/mean of speeds over the turns computed [1]; 0 where it is only rounding."""
+    """(largest − smallest)/mean of speeds over the turns computed [-]; 0 where it is only rounding."""
     low, high = extremes(speed)
     nonuniform = float((high - low) / abs(mean))
     return nonuniform if nonuniform > ROUNDING else 0.0

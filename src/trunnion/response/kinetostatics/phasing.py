@@ -45,8 +45,8 @@ class Phasing:
     ----------
     offsets : fork offset [rad] of each shaft between two joints, in (−90°, 90°] (with splines, (−180°,
         180°]).
-    irregularity, before : of the output with these offsets, and with the line's own [1].
-    bound : what no phasing of these joints can go below [1]; None where other joints or ratios leave it unknown.
+    irregularity, before : of the output with these offsets, and with the line's own [-].
+    bound : what no phasing of these joints can go below [-]; None where other joints or ratios leave it unknown.
     phasor_angle : equivalent angle [rad] that the small-angle rule gives for these offsets.
     pitch : of the splines [rad] the offsets are multiples of, if one was given for all shafts.
     line : the driveline with these offsets.

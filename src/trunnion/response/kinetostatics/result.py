@@ -48,7 +48,7 @@ TILT = "tilt of the other fork's pins out of the plane square to the shaft"
 class ConstantTwist:
     """How good S2's ξ ≈ constant is: this result against one with every twist at its mean.
 
-    ``variation`` [1] is (largest − smallest twist)/(2 |mean|) by shaft (NaN without twist); ``angle`` [rad],
+    ``variation`` [-] is (largest − smallest twist)/(2 |mean|) by shaft (NaN without twist); ``angle`` [rad],
     ``speed`` [rad/s] and ``acceleration`` [rad/s²] are the largest errors of the output.
     """
 
@@ -161,7 +161,7 @@ class Kinetostatics(Result):
     @cached_property
     @computed(attribute())
     def irregularity(self) -> float:
-        """U = (largest − smallest output speed)/mean [1], over the turns computed."""
+        """U = (largest − smallest output speed)/mean [-], over the turns computed."""
         return irregularity(self.output_speed, self.input_speed * self.mean_ratio)
 
     @property
@@ -199,7 +199,7 @@ class Kinetostatics(Result):
 
     @property
     def efficiency(self) -> float:
-        """Mean of the power that arrives over mean of the power supplied [1]; 1 without friction."""
+        """Mean of the power that arrives over mean of the power supplied [-]; 1 without friction."""
         supplied = float(np.mean(self.drive_torque * self.input_speed))
         return 1 - float(np.mean(self.power_loss)) / supplied if supplied else 1.0
 

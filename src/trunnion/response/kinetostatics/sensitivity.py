@@ -38,7 +38,7 @@ class AssemblySensitivity:
 
     @property
     def effect(self) -> Array:
-        """Largest change of the irregularity by each error alone [1]."""
+        """Largest change of the irregularity by each error alone [-]."""
         return np.maximum(np.abs(self.below - self.nominal), np.abs(self.above - self.nominal))
 
     def __str__(self) -> str:

@@ -189,7 +189,7 @@ def _constant(
 def _power_residual(
     train: KinematicChain, drive: Drive, motion: Rotations, passed: Torques, twist: dict[int, Array], heat: Array
 ) -> float:
-    """Largest imbalance of power over the largest power [1].
+    """Largest imbalance of power over the largest power [-].
 
     Supplied power = what loads, inertias and springs take up + heat of the joints. With elastic shafts the inertia
     torques are those of the rigid line; the balance is that of the torques as they are used.

@@ -167,7 +167,7 @@ class OrderResponse(Result):
 
     @property
     def frequency_factor(self) -> Array:
-        """S_f of every order listed (speed, order) [1]; see ``rated_torque``."""
+        """S_f of every order listed (speed, order) [-]; see ``rated_torque``."""
         return frequency_factor(self.angular_frequency)
 
     @property
