@@ -1,12 +1,14 @@
 """Flesch's reading ease of sentences, with the syllables that ``pyphen`` finds (its patterns come with the package).
 
-python tests/documentation/readability.py [NUMBER]     # prints the hardest sentences of the pages and each page's ease
+python tests/documentation/readability.py [NUMBER]     # ease of each page; the hardest sentences, docstrings' too
 """
 
 from __future__ import annotations
 
+import inspect
 import re
 import sys
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -38,7 +40,7 @@ def prose(text: str) -> list[str]:
 
 def sentences(text: str) -> list[str]:
     """Those of six words and more; a semicolon or a colon does not end one."""
-    found = [one for part in prose(text) for one in re.split(r"(?<=[.!?])\s+(?=[A-Z`*(])", part)]
+    found = [one for part in prose(text) for one in re.split(r"(?<=[.!?])\s+(?=[A-Z`*(\"])", part)]
     return [one for one in found if len(words(one)) >= 6]
 
 
@@ -65,6 +67,22 @@ def longest(text: str) -> int:
     return max(len(words(one)) for one in sentences(text))
 
 
+def prose_of_docstring(docstring: str) -> str:
+    """Its sentences and what it says of every parameter, without names, headings and examples."""
+    text = re.sub(r"^>>>.*?(?=\n\n|\Z)", "", docstring, flags=re.DOTALL | re.MULTILINE)
+    text = re.sub(r"^(Parameters|Returns|Raises|Examples)\n-+$", "", text, flags=re.MULTILINE)
+    return re.sub(r"^[\w, *`]+ : ", "\n\n", text, flags=re.MULTILINE).replace("\n    ", " ")
+
+
+def docstrings() -> Iterator[tuple[str, str]]:
+    """Those of every public function and class."""
+    import trunnion as tn
+
+    for name in tn.__all__:
+        if callable(found := getattr(tn, name)):
+            yield name, inspect.cleandoc(found.__doc__ or "")
+
+
 if __name__ == "__main__":
     ranked = []
     for name in PAGES:
@@ -74,5 +92,7 @@ if __name__ == "__main__":
                 f"{ease_of(page):5.1f}  {len(sentences(page)):4d} sentences, the longest {longest(page)} words  {name}"
             )
             ranked += [(ease(one), name, one) for one in sentences(page)]
+    for name, docstring in docstrings():
+        ranked += [(ease(one), name, one) for one in sentences(prose_of_docstring(docstring))]
     for mark, name, sentence in sorted(ranked)[: int(sys.argv[1]) if sys.argv[1:] else 0]:
         print(f"{mark:7.1f} {name}: {sentence}")

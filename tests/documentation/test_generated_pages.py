@@ -7,7 +7,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from generate import api, elements, examples
+from as_printed import ROOT
+from generate import api, elements, examples, player
 
 import trunnion as tn
 from trunnion.driveline.kinds import KINDS
@@ -46,3 +47,24 @@ def test_every_public_name_has_an_entry(tmp_path: Path) -> None:
         assert name == "__version__" or f"(tn-{name.lower()})=" in pages, name
     for name in re.findall(r"\(#result-(\w+)\)", pages):
         assert f"(result-{name})=" in pages
+
+
+def test_the_home_page_plays_a_line_and_prints_a_picture() -> None:
+    page = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    shown = player.embedded(page)
+    assert f'src="_static/{player.FILE}"' in shown
+    assert (
+        shown.index("<iframe") < shown.index("home-on-paper") < shown.index(player.PICTURE) < shown.index("home-pair")
+    )
+    assert shown.startswith(page[: page.index("![")]) and shown.endswith(page[page.index("::::{container}") :])
+
+
+def test_the_line_on_the_home_page_is_that_of_its_verdict(tmp_path: Path) -> None:
+    """It fetches nothing, and turns where the verdict that stands below it binds."""
+    player.write_page(tmp_path / player.FILE)
+    page = (tmp_path / player.FILE).read_text(encoding="utf-8")
+    assert "power take-off shaft of a mulcher" in page and "://" not in re.sub(
+        r"<script>.*</script>", "", page, flags=re.S
+    )
+    home = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    assert f"at {player.SPEED}, " in home and f"analyze {player.LINE}" in home

@@ -6,11 +6,13 @@ import re
 from pathlib import Path
 
 import pytest
-from readability import PAGES, ROOT, ease, ease_of, longest, sentences, syllables
+from readability import PAGES, ROOT, docstrings, ease, ease_of, longest, prose_of_docstring, sentences, syllables
 
 LISTS = ("docs/features.md", "docs/glossary.md")
 """Their sentences are lists of features, or begin with the word that they define."""
 EASE = 68.0
+EASE_OF_NOTES = 60.0
+"""Docstrings have more names of programs and methods."""
 WORDS = 70
 RETIRED = (
     "by and by up to the lowest row", "passes in no way is refused", "Orders act at the nominal angle",
@@ -29,6 +31,20 @@ def page(name: str) -> str:
 def test_a_page_is_plain(name: str) -> None:
     assert ease_of(page(name)) > EASE
     assert name in LISTS or longest(page(name)) <= WORDS, max(sentences(page(name)), key=len)
+
+
+@pytest.mark.parametrize(("name", "docstring"), [*docstrings()])
+def test_a_docstring_is_plain(name: str, docstring: str) -> None:
+    prose = prose_of_docstring(docstring)
+    if len(sentences(prose)) > 5:
+        assert ease_of(prose) > EASE_OF_NOTES
+        assert longest(prose) <= WORDS, max(sentences(prose), key=len)
+
+
+def test_what_a_docstring_shows_is_not_read_as_prose() -> None:
+    parameters = "Parameters\n----------\nspeed, mode : of the input that turns the whole line\n    [rad/s]."
+    text = f"It turns.\n\n{parameters}\n\n>>> f(1)\n2"
+    assert sentences(prose_of_docstring(text)) == ["of the input that turns the whole line [rad/s]."]
 
 
 def test_what_is_retired_stays_away() -> None:
