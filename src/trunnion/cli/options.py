@@ -36,7 +36,7 @@ LineOfFile = Annotated["tn.Driveline", FILE, CommandSubject(line_of_file, {"unit
 """Under its own torques."""
 AboutSteadyState = Annotated[
     bool,
-    typer.Option("--about-steady-state", help="About the motion that the line really makes, not that of rigid shafts."),
+    typer.Option("--about-steady-state", help="Judge the line about its true motion, not that of rigid shafts."),
 ]
 SpeedUnit = Annotated[str, InputAttribute("unit")]
 """Of the speeds that are printed."""
