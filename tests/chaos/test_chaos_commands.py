@@ -76,7 +76,7 @@ REFUSED = {
     "speed": (("lyapunov-spectrum", "ueda", "--speed", "3"), "drivelines"),
     "file": (("certify-chaos", "nothing"), "neither a file"),
     "element": (("certify-chaos", "double-tripod:middle"), "input"),
-    "line": (("stability", "double-tripod"), "no driveline"),
+    "line": (("stability", "double-tripod"), "not a driveline"),
     "start": (("lyapunov-spectrum", "ueda", "--start", "1,2,3", "--periods", "100"), "start"),
     "picture": (("lyapunov-spectrum", "ueda", "--periods", "100", "-o", "a.csv"), "csv"),
 }

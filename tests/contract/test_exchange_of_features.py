@@ -25,7 +25,7 @@ def test_written_whole_or_refused(to: str, tmp_path: Path) -> None:
         try:
             tn.export_line(line, path, to)
         except InputError as refused:
-            assert key not in HELD or "bends" in str(refused) or key in BY_OTHERS, (key, str(refused))
+            assert key not in HELD or "is bent" in str(refused) or key in BY_OTHERS, (key, str(refused))
             continue
         written.add(key)
         found, known = (tn.natural_frequencies(one) for one in (tn.import_line(path), line))

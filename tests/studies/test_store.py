@@ -188,7 +188,7 @@ def test_another_study_is_refused(tmp_path) -> None:
         tn.study(small(store, quantities=CALLS), line=line(), workers=0)
     (tmp_path / "b.zarr").mkdir()
     (tmp_path / "b.zarr" / "mine.txt").write_text("mine")
-    with pytest.raises(tn.InputError, match="no store of a study"):
+    with pytest.raises(tn.InputError, match="not a store of a study"):
         tn.study(small(tmp_path / "b.zarr"), line=line(), workers=0)
 
 
