@@ -176,7 +176,7 @@ def test_after_a_worker_that_was_killed(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_beside_an_address_that_cannot_be_read_until_a_line_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     async def work(made: Session, pool: Held) -> None:
-        assert "not a driveline" in made.page.said.object
+        assert "no driveline" in made.page.said.object
         assert is_stamped(made) and "new page begins with" in verdict(made).stamp.object
         assert made.location.search == "", "the address stays as it was, to be copied again"
         made.edit(lambda document: document.replace_text(starter("truck")))

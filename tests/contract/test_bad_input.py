@@ -2243,7 +2243,7 @@ PYTHON = [
             ("speed", 1, 2, 2),
             ("p", 1, 2, 2),
         ),
-        "p: is a schedule, which moves several numbers along straight pieces, and no parameter",
+        "p: is a schedule, which moves several numbers along straight pieces, not a parameter",
         'ask line.at_schedule("p", value)',
     ),
     (

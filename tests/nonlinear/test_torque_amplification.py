@@ -91,5 +91,5 @@ def test_refusals() -> None:
         tn.torque_amplification(run, {"shft": 1.0})
     with pytest.raises(tn.InputError, match="must be finite"):
         tn.torque_amplification(run, {"shaft": float("nan")})
-    with pytest.raises(tn.InputError, match="is a Driveline, and no motion of a line"):
+    with pytest.raises(tn.InputError, match="is a Driveline, not a motion of a line"):
         tn.torque_amplification(line)

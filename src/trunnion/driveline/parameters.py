@@ -246,7 +246,7 @@ class PackedLine:
         if path.removeprefix("schedule ") in [one.name for one in schedules]:
             name = path.removeprefix("schedule ")
             return InputError(
-                "is a schedule, which moves several numbers along straight pieces, and no parameter", key=path,
+                "is a schedule, which moves several numbers along straight pieces, not a parameter", key=path,
                 remedy=f'ask line.at_schedule("{name}", value) at each of its points, or envelope(line) for all',
             )  # fmt: skip
         known = list(self.labels)

@@ -83,7 +83,7 @@ class Store:
         InputError : the folder cannot be made, or is not a store, or another study's.
         """
         if path.exists() and not (path / "study.json").is_file() and (not path.is_dir() or any(path.iterdir())):
-            raise InputError("is there, and no store of a study", key="store", value=str(path), remedy=KEEP_NAME)
+            raise InputError("exists, and is not a store of a study", key="store", value=str(path), remedy=KEEP_NAME)
         if not path.parent.is_dir():
             raise InputError("cannot be made, its folder does not exist", key="store", value=str(path),
                              remedy=f"create the folder {path.parent}")  # fmt: skip

@@ -306,7 +306,7 @@ def sweep(
     if not (omegas.ndim == 1 and len(omegas) and np.isfinite(omegas).all() and (omegas > 0).all()):
         raise InputError("must be positive numbers", key="frequencies", value=np.asarray(frequencies).tolist())
     if not 1 <= least <= most:
-        raise InputError("must be from 1, and no less than least", key="least, most", value=[least, most])
+        raise InputError("must be 1 or more, and not less than least", key="least, most", value=[least, most])
     line = oscillator.line if isinstance(oscillator, Assembly) else oscillator
     states = 2 * len(line.elements) if isinstance(line, Driveline) else 2
     needed = BYTES_A_STEP * states * len(omegas)

@@ -102,7 +102,7 @@ def torque_amplification(
     motion = run.simulation if isinstance(run, RunUp) else run
     if not isinstance(motion, LineSimulation):
         remedy = "give what simulate or run_up returns for a driveline"
-        raise InputError(f"is a {type(run).__name__}, and no motion of a line", key="run", remedy=remedy)
+        raise InputError(f"is a {type(run).__name__}, not a motion of a line", key="run", remedy=remedy)
     shafts = motion.shafts
     given = _given(nominal or {}, shafts)
     asked = _of_loads(motion)
