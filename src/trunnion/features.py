@@ -96,8 +96,8 @@ DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Reason] = {
     LAG: (
-        "forced responses of straight lines have it; elsewhere the torque follows the speed at once, which holds well "
-        "below the corner frequency",
+        "forced responses of straight lines and transients have it; elsewhere the torque follows the speed at once, "
+        "which holds well below the corner frequency",
         "quasi-static",
     )
 }
@@ -380,7 +380,6 @@ ROWS: dict[str, Row] = {
     "transients": _row(
         refused={
             **_ONE_DRIVE,
-            LAG: "equations of motion have no lagging torque",
             OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
             **_NO_PATH,
         },

@@ -1156,12 +1156,9 @@ PYTHON = [
         "0.01, say",
     ),
     (
-        lambda: tn.passing(
-            line(tn.Motor(inertia=0.5, name="motor", pole_pairs=2, **OF_A_MOTOR), Shaft(stiffness=1e4), PUMP),
-            (5.0, 9.0),
-        ),
-        "motor.pole_pairs = 2: lets its torque lag behind its speed above",
-        "leave out pole_pairs: the torque then follows at once",
+        lambda: torque(time=[0, 1], torque=[0, 1], corner_frequency=0.0),
+        "torque on motor.corner_frequency = 0: must be positive",
+        'write "200 rad/s", say',
     ),
     (
         lambda: tn.passing(free(), (5.0, 9.0)),

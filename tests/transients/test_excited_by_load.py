@@ -102,9 +102,14 @@ def test_firing_angles_and_masses_of_an_engine() -> None:
 
 def test_what_would_change_is_refused_by_name() -> None:
     by_load = line(torques=[0.0, 100.0], amplitudes=[10.0, 110.0])
-    driven = [tn.AppliedTorque(on="engine", time=[0.0], torque=[60.0], between="steps")]
-    with pytest.raises(tn.InputError, match="engine.excitation: has an amplitude that depends on the speed"):
+    driven = [tn.AppliedTorque(on="engine", formula="60 + t")]
+    with pytest.raises(
+        tn.InputError, match="engine.excitation 1: goes by the load of its disk, which such a torque gives"
+    ):
         tn.transient(by_load, 1.0, torque=driven, speed=SPEED)
+    rubs = [tn.FrictionTorque(on="engine", torque=1.0)]
+    with pytest.raises(tn.InputError, match="engine.excitation: has an amplitude that depends on the speed"):
+        tn.transient(by_load, 1.0, friction=rubs, speed=SPEED)
     beyond = line(torques=[0.0, 30.0], amplitudes=[10.0, 110.0])
     with pytest.raises(tn.InputError, match="does not cover 60 N"):
         tn.transient(beyond, 1.0, speed=SPEED)

@@ -7,7 +7,18 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Power, Several, Speed, Time, Torque, optional
+from trunnion.driveline.quantities import (
+    Angle,
+    Dimensionless,
+    Frequency,
+    Maybe,
+    Power,
+    Several,
+    Speed,
+    Time,
+    Torque,
+    optional,
+)
 from trunnion.driveline.record import Record, Switch, as_tuple, one_of
 from trunnion.errors import InputError
 
@@ -60,6 +71,9 @@ class AppliedTorque(Record):
     formula : instead, arithmetic of ``time`` (or t), ``speed`` and ``angle`` in SI units, with pi, sin, cos, tan, atan,
         exp, log (natural), sqrt, tanh, abs, min, max and step (0 below zero, 1 from there on).
     since, until : [s] between which a formula acts; by default always.
+    corner_frequency : ν_c [rad/s]; the torque follows what is stated above with a first-order lag, Ṫ = ν_c (T₀ − T), as
+        that of a converter's current loop. It begins with what it gives just before the start; one that goes with the
+        speed is switched on at standstill, and begins with none.
 
     Raises
     ------
@@ -109,6 +123,9 @@ class AppliedTorque(Record):
     formula: FormulaText | None = Field(default=None, description="of time, speed and angle in SI units")
     since: Maybe[Time] = optional(default=None, description="when a formula begins to act")
     until: Maybe[Time] = optional(default=None, description="when it ends")
+    corner_frequency: Maybe[Frequency] = optional(
+        default=None, description="above which it lags behind what is stated, first-order"
+    )
 
     @classmethod
     def called(cls, data: dict[str, Any]) -> str:
@@ -129,6 +146,9 @@ class AppliedTorque(Record):
     def _whole(self) -> AppliedTorque:
         for key in self.variables:
             self._check_points(key)
+        if self.corner_frequency is not None and not self.corner_frequency > 0:
+            value = self.corner_frequency
+            raise InputError("must be positive", key="corner_frequency", value=value, remedy='write "200 rad/s", say')
         given = [key for key in _KLOSS if getattr(self, key) is not None]
         if given:
             self._check_motor(given)
@@ -262,6 +282,7 @@ class TorqueFunction(AppliedTorque):
     since, until : [s] between which it acts; by default always.
     torque, time, speed, angle, table, between, hold : of an ``AppliedTorque``; not beside a function.
     formula, power, factor, synchronous_speed, breakdown_torque, breakdown_slip : likewise.
+    corner_frequency : [rad/s] of a first-order lag behind the function, as of an ``AppliedTorque``.
 
     Raises
     ------
@@ -343,3 +364,18 @@ class FrictionTorque(Record):
             remedy = f"write {self.torque:g} N*m or more, or leave it out"
             raise InputError("is less than in motion", key="static", value=self.static, remedy=remedy)
         return self
+
+
+def scaled_torque(torque: AppliedTorque, factor: float) -> AppliedTorque:
+    """A torque times a factor."""
+    if (most := torque.breakdown_torque) is not None:
+        return torque.but(breakdown_torque=factor * float(most))
+    if torque.power is not None:
+        return torque.but(power=factor * torque.power)
+    if isinstance(torque, TorqueFunction):
+        return torque.but(function=lambda *at: factor * torque.function(*at))
+    if torque.formula is not None:
+        return torque.but(formula=f"{factor!r}*({torque.formula})")
+    if torque.table:
+        return torque.but(table=[[factor * float(one) for one in row] for row in torque.table])  # type: ignore[arg-type]
+    return torque.but(torque=[factor * float(one) for one in torque.torque])

@@ -218,15 +218,17 @@ def wrong_places_of(
 ) -> Iterator[InputError]:
     """What acts on no disk, or watches what is not there; ``where`` it stands."""
     disks = [name for name, element in parts if isinstance(element, Rotor)]
+    engines = {element.part_of[0]: None for _, element in parts if element.part_of is not None}
+    driven = [*disks, *engines]
     springs = [
         name
         for name, element in parts
         if isinstance(element, SlipClutch) or any(isinstance(part, Sprung | Dragged) for part in element.parts())
     ]
     for kind, named, known, what in (
-        *(("torque on", one.on, disks, "is not a Disk of this driveline") for one in torque),
-        *(("disturbance on", one.on, disks, "is not a Disk of this driveline") for one in disturbance),
-        *(("friction on", one.on, disks, "is not a Disk of this driveline") for one in friction),
+        *(("torque on", one.on, driven, "is not a Disk of this driveline") for one in torque),
+        *(("disturbance on", one.on, driven, "is not a Disk of this driveline") for one in disturbance),
+        *(("friction on", one.on, driven, "is not a Disk of this driveline") for one in friction),
         *(
             ("crossing of", one.of, disks, "is not a Disk of this driveline")
             if one.key in ("speed", "angle")

@@ -76,12 +76,14 @@ class TorqueAxis:
 
 @dataclass(frozen=True)
 class PlacedTorque:
-    """A torque at a station of a line, in whose ``sense`` it and its disk's speed and angle count."""
+    """A torque at a station of a line, in whose ``sense`` it and its disk's speed and angle count; ``lagged``: its
+    number among those that lag."""
 
     stated: AppliedTorque
     station: int
     sense: float
     axes: tuple[TorqueAxis, ...]
+    lagged: int = 0
 
     @cached_property
     def formula(self) -> Formula | None:
@@ -222,16 +224,35 @@ class PlacedTorque:
             return "speed"
         return self.axes[1].variable if len(self.axes) > 1 else ""
 
+    @property
+    def lags(self) -> bool:
+        """Whether it follows its own statement with a lag, so that its value is a state."""
+        return self.stated.corner_frequency is not None
+
+    def begun(self, time: float, speed: float, angle: float) -> float:
+        """The torque [N m] that one that lags begins with: what it says before any step at that very time. What goes
+        with the speed is switched on at standstill, and begins with none."""
+        if speed == 0.0 and "speed" in self.stated.depends:
+            return 0.0
+        steps = self.stated.between == "steps" or self.stated.by_program
+        jumps = steps and any(axis.variable == "time" and time in axis.knots for axis in self.axes)
+        return self.value(float(np.nextafter(time, -np.inf)) if jumps else time, speed, angle)
+
     def row(self, pieces: Sequence[int], program: int = 0) -> Array:
         """What the kernel reads of a piece; ``program``: where that of a formula stands among the numbers."""
         core, cell = line_kernel(), self.cell(pieces)
         if self.stated.by_program and self.acts(pieces):
             code, place = (core.FORMULA, program) if self.called is None else (core.FUNCTION, self.called.address)
             head = [self.station, self.sense, self.sense, code, place, core.NONE, 0.0]
-            return np.concatenate([head, cell.above.ravel(), cell.below])
+            return np.concatenate([head, cell.above.ravel(), cell.below, self._lag])
         codes = {"": core.NONE, "time": core.TIME, "speed": core.SPEED, "angle": core.TURNED}
         head = [self.station, self.sense, self.sense, codes[self.first], cell.first, codes[self.second], cell.second]
-        return np.concatenate([head, cell.above.ravel(), cell.below])
+        return np.concatenate([head, cell.above.ravel(), cell.below, self._lag])
+
+    @property
+    def _lag(self) -> list[float]:
+        """What the kernel reads of its lag."""
+        return [float(self.stated.corner_frequency or 0.0), float(self.lagged)]
 
 
 class CalledFunction:
@@ -303,7 +324,7 @@ class PlacedFriction:
         above = np.zeros((POWERS, POWERS))
         above[:2, 0] = self.stated.torque * share, self.stated.torque * slope
         head = [self.station, -sense * self.turning, 1.0, core.TIME, time, core.NONE, 0.0]
-        return np.concatenate([head, above.ravel(), _one()])
+        return np.concatenate([head, above.ravel(), _one(), [0.0, 0.0]])
 
 
 def _one() -> Array:
@@ -319,18 +340,19 @@ def placed_torques(assembly: Assembly, torques: Sequence[AppliedTorque]) -> tupl
     ------
     InputError : on a disk that a ConstantSpeed turns.
     """
-    return tuple(_placed(assembly, one) for one in torques)
+    lagging = np.cumsum([one.corner_frequency is not None for one in torques]) - 1
+    return tuple(_placed(assembly, one, max(int(k), 0)) for one, k in zip(torques, lagging, strict=True))
 
 
-def _placed(assembly: Assembly, one: AppliedTorque) -> PlacedTorque:
+def _placed(assembly: Assembly, one: AppliedTorque, lagged: int) -> PlacedTorque:
     station = disk_station(assembly, one.on, "torque")
     hold = one.hold or one.between == "steps"
     if one.by_program:
         knots = [point for point in (one.since, one.until) if point is not None]
         own = (TorqueAxis("time", np.array(knots), hold=True),) if knots else ()
-        return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), own)
+        return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), own, lagged)
     axes = tuple(TorqueAxis(key, np.array(getattr(one, key), dtype=float), hold, one.below) for key in one.variables)
-    return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes)
+    return PlacedTorque(one, station, float(np.sign(assembly.topology.mean_speeds[station])), axes, lagged)
 
 
 def placed_frictions(assembly: Assembly, frictions: Sequence[FrictionTorque]) -> tuple[PlacedFriction, ...]:

@@ -18,6 +18,7 @@ from trunnion_kernels.line_kernel import (
     FAR_COORDINATE,
     GUARDS,
     HEAD,
+    LAGS,
     LAW,
     MEAN,
     NEAR,
@@ -81,7 +82,7 @@ def line_guards(t, x_, p_, regime, sloped, g_, slope_):
     compliance, _, slider, scratch = places(head)
     p = carray(p_, (scratch + 5 * count,))
     x, g = carray(x_, (2 * n + sliding,)), carray(g_, (GUARDS * (joined + sliding),))
-    wide = 2 * n + sliding + 1
+    wide = 2 * n + sliding + int(head[LAGS]) + 1
     slope = carray(slope_, (GUARDS * (joined + sliding) * wide,))
     theta, omega, alpha = course(t, p)
     space = p[scratch:]

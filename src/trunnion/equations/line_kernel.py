@@ -31,9 +31,10 @@ _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64,
 
 # The head of the numbers.
 UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SINCE, LAWS, SLIDERS = range(11)
-# How many torques are applied from outside, and where they stand among the numbers.
-APPLIED, APPLIED_AT = 11, 12
-HEAD = 13
+# How many torques are applied from outside, and where they stand among the numbers; how many of them lag, whose values
+# are the last states.
+APPLIED, APPLIED_AT, LAGS = 11, 12, 13
+HEAD = 14
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 # LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
@@ -79,7 +80,11 @@ INSTRUCTIONS, KINKS, SIDES = range(3)
 # number is 1 where they are as they are on whatever side, for a root or power is taken of them.
 ABS, MIN, MAX, STEP_AT = range(18, 22)
 DENOMINATOR = NUMERATOR + POWERS * POWERS
-PER_APPLIED = DENOMINATOR + POWERS
+# CORNER, other than 0: it follows what all this says with a first-order lag of that corner frequency; its value is the
+# state number LAGGED of those that lag.
+CORNER = DENOMINATOR + POWERS
+LAGGED = CORNER + 1
+PER_APPLIED = LAGGED + 1
 # Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
 # the number of its harmonics and SIZE their place among the numbers: order, amplitude and phase of each.
 ROOT, SHAFT, CROSS, RATIO, FOURIER = range(5)
@@ -336,7 +341,7 @@ def line(t, y_, p_, k, regime, out_):
     n, count, joined, sliding = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
     compliance, harmonic, slider, scratch = places(head)
     p = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,))
-    wide = 2 * n + sliding
+    wide = 2 * n + sliding + int(head[LAGS])
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
     theta, omega, alpha = course(t, p)
     space = p[scratch:]
@@ -393,6 +398,12 @@ def line(t, y_, p_, k, regime, out_):
         push, turned_by, sped_by = applied(p, q, t, angle, sense * v[s])
         if k and int(p[q + FIRST]) >= FORMULA:
             return 1  # tangents would want slopes
+        if p[q + CORNER] != 0.0:
+            if k:
+                return 1  # tangents of what lags are not written
+            at = 2 * n + sliding + int(p[q + LAGGED])
+            out[at] = p[q + CORNER] * (push - y[at])
+            push, turned_by, sped_by = y[at], 0.0, 0.0
         way = p[q + WAY]
         push, turned_by, sped_by = way * push, way * sense * turned_by, way * sense * sped_by
         torque[i] += r[s] * push

@@ -191,13 +191,14 @@ class LineSystem(Portable):
         case: int = 0,
         applied: Array | None = None,
         programs: Array | None = None,
+        lags: int = 0,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
         number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row;
-        ``programs`` : of their formulas, which stand behind them.
+        ``programs`` : of their formulas, which stand behind them. ``lags`` : how many of them lag.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -247,7 +248,7 @@ class LineSystem(Portable):
         behind.append(released_numbers(clutches, strides[len(friction_sliders) :], pendulums))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
-        head += [0, 0] if applied is None else [len(applied), begin]
+        head += [0, 0, 0] if applied is None else [len(applied), begin, lags]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])

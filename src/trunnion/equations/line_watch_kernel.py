@@ -18,6 +18,7 @@ from trunnion_kernels.line_kernel import (
     FAR,
     FROM_FIRST,
     HEAD,
+    LAGS,
     LAW,
     MEAN,
     NEAR,
@@ -108,7 +109,7 @@ def line_watch(t, x_, asked_, regime, sloped, g_, slope_):
     head = carray(asked_, (first + HEAD,))[first:]
     n, count, joined, sliding = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
     _, _, _, scratch = places(head)
-    m, wide = int(front[COUNT]), 2 * n + sliding
+    m, wide = int(front[COUNT]), 2 * n + sliding + int(head[LAGS])
     size = scratch + 5 * count + 7 * n + 5 * joined
     asked = carray(asked_, (first + size + 2 * wide + 2 * m,))
     p = asked[first : first + size]

@@ -114,7 +114,7 @@ def stretch(rate, p, y, n, share, turning, weight, tolerance, end, last, far, mo
     if follow_anew(rate, t, y, p, n, share, turning, k[0]) != 0:
         return FAILED
     if h <= 0.0:
-        h = _first_step(rate, t, y, p, n, 0, 0, tolerance, weight, k, scratch)
+        h = _first_step(rate, t, y, p, wide, 0, 0, tolerance, weight, k, scratch)
     before = mean_speed(t, y, p, n, share)
     rejected, taken = False, 0
     while t < end:
@@ -134,7 +134,7 @@ def stretch(rate, p, y, n, share, turning, weight, tolerance, end, last, far, mo
                 return FAILED
         if step > 0.0:
             refused = _stages(rate, t, step, y, p, 0, 0, k, new)
-            error = np.nan if refused != 0 else _error(step, y, new, k, n, 0, tolerance, weight)
+            error = np.nan if refused != 0 else _error(step, y, new, k, wide, 0, tolerance, weight)
             if not error <= 1.0:
                 h = step * (0.2 if np.isnan(error) else max(0.2, 0.9 * error ** (-0.125)))
                 rejected = True

@@ -39,6 +39,7 @@ from trunnion_kernels.line_kernel import (
     FAR_COORDINATE,
     GUARDS,
     HEAD,
+    LAGS,
     MEAN,
     NEAR,
     NEAR_COORDINATE,
@@ -332,7 +333,7 @@ def released_line(t, y_, p_, k, regime, out_):
     head = carray(p_, (HEAD,))
     n, count, joined, friction = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
     _, _, _, scratch = places(head)
-    p, wide = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,)), 2 * n + friction
+    p, wide = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,)), 2 * n + friction + int(head[LAGS])
     y, out = carray(y_, ((1 + k) * wide,)), carray(out_, ((1 + k) * wide,))
     refused = rates(t, y[:wide], p, regime, out[:wide])
     if refused != 0 or k == 0:
@@ -369,7 +370,7 @@ def released_guards(t, x_, p_, regime, sloped, g_, slope_):
     n, count, joined, friction = int(head[UNKNOWNS]), int(head[STATIONS]), int(head[COMPLIANCES]), int(head[SLIDERS])
     compliance, _, _, scratch = places(head)
     p = carray(p_, (scratch + 5 * count + 7 * n + 5 * joined,))
-    wide = 2 * n + friction + 1
+    wide = 2 * n + friction + int(head[LAGS]) + 1
     number, first = clutches(p, scratch)
     _guards(t, x_, p_, regime, sloped, g_, slope_)
     m = GUARDS * friction

@@ -28,6 +28,7 @@ from trunnion.driveline.scenarios import Scenario
 from trunnion.equations.applied_torques import placed_frictions, placed_torques, time_knots
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem
+from trunnion.errors import InputError
 from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.motion.passing.passing_result import Passing, PassingEnd
 from trunnion.motion.passing.quick_passage import LOOKS, QuickPassage, is_quick
@@ -148,11 +149,14 @@ class _Follower:
         self.progress: Callable[[float], None] = lambda way: None
         self.steppers: dict[float, Stepper] = {}
         self.steady = float(max(knots, default=0.0)) if np.isfinite(rigid) else 0.0
-        modes = natural_frequencies(line.assembly)
-        self.decay = float(max((1 / (z * w) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if
-                                w > 0 and z > 0), default=0.0))  # fmt: skip
-        slow = [w for w in modes.frequency if w > 0]
-        self.usual = self.rigid if np.isfinite(self.rigid) else 200 * TURN / float(min(slow, default=1.0))
+        try:
+            modes = natural_frequencies(line.assembly)
+            known = [(float(z), float(w)) for z, w in zip(modes.damping_ratio, modes.frequency, strict=True) if w > 0]
+        except InputError:  # no linear line, by play or friction
+            known = []
+        self.decay = max((1 / (z * w) for z, w in known if z > 0), default=0.0)
+        slow = [w for _, w in known]
+        self.usual = self.rigid if np.isfinite(self.rigid) else 200 * TURN / min(slow, default=1.0)
 
     def ending(self, tolerance: float) -> tuple[Transient, str]:
         """The run, and how it ended."""
@@ -173,7 +177,8 @@ class _Follower:
             self.steppers[tolerance] = stepper_of(self.line, self.asked, tolerance)
         stepper = self.steppers[tolerance]
         if is_quick(stepper):
-            way = QuickPassage(stepper, self.start(), self.phase, self.first, self.last, tolerance)
+            begun = stepper.with_lags(Place(0.0, self.start(), angle=self.phase, speed=self.first))
+            way = QuickPassage(stepper, begun.state, self.phase, self.first, self.last, tolerance)
             if way.fits and (kind := self._judged(way)):
                 usual = (self.last - self.first) / self.rigid
                 return kind, kind == "passed" and way.gained > PLAINLY * usual

@@ -35,7 +35,7 @@ def _plain(one: PlacedTorque) -> bool:
 
 
 class QuickPassage:
-    """A line on its way to a mean speed, from a state (2n,) on at an angle [rad] and a speed [rad/s]."""
+    """A line on its way to a mean speed, from a state (2n + lagging,) on at an angle [rad] and a speed [rad/s]."""
 
     def __init__(
         self, stepper: Stepper, state: Array, angle: float, speed: float, last: float, tolerance: float

@@ -45,13 +45,17 @@ def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> f
     frictions = [(float(ratio[one.station]), one) for one in placed_frictions(assembly, asked[1])]
 
     def gained(t: float, state: Sequence[float]) -> list[float]:
-        angle, speed = state
-        total = -constant - (viscous + quadratic * abs(speed)) * speed
+        angle, speed, *lagging = state
+        total, follows = -constant - (viscous + quadratic * abs(speed)) * speed, list[float]()
         for size, one in torques:
-            total += size * _finite(one, t, size * speed, size * angle)
+            torque = _finite(one, t, size * speed, size * angle)
+            if (corner := one.stated.corner_frequency) is not None:
+                follows.append(corner * (torque - lagging[one.lagged]))
+                torque = lagging[one.lagged]
+            total += size * torque
         for size, rubs in frictions:
             total -= size * rubs.stated.torque * rubs.share(t)[0] * (-1.0 if speed < 0 else 1.0)
-        return [speed, total / inertia]
+        return [speed, total / inertia, *follows]
 
     def reached(t: float, state: Sequence[float]) -> float:
         return state[1] - last
@@ -60,16 +64,20 @@ def rigid_time(line: LineSystem, asked: Actions, first: float, last: float) -> f
         return gained(t, state)[1] * np.sign(last - first) - least
 
     reached.terminal = hangs.terminal = True  # type: ignore[attr-defined]
-    begin = abs(gained(0.0, (0.0, first))[1])
+    hangs.direction = -1  # type: ignore[attr-defined]
+    lagging = [(size, one) for size, one in torques if one.lags]
+    steady = [_finite(one, 0.0, size * first, 0.0) for size, one in lagging]
+    begin = abs(gained(0.0, (0.0, first, *steady))[1])
     knots = time_knots([one for _, one in torques], [one for _, one in frictions])
     after = float(knots[-1]) if len(knots) else 0.0
-    most = max(begin, max((abs(gained(t, (0.0, first))[1]) for t in knots), default=0.0))
+    most = max(begin, max((abs(gained(t, (0.0, first, *steady))[1]) for t in knots), default=0.0))
     if most == 0.0:
         return np.inf
     least = 1e-9 * most
     limit = after + LONGEST * abs(last - first) / most
     ends = [float(k) for k in knots if k > 0] + [limit]
-    t, state = 0.0, np.array([0.0, first])
+    begun = [one.begun(0.0, size * first, 0.0) for size, one in lagging]
+    t, state = 0.0, np.array([0.0, first, *begun])
     for end in ends:
         watched = (reached, hangs) if end == limit else (reached,)
         run = solve_ivp(gained, (t, end), state, "LSODA", rtol=1e-8, atol=1e-10 * max(abs(last), 1.0), events=watched)

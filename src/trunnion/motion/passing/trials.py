@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array
-from trunnion.driveline.applied_torque import AppliedTorque, TorqueFunction
+from trunnion.driveline.applied_torque import AppliedTorque, scaled_torque
 from trunnion.driveline.arguments import numbers, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.machines import Motor
@@ -20,6 +20,8 @@ from trunnion.motion.passing.even_acceleration import accelerating
 from trunnion.motion.passing.passing import passing_kinds
 from trunnion.motion.passing.rigid import rigid_time
 from trunnion.motion.passing.start import begun_line
+from trunnion.motion.transients.engines import throws_of
+from trunnion.motion.transients.excited import Shaking
 from trunnion.motion.transients.prepare import Actions
 from trunnion.results.counts import few
 
@@ -56,18 +58,24 @@ class Trials:
             if path not in (FACTOR, ACCELERATION):
                 packed.resolve_axis(path).put(table, value)
         factor = values.get(FACTOR, 1.0)
-        prepared, acting = begun_line(packed.line_at(table[0]), self.asked, self.first)
+        stated = tuple(scaled_torque(one, factor) if one.on == self.drive else one for one in self.asked[0])
+        prepared, acting = begun_line(packed.line_at(table[0]), (stated, *self.asked[1:]), self.first)
+        asked = acting
         if ACCELERATION in values:
-            others = tuple(one for one in acting[0] if one.on != self.drive)
-            even = accelerating(
-                prepared, (others, *acting[1:]), self.drive, values[ACCELERATION], self.first, self.last
-            )
-            asked = ((*others, even), *acting[1:])
-        else:
-            torque = tuple(scaled(one, factor) if one.on == self.drive else one for one in acting[0])
-            asked = (torque, *acting[1:])
+            drives = throws_of(self.drive, self.line.parts) or [self.drive]
+            others = tuple(one for one in acting[0] if one.on not in drives or isinstance(one, Shaking))
+            rest = (others, *acting[1:])
+            even = accelerating(prepared, rest, drives[0], values[ACCELERATION], self.first, self.last)
+            parts = [scaled_torque(even, 1 / len(drives)).but(on=name) for name in drives]
+            asked = ((*others, *parts), *acting[1:])
+        elif all(one.on != self.drive for one in self.asked[0]):
+            asked = (tuple(self._scaled(one, factor) for one in acting[0]), *acting[1:])
         rigid = rigid_time(prepared, asked, self.first, self.last)
         return passing_kinds(prepared, asked, self.first, self.last, self.phases, rigid, self.tolerance)
+
+    def _scaled(self, one: AppliedTorque, factor: float) -> AppliedTorque:
+        """What a machine of the line drives with by itself is scaled, and not what shakes it."""
+        return scaled_torque(one, factor) if one.on == self.drive and not isinstance(one, Shaking) else one
 
 
 def trials_of(
@@ -82,24 +90,9 @@ def trials_of(
     driven = list(dict.fromkeys(one.on for one in asked[0])) or motors or known
     if drive is None and len(driven) > 1:
         raise InputError("is missing, for torques act on several disks", key="drive", remedy=f"name {few(driven, 3)}")
-    if drive is not None and drive not in known:
+    if drive is not None and not set(throws_of(drive, description.parts) or [drive]) <= set(known):
         raise InputError("is given no torque", key="drive", value=drive, remedy=f"torques act on {few(known, 3)}")
     return Trials(description, asked, drive or driven[0], *ends, _phases(phases), tolerance)
-
-
-def scaled(torque: AppliedTorque, factor: float) -> AppliedTorque:
-    """A torque times a factor."""
-    if (most := torque.breakdown_torque) is not None:
-        return torque.but(breakdown_torque=factor * float(most))
-    if torque.power is not None:
-        return torque.but(power=factor * torque.power)
-    if isinstance(torque, TorqueFunction):
-        return torque.but(function=lambda *at: factor * torque.function(*at))
-    if torque.formula is not None:
-        return torque.but(formula=f"{factor!r}*({torque.formula})")
-    if torque.table:
-        return torque.but(table=(factor * np.array(torque.table)).tolist())
-    return torque.but(torque=[factor * float(one) for one in torque.torque])
 
 
 def _phases(asked: int | ArrayLike) -> Array:

@@ -65,13 +65,19 @@ def energy_balance(pieces: Sequence[Piece]) -> EnergyBalance:
     return EnergyBalance(*(float(one) for one in (*total, turned)))
 
 
-def applied_torques(piece: Piece, times: Array, angle: Array, speed: Array) -> Array:
-    """Torque of every applied torque and friction (time, torque) [N m], in the rotation of its station."""
+def applied_torques(piece: Piece, times: Array, states: Array, angle: Array, speed: Array) -> Array:
+    """Torque of every applied torque and friction (time, torque) [N m], in the rotation of its station; ``states``
+    (time, state), of which the last are those of torques that lag."""
     core, numbers = line_kernel(), piece.numbers
     at, found = int(numbers[core.APPLIED_AT]), []
     for one in piece.acting:
         row = numbers[at : at + core.PER_APPLIED]
         station, sense = int(row[core.PLACE]), row[core.SENSE]
+        if row[core.CORNER]:
+            first = states.shape[1] - int(numbers[core.LAGS])
+            found.append(row[core.WAY] * states[:, first + int(row[core.LAGGED])])
+            at += core.PER_APPLIED
+            continue
         if int(row[core.FIRST]) >= core.FORMULA:
             own_speed, own_angle = sense * speed[:, station], sense * angle[:, station]
             found.append(row[core.WAY] * _programmed(one, row, numbers, times, own_speed, own_angle))
@@ -81,7 +87,7 @@ def applied_torques(piece: Piece, times: Array, angle: Array, speed: Array) -> A
         u = variables[int(row[core.FIRST])] - row[core.FROM_FIRST]
         v = variables[int(row[core.SECOND])] - row[core.FROM_SECOND]
         above = row[core.NUMERATOR : core.DENOMINATOR].reshape(core.POWERS, core.POWERS)
-        below = np.polynomial.polynomial.polyval(v, row[core.DENOMINATOR :])
+        below = np.polynomial.polynomial.polyval(v, row[core.DENOMINATOR : core.CORNER])
         found.append(row[core.WAY] * np.polynomial.polynomial.polyval2d(u, v, above) / below)
         at += core.PER_APPLIED
     return np.array(found).reshape(-1, len(times)).T
@@ -120,7 +126,7 @@ def _of_piece(piece: Piece) -> tuple[Array, float]:
     angle = station_angles(piece, times, motion.rotation)
     stations = numbers[core.HEAD : core.HEAD + len(topo.stations) * core.PER_STATION].reshape(-1, core.PER_STATION)
     load = stations[:, core.LOAD] + (stations[:, core.VISCOUS] + stations[:, core.QUADRATIC] * np.abs(speed)) * speed
-    own = applied_torques(piece, times, angle, speed)
+    own = applied_torques(piece, times, states, angle, speed)
     places = [one.station for one in piece.acting]
     power = own * speed[:, places]
     rubs = np.array([getattr(one.stated, "rubs", True) for one in piece.acting], dtype=bool)

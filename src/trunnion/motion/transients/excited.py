@@ -1,39 +1,46 @@
 """Excitations whose amplitude goes with the load or the speed, as a motion in time has them.
 
 What goes with the mean torque of a disk whose drive keeps its torque, as one with a drive_share does here, has one
-amplitude all the way. What goes with the square of the speed, the oscillating masses of an engine, and a share of what
-its disk resists with by powers of its speed, as of a propeller's blades, is a torque over angle and speed: at each
-instant by the speed that the disk has.
+amplitude all the way; what goes with a torque that its disk is given follows that (``given_load``). What goes with the
+square of the speed, the oscillating masses of an engine, is a torque over angle and speed, at each instant by the speed
+that the disk has; so is a share of what its disk resists with by powers of its speed, or of a machine's curve.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from trunnion.arrays import Array
 from trunnion.driveline.applied_torque import AppliedTorque
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
+from trunnion.driveline.machines import Machine
 from trunnion.equations.amplitudes import BEYOND, Running, amplitude
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import cylinders
 from trunnion.errors import InputError
 from trunnion.laws.torque_curve import PowerCurve
+from trunnion.motion.transients.given_load import by_given, of_share
+from trunnion.motion.transients.machines import at_rest, machine_torque
+from trunnion.motion.transients.torque_text import lines, phase_text, torque_text
+
+
+class Shaking(AppliedTorque):
+    """An excitation by the speed: not what drives, though it acts on the same disk."""
 
 
 def without_varying(
-    line: Driveline, given: Collection[str], speed: float
+    line: Driveline, torque: Sequence[AppliedTorque], rubbed: Collection[str], speed: float
 ) -> tuple[Driveline, tuple[AppliedTorque, ...]]:
     """The line with the amplitudes that its excitations have from an input ``speed`` [rad/s] on, and torques for those
-    by the speed. Disks that are ``given`` a torque keep excitations by their load, as do those whose own load goes
-    otherwise with the speed: these are not followed.
+    by the speed or by the ``torque`` that their disk is given. Excitations by the load of disks that are ``rubbed``,
+    or whose own load goes otherwise with the speed, are kept: these are not followed.
 
     Raises
     ------
-    InputError : a load beyond the table of an excitation.
+    InputError : a load beyond the table of an excitation; a given torque that no amplitude can be made by.
     """
     varying = [
         (name, one) for name, one in line.parts if isinstance(one, Rotor) and any(e.varies for e in one.excitation)
@@ -43,17 +50,27 @@ def without_varying(
     assembly, torques, changed = assemble(line), list[AppliedTorque](), dict[str, dict[str, object]]()
     for name, rotor in varying:
         kept: list[Excitation] = []
+        given = [one for one in torque if one.on == name]
+        loaded = list[tuple[int, Excitation]]()
         for number, law in enumerate(rotor.excitation, start=1):
             if law.quadratic_amplitude is not None:
                 torques.append(_by_square(name, rotor, law))
             elif law.speeds:
                 torques += _by_table(name, rotor, law)
-            elif law.share is not None and name not in given and (load := _own_curve(rotor)) is not None:
+            elif not law.varies or name in rubbed or (given and isinstance(rotor, Machine)):
+                kept.append(law)
+            elif given:
+                loaded.append((number, law))
+            elif law.share is not None and isinstance(rotor, Machine) and rotor.tangent:
+                torques.append(of_share(name, rotor, (number, law), _of_machine(line, name, rotor, speed)))
+            elif law.share is not None and (load := _own_curve(rotor)) is not None:
                 torques.append(_by_share(name, rotor, law, load))
-            elif law.varies and name not in given and _steady(rotor):
+            elif _steady(rotor):
                 kept.append(_at_load(assembly, name, number, law, speed))
             else:
                 kept.append(law)
+        if loaded:
+            torques += by_given(name, rotor, loaded, given)
         changed[name] = {"excitation": kept or None}
         if not kept and isinstance(rotor, Disk) and rotor.firing_angles:
             changed[name] |= {"firing_angles": None, "misfiring": None}
@@ -64,6 +81,18 @@ def _steady(rotor: Rotor) -> bool:
     """Whether the torque that it drives with stays while the speed changes."""
     load = rotor.load
     return isinstance(load, PowerCurve) and not (load.viscous or load.quadratic)
+
+
+def _of_machine(line: Driveline, name: str, machine: Machine, speed: float) -> str:
+    """What a machine drives with by its curve, as a formula of its speed.
+
+    Raises
+    ------
+    InputError : what ``machine_torque`` refuses.
+    """
+    text = torque_text(machine_torque(line, name, machine, speed))
+    assert text is not None
+    return f"{text} - ({at_rest(machine)!r})"
 
 
 def _own_curve(rotor: Rotor) -> PowerCurve | None:
@@ -91,34 +120,19 @@ def _by_table(name: str, rotor: Rotor, law: Excitation) -> tuple[AppliedTorque, 
     its ends, which ends a run there."""
     points, phases = np.array(law.speeds), np.array(law.phases or np.zeros(len(law.speeds)))
     values = np.array(law.amplitudes) * np.exp(1j * phases) * cylinders(rotor, law)
-    slack, turned = BEYOND * float(points[-1]), _turned(law, float(law.phase))
+    slack, turned = BEYOND * float(points[-1]), phase_text(law, float(law.phase))
     waves = ((values.real, "cos"), (-values.imag, "sin"))
-    terms = [f"({_lines(points, part)})*{wave}({turned})" for part, wave in waves if part.any()]
+    terms = [f"({lines(points, part)})*{wave}({turned})" for part, wave in waves if part.any()]
     ends = [max(float(points[0]) - slack, 0.0), float(points[-1]) + slack]
-    covers = AppliedTorque(on=name, speed=ends, torque=[0.0, 0.0])
-    return AppliedTorque(on=name, formula=" + ".join(terms) or "0"), covers
-
-
-def _lines(points: Array, values: Array) -> str:
-    """Straight lines of ``speed`` through points, as a formula."""
-    slopes = np.diff(values) / np.diff(points)
-    terms = [repr(float(values[0])), f"({float(slopes[0])!r})*(speed - ({float(points[0])!r}))"]
-    for point, change in zip(points[1:-1], np.diff(slopes), strict=True):
-        if change:
-            terms.append(f"({float(change)!r})*max(speed - ({float(point)!r}), 0)")
-    return " + ".join(terms)
-
-
-def _turned(law: Excitation, phase: float) -> str:
-    """Its angle at each instant, as a formula."""
-    return f"({float(law.order or 0)!r})*angle + ({float(law.frequency or 0)!r})*time + ({phase!r})"
+    covers = Shaking(on=name, speed=ends, torque=[0.0, 0.0])
+    return Shaking(on=name, formula=" + ".join(terms) or "0"), covers
 
 
 def _turning(name: str, rotor: Rotor, law: Excitation, factor: float, size: str) -> AppliedTorque:
     """``factor`` times ``size`` at the angle that the disk has."""
     together = cylinders(rotor, law)
     factor, phase = abs(together) * factor, float(law.phase + np.angle(together))
-    return AppliedTorque(on=name, formula=f"({factor!r})*{size}*cos({_turned(law, phase)})")
+    return Shaking(on=name, formula=f"({factor!r})*{size}*cos({phase_text(law, phase)})")
 
 
 def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:

@@ -1,7 +1,8 @@
 """Machines as a motion in time has them: their inertia as a disk, and their torque over speed as a torque applied.
 
 Linear analyses take a machine's curve by its tangent at one speed. A transient leaves that speed, so that here each
-follows its curve itself: Kloss's formula, the points, a speed controller within its torque limit, constant power.
+follows its curve itself: Kloss's formula, the points, a speed controller within its torque limit, constant power; with
+its first-order lag, where it has one.
 """
 
 from __future__ import annotations
@@ -51,8 +52,7 @@ def without_curves(
 
     Raises
     ------
-    InputError : a torque that lags behind the speed; a propeller's damping_factor; constant power, or a motor set by a
-        converter, from standstill.
+    InputError : a propeller's damping_factor; constant power, or a motor set by a converter, from standstill.
     """
     machines = {name: one for name, one in line.parts if isinstance(one, Machine) and one.tangent}
     brakes = {name: one for name, one in line.parts if isinstance(one, Brake)}
@@ -69,8 +69,10 @@ def without_curves(
     for name, machine in machines.items():
         _refuse(name, machine)
         if name not in driven:
-            torques.append(_torque(line, name, machine, speed))
-        if rubs := _at_rest(machine):
+            torque = machine_torque(line, name, machine, speed)
+            lag = machine.lag_frequency if isinstance(machine, ElectricMachine) else None
+            torques.append(torque if lag is None else torque.but(corner_frequency=lag))
+        if rubs := at_rest(machine):
             frictions.append(FrictionTorque(on=name, torque=rubs))
         disks[name] = Disk(
             name=name, inertia=machine.moment_of_inertia, excitation=machine.excitation, after=machine.after
@@ -112,7 +114,7 @@ def _shares(line: Driveline, speed: float, driven: frozenset[str]) -> tuple[list
     return torques, {name: one.but(drive_share=None, name=name) for name, one in sharing.items()}
 
 
-def _at_rest(machine: Machine) -> float:
+def at_rest(machine: Machine) -> float:
     """Torque [N m] that a machine that is driven resists with at standstill by its curve."""
     if isinstance(machine, Motor) or not machine.curve or machine.table.range[0] > 0:
         return 0.0
@@ -131,13 +133,6 @@ def _falling(name: str, brake: Brake) -> AppliedTorque:
 
 
 def _refuse(name: str, machine: Machine) -> None:
-    if isinstance(machine, ElectricMachine) and machine.lag_frequency is not None:
-        key = "corner_frequency" if machine.corner_frequency is not None else "pole_pairs"
-        raise InputError(
-            f"lets its torque lag behind its speed above {machine.lag_frequency:.4g} rad/s, which is not followed here",
-            element=name, key=key, value=getattr(machine, key),
-            remedy=f"leave out {key}: the torque then follows at once, which holds for slower swings",
-        )  # fmt: skip
     if isinstance(machine, Propeller) and machine.damping_factor is not None:
         raise InputError(
             "holds about one mean speed, which changes here", element=name, key="damping_factor",
@@ -145,12 +140,12 @@ def _refuse(name: str, machine: Machine) -> None:
         )  # fmt: skip
 
 
-def _torque(line: Driveline, name: str, machine: Machine, speed: float) -> AppliedTorque:
+def machine_torque(line: Driveline, name: str, machine: Machine, speed: float) -> AppliedTorque:
     """What drives or resists, as a torque over speed."""
     if isinstance(machine, Motor) and machine.set:
         return _set(line, name, machine, speed)
     if machine.curve:
-        sense, rubs = 1.0 if isinstance(machine, Motor) else -1.0, _at_rest(machine)
+        sense, rubs = 1.0 if isinstance(machine, Motor) else -1.0, at_rest(machine)
         torque = [sense * (float(one) - rubs) for one in machine.table.torques]
         kind = CurveFromRest if machine.table.range[0] == 0 else AppliedTorque
         return kind(on=name, speed=machine.table.speeds, torque=torque, between="cubic")

@@ -21,8 +21,9 @@ class Place:
     """Where a motion stands.
 
     time [s]; angle [rad], speed [rad/s] and acceleration [rad/s²] of the rotation that it is observed from; state (2n +
-    sliders,) and regime, ``LOCATED`` where the state tells it; ``senses``: in which way the groups with friction turn,
-    by their first station, 0 where they stand.
+    sliders + lagging,) and regime, ``LOCATED`` where the state tells it; ``senses``: in which way the groups with
+    friction turn, by their first station, 0 where they stand; ``lagging``: the disks whose lagging torques are the last
+    states.
     """
 
     time: float
@@ -32,6 +33,7 @@ class Place:
     acceleration: float = 0.0
     regime: int = LOCATED
     senses: dict[int, float] = field(default_factory=dict)
+    lagging: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

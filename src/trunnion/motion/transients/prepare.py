@@ -17,6 +17,7 @@ from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
+from trunnion.motion.transients.engines import on_throws
 from trunnion.motion.transients.excited import without_varying
 from trunnion.motion.transients.machines import without_curves
 from trunnion.motion.transients.place import Found, Place
@@ -59,8 +60,8 @@ def driven_line(line: Driveline, asked: Actions, speed: float) -> tuple[Drivelin
         refuse_others(several, kind, key)
     if wrong := [*wrong_places_of(*asked, line.parts)]:
         raise InputError.together(wrong)
-    given = {one.on for one in asked[0]} | {one.on for one in asked[1]}
-    line, excited = without_varying(line, given, speed)
+    asked = (*on_throws(asked[0], asked[1], line.parts), asked[2])
+    line, excited = without_varying(line, asked[0], {one.on for one in asked[1]}, speed)
     given = {one.on for one in asked[0]}
     asked = ((*asked[0], *excited), *asked[1:])
     sharing = [name for name, e in line.parts if isinstance(e, Rotor) and bool(getattr(e, "drive_share", False))]
@@ -91,8 +92,7 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> tuple[LineSy
 
     Raises
     ------
-    InputError : what acts where nothing can; a pendulum; a machine whose torque lags; an excitation that varies with
-        the speed.
+    InputError : what acts where nothing can; a pendulum; an excitation that varies with the speed.
     """
     refuse_pendulums(line)
     refuse_torque_tables(line, "write the stiffness at the torque that matters")

@@ -21,6 +21,7 @@ from trunnion.features import left_out
 from trunnion.motion.simulation.input_rotation import InputRotation
 from trunnion.motion.simulation.simulate import positive_time
 from trunnion.motion.transients.energy import EnergyBalance, applied_torques, energy_balance, station_angles
+from trunnion.motion.transients.engines import on_throws
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.motion.transients.prepare import Actions, follow, prepared_line
 from trunnion.numerics.curves import Extremes, extremes_in
@@ -346,6 +347,7 @@ class Transient(Result):
         given = (torque, friction, crossing)
         asked: Any = tuple(old if new is None else tuple(new) for old, new in zip(self.asked, given, strict=True))
         description = self.description if line is None else line
+        asked = (*on_throws(asked[0], asked[1], description.parts), asked[2])
         prepared, acting = prepared_line(description, asked, self.line.speed)
         same = prepared.names == self.line.names and prepared.shafts == self.line.shafts
         if not same or len(prepared.sliders) != len(self.line.sliders):
@@ -353,7 +355,8 @@ class Transient(Result):
             raise InputError("has other disks or springs than the run", key="line", remedy=remedy)
         place = self.place
         if line is not None:
-            place = replace(place, state=prepared.system.within_limits(place.state), regime=LOCATED)
+            own, lags = np.split(place.state, [len(place.state) - len(place.lagging)])
+            place = replace(place, state=np.concatenate([prepared.system.within_limits(own), lags]), regime=LOCATED)
         tolerance = self.tolerance if tolerance is None else tolerance
         length = positive_time(duration, "give seconds")
         found = follow(prepared, place, length, acting, tolerance, MOST_STEPS, progress=progress)
@@ -387,9 +390,10 @@ class Transient(Result):
 
 
 def _moving(piece: Piece, times: Array, acting: bool) -> Moving:
-    motion, speed = piece.line.moving(times, piece.trajectory.at(times), piece.numbers, piece.regime_at(times))
+    states = piece.trajectory.at(times)
+    motion, speed = piece.line.moving(times, states, piece.numbers, piece.regime_at(times))
     angle = station_angles(piece, times, motion.rotation)
     applied, places = np.zeros(speed.shape), [one.station for one in piece.acting]
     if acting:
-        np.add.at(applied.T, places, applied_torques(piece, times, angle, speed).T)
+        np.add.at(applied.T, places, applied_torques(piece, times, states, angle, speed).T)
     return Moving(motion.twist, motion.torque, angle, speed, applied)

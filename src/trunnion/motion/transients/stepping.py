@@ -28,6 +28,7 @@ from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, Tor
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
+from trunnion.motion.transients.lagging import held_lags, with_lags
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.motion.transients.watched import WatchedValue
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
@@ -95,9 +96,13 @@ class Stepper:
         self.turning = rigid_rotation(self.topo)
         count = len(self.torques) + len(self.frictions)
         programs = [one.program for one in self.torques]
+        self.lagging = [one for one in self.torques if one.lags]
+        nothing = np.zeros((count, self.core.PER_APPLIED))
+        nothing[:, self.core.DENOMINATOR] = 1.0
         self.numbers = line.numbers(
-            row, known=co, applied=np.zeros((count, self.core.PER_APPLIED)), programs=np.concatenate([[], *programs])
-        )
+            row, known=co, applied=nothing, programs=np.concatenate([[], *programs]),
+            lags=len(self.lagging),
+        )  # fmt: skip
         self.applied_at = int(self.numbers[self.core.APPLIED_AT])
         behind = self.applied_at + count * self.core.PER_APPLIED
         self.programs = [behind + sum(map(len, programs[:k])) for k in range(len(programs))]
@@ -111,8 +116,9 @@ class Stepper:
         elastic = frequencies[frequencies > 1e-6 * max(float(frequencies.max()), 1e-30)]
         self.usual = usual = max(float(elastic.min()) if len(elastic) else 0.0, abs(line.speed), 1e-3)
         n, reach = self.topo.size, [slider.reach for slider in line.sliders]
-        weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach])
-        self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight)
+        pushed = [ANGLE_SCALE * usual**2 * float(felt[self.topo.unknown_of[one.station]]) for one in self.lagging]
+        weight = np.concatenate([np.full(n, ANGLE_SCALE), np.full(n, ANGLE_SCALE * usual), reach, pushed])
+        self.equations = replace(line.system.equations, numbers=self.numbers, weight=weight, size=len(weight))
         self.called = [one.called for one in self.torques if one.called is not None]
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
@@ -124,6 +130,7 @@ class Stepper:
         clamping = [t for e in self.line.assembly.line.elements if isinstance(e, SlipClutch) for t in e.clamping_times]
         knots = np.union1d(time_knots(self.torques, self.frictions), clamping)
         self.cells = [[self._piece(axis, one, place) for axis in one.axes] for one in self.torques]
+        place = self.with_lags(place)
         place = replace(place, regime=self._regime(place))
         chunk = FIRST_PIECE * duration if self.free else LOOKED_AT * duration
         pieces: list[Piece] = []
@@ -222,11 +229,17 @@ class Stepper:
             return Outcome(False, "no number", words)
         return None
 
+    def with_lags(self, place: Place) -> Place:
+        """The same place with a state for every torque that lags."""
+        self._write_course(place)
+        return with_lags(place, self.lagging, self._of_station)
+
     def _regime(self, place: Place) -> int:
         if place.regime != LOCATED:
             return place.regime
         self._write(place)
-        return self.line.system.reading(self.numbers).regime_at(place.time, place.state)
+        own, lags = np.split(place.state, [len(place.state) - len(self.lagging)])
+        return self.line.system.reading(held_lags(self.numbers, self.torques, lags)).regime_at(place.time, own)
 
     def _piece(self, axis: TorqueAxis, one: PlacedTorque, place: Place) -> int:
         if axis.variable == "time":

@@ -22,6 +22,7 @@ from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.simulate import positive_time
+from trunnion.motion.transients.engines import on_throws
 from trunnion.motion.transients.place import Place
 from trunnion.motion.transients.prepare import Actions, actions_of, follow, prepared_line, refuse_others, require_begun
 from trunnion.motion.transients.result import Transient
@@ -104,7 +105,9 @@ def transient(
     refuse_others(disturbance, Disturbance, "disturbance")
     torque = [*torque, *(made for one in disturbance for made in one.torques)]
     friction = [*friction, *(made for one in disturbance for made in one.frictions)]
-    asked = actions_of(torque, friction, crossing)
+    refuse_others(torque, AppliedTorque, "torque")
+    refuse_others(friction, FrictionTorque, "friction")
+    asked = actions_of(*on_throws(torque, friction, description.parts), crossing)
     begin = operating_speed(description, None) if speed is None else one_speed(speed, "speed")
     if not np.isfinite(begin):
         raise InputError("must be finite", key="speed", value=begin)
