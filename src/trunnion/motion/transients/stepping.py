@@ -58,11 +58,8 @@ SHORT = 1e-3
 """Of a piece, and of 1 over the highest natural frequency: the time over which that change is taken."""
 CHECKS, EXCESS = 16, 1e-6
 """Stretches of a piece at whose ends it is checked what sticks, and the share beyond what it bears that is an error."""
-
-
 SIDE = 1e-3
 """Share of its change in a short time below which what a kink switches by counts as zero."""
-
 LONGEST_FORMULA = 100
 """Characters that a sentence shows of a formula."""
 MOST_JUDGED = 6
@@ -100,8 +97,7 @@ class Stepper:
         nothing = np.zeros((count, self.core.PER_APPLIED))
         nothing[:, self.core.DENOMINATOR] = 1.0
         self.numbers = line.numbers(
-            row, known=co, applied=nothing, programs=np.concatenate([[], *programs]),
-            lags=len(self.lagging),
+            row, known=co, applied=nothing, programs=np.concatenate([[], *programs]), lags=len(self.lagging)
         )  # fmt: skip
         self.applied_at = int(self.numbers[self.core.APPLIED_AT])
         behind = self.applied_at + count * self.core.PER_APPLIED
@@ -203,9 +199,8 @@ class Stepper:
         """The outcome of a run whose integration ended at ``place``, and what of its torques is not a number there."""
         if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
             return wrong
-        system = self.line.system
-        guards = (*(system.regimes.guards if system.regimes else ()), *(w.label for w in watched))
-        return outcome_of(system, trajectory, self.tolerance, guards)
+        guards = (*(regimes.guards if (regimes := self.line.system.regimes) else ()), *(w.label for w in watched))
+        return outcome_of(self.line.system, trajectory, self.tolerance, guards)
 
     def _no_number(self, place: Place) -> Outcome | None:
         """The outcome of a run in which a formula or a function gives no number at ``place``, or just behind it."""
