@@ -1157,7 +1157,7 @@ PYTHON = [
     ),
     (
         lambda: torque(time=[0, 1], torque=[0, 1], corner_frequency=0.0),
-        "torque on motor.corner_frequency = 0: must be positive",
+        "torque on pump.corner_frequency = 0: must be positive",
         'write "200 rad/s", say',
     ),
     (
