@@ -38,6 +38,9 @@ from trunnion.systems.system import System
 
 BESIDE = 1e-5
 """Step of differences by the mean speed, over it."""
+SMALL = 1e-3
+"""Step of differences by the drives' torque, over the one that counts as one: that one bends the motion, so that Newton's
+steps would gain a digit or two each."""
 
 
 def kept_speed_orbit(
@@ -60,7 +63,7 @@ def kept_speed_orbit(
     require_periodic(line)
     first = line.twisted() if start is None else line.system.checked_start(start)
     torque = torque_scale(line)
-    driving = IntegratedMap(driven or line.with_drive, (0.0,), (torque,), 0.0, 1, tolerance, MOST_STEPS)
+    driving = IntegratedMap(driven or line.with_drive, (0.0,), (SMALL * torque,), 0.0, 1, tolerance, MOST_STEPS)
     neutral = neutral_motions(line)
 
     def fixed(guess: Array) -> IntegratedShooting:
