@@ -159,6 +159,15 @@ def engine(**changes):
     return Engine(**stated)
 
 
+def indicated(**changes):
+    """Of four cylinders, by its mean indicated pressure."""
+    stated = {
+        "bore": 0.2, "stroke": 0.26, "rod_length": 0.5, "mean_indicated_pressure": "20 bar", "peak_pressure": "165 bar",
+        "charge_pressure": "3.6 bar", "compression_ratio": 13.5, "polytropic_exponent": 1.36,
+    }  # fmt: skip
+    return engine(**{key: value for key, value in (stated | changes).items() if value is not None})
+
+
 def dual_mass(**changes):
     return DualMassFlywheel(**{"primary_inertia": 0.1, "secondary_inertia": 0.05, "stiffnesses": [1e3]} | changes)
 
@@ -526,6 +535,56 @@ PYTHON = [
         lambda: engine(pressure=[{"angles": [0.1 * i for i in range(126)], "pressures": [2e5] * 126}]),
         "Engine.bore: is needed with pressure",
         "stroke",
+    ),
+    (lambda: indicated(peak_pressure=None), "Engine.peak_pressure: is needed with mean_indicated", "charge_pressure"),
+    (lambda: indicated(charge_pressure=None), "Engine.charge_pressure: is needed with compression_ratio", "write"),
+    (lambda: indicated(bore=None), "Engine.bore: is needed with compression_ratio", "stroke"),
+    (
+        lambda: engine(peak_pressure="90 bar"),
+        "Engine.mean_indicated_pressure: is needed with peak_pressure",
+        "write mean_indicated_pressure",
+    ),
+    (
+        lambda: indicated(gas_torque=[{"order": 2, "amplitude": 9}]),
+        "Engine.mean_indicated_pressure = '20 bar': conflicts with gas_torque",
+        "leave one",
+    ),
+    (
+        lambda: indicated(mean_indicated_pressure=["20 bar", "12 bar"]),
+        "Engine.mean_indicated_pressure = ['20 bar', '12 bar']: must rise",
+        "sort them",
+    ),
+    (
+        lambda: indicated(peak_pressure=["165 bar", "120 bar"]),
+        "Engine.peak_pressure = ['165 bar', '120 bar']: must be one for all or 1",
+        "mean_indicated_pressure",
+    ),
+    (lambda: indicated(peak_pressure="-1 bar"), "Engine.peak_pressure = '-1 bar': must be positive", "150 bar"),
+    (
+        lambda: indicated(peak_pressure="100 bar"),
+        "Engine.peak_pressure = '100 bar': is below the 124 bar to which compression alone leads",
+        "check compression_ratio",
+    ),
+    (
+        lambda: indicated(mean_indicated_pressure="3 bar"),
+        "Engine.mean_indicated_pressure = '3 bar': is less than the",
+        "give the peak_pressure",
+    ),
+    (
+        lambda: indicated(mean_indicated_pressure="900 bar"),
+        "Engine.mean_indicated_pressure = '900 bar': is more than the",
+        "give the peak_pressure",
+    ),
+    (lambda: engine(damping_rule="archer"), "Engine.damping_rule = 'archer': is no rule", 'write "mendes"'),
+    (
+        lambda: engine(damping_rule="mendes", loss_factor=0.1),
+        "Engine.damping_rule = 'mendes': conflicts with loss_factor",
+        "leave one",
+    ),
+    (
+        lambda: engine(throw_viscous_load=[1, 2]),
+        "Engine.throw_viscous_load = [1, 2]: must be one for all or 4",
+        "each throw",
     ),
     (lambda: engine(misfiring=5), "Engine.misfiring = 5: is not the number of a cylinder", "1 to 4"),
     (lambda: engine(misfiring=2, cut_out=2), "Engine.misfiring = 2: names a cylinder that is cut out", "leave one"),

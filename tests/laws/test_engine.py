@@ -265,7 +265,7 @@ def test_its_throws_are_elements_and_it_takes_their_numbers_over():
 def test_what_it_cannot_state_dissolves_it_and_keeps_every_name():
     line = tn.Driveline([engine(gas_torque=GAS), tn.Shaft(stiffness=1e5), tn.Disk(inertia=9.0), tn.Disk(inertia=1.0)])
     assert line.names[-3:] == ("Shaft 1", "Disk 1", "Disk 2")
-    dissolved = line.replace("engine.throw 3", viscous_load=5.0)
+    dissolved = line.replace("engine.throw 3", drive_share=0.5)
     assert dissolved.names == line.names == dissolved.as_stated.names
     assert tn.loads(tn.dumps(dissolved)) == dissolved
     hung = tn.Driveline([*line.as_stated.elements, tn.Disk(inertia=1.0, after="engine", name="gear")])

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from cmath import phase
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import lru_cache
 from itertools import pairwise
 from math import isclose, pi
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
@@ -14,7 +12,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from trunnion.driveline.composite import Composite
 from trunnion.driveline.crank_throw import FORMULAS, CrankThrow, throw_stiffness
-from trunnion.driveline.cylinders import MOST_ORDERS, reciprocating_mass
+from trunnion.driveline.cylinder_torque import compression, cycles, for_several, gas, masses
 from trunnion.driveline.elements import Disk, Doubt, Element, not_negative, positive
 from trunnion.driveline.excitation import Excitation, Excitations
 from trunnion.driveline.pressure import PressureCurve, PressureCurves
@@ -33,6 +31,7 @@ from trunnion.driveline.quantities import (
     Maybe,
     OneOrSeveral,
     Pressure,
+    QuadraticLoad,
     Stiffness,
     Torque,
     optional,
@@ -53,12 +52,19 @@ CLOSED = 0.02
 """Share of its highest pressure by which the two ends of a curve may differ."""
 LOWEST_PEAK, HIGHEST_PEAK = 1e5, 1e8
 """Pressures [Pa] between which that of a running cylinder reaches; beyond them the unit is doubted."""
-STEP = 0.25 * DEGREE
-"""Between the points of a curve that follows from volumes."""
-ROUNDING = 1e-12
-"""Share of the largest below which a harmonic is rounding."""
-DISTINCT = 1e-6
-"""Share of the largest mean torque by which those of two curves have to differ."""
+LOWEST_MEAN, HIGHEST_MEAN = 2e4, 8e6
+"""Mean indicated pressures [Pa] beyond which the unit is doubted."""
+DAMPING_RULES = {"mendes": 0.035}
+"""Loss factor of a crank by who used it: Mendes, Meirelles and Zampieri (2008) for one six-cylinder diesel of 105 mm
+bore, as openTorsion's example of that article has it; the article itself was not read."""
+LOADS = {
+    "throw_load_torque": "load_torque",
+    "throw_viscous_load": "viscous_load",
+    "throw_quadratic_load": "quadratic_load",
+}
+"""What auxiliaries take from a throw, and the key of its Disk."""
+GAS = ("gas_torque", "pressure", "mean_indicated_pressure")
+"""What gas torques are stated by, one of these."""
 CRANK = ("journal_diameter", "journal_length", "pin_diameter", "pin_length", "web_thickness", "web_width")
 """Dimensions that the stiffness of a throw follows from, besides the stroke."""
 _ORDER = 'write firing_order = "1-5-3-6-2-4", say'
@@ -124,7 +130,8 @@ class Engine(Composite):
         else dimensions of a throw [m], bores 0 by default, with its stroke and
     shear_modulus : G [Pa].
     stiffness_formula : "carter" or "ker wilson", see ``trunnion.driveline.crank_throw``; check your edition.
-    damping, loss_factor, loss_factor_frequency : of these shafts, as of a ``Shaft``.
+    damping, loss_factor, loss_factor_frequency : of these shafts, as of a ``Shaft``; or else
+    damping_rule : "mendes", the loss factor 0.035 of one published model of a six-cylinder diesel of 105 mm bore.
     rigid : all throws as one inertia.
     bore, stroke, rod_length : of a cylinder, and of its rod between the centres [m].
     reciprocating_mass : of a cylinder: piston, pin and the oscillating part of the rod [kg].
@@ -133,16 +140,23 @@ class Engine(Composite):
     pressure : or else its absolute pressure over the crank angle, a ``PressureCurve`` for each load, see
         ``read_pressure``. Mean torque and harmonics follow from the exact slider crank; between the loads harmonics are
         linear in the mean torque that a cylinder drives with, and refused beyond them. One curve holds at all loads.
+    mean_indicated_pressure : or else p_mi [Pa], rising with the load: gas torques of the ideal cycle with that work
+        (``trunnion.laws.indicated_cycle``; no table of others is used), one for all loads, or several, linear between
+        them. It needs compression_ratio, charge_pressure, polytropic_exponent and
+    peak_pressure : highest absolute pressure [Pa], one for all or one for each.
+    expansion_exponent : m of p Vᵐ = const after combustion; by default the polytropic_exponent.
     crankcase_pressure : behind the piston [Pa].
     orders : highest order of gas torques from curves, and of inertia torques.
     drive_share : of the engine, as of a Disk; its throws share it evenly.
     throw_load_torque : what a pump or another auxiliary takes from a throw [N m], positive where it resists; one for
         all or one for each. Cylinders drive it besides: gas torques stay those of the drive share.
+    throw_viscous_load, throw_quadratic_load : likewise by the speed [N m s/rad] and its square [N m s²/rad²].
     misfiring : number of a cylinder that does not fire, and whose gas is compressed and expands again.
     cut_out : number of a cylinder without any gas torque.
     compression : pressure in a cylinder that does not fire; or else
     compression_ratio, charge_pressure, polytropic_exponent : ε, absolute pressure [Pa] at the bottom dead centre and n
-        of p Vⁿ = const from there on. Without either, a misfire leaves no gas torque at all.
+        of p Vⁿ = const from there on; one charge for all or one for each mean indicated pressure. Without either, a
+        misfire leaves no gas torque at all.
 
     A misfire or cut-out leaves the mean torque as it is, and what the other cylinders do.
 
@@ -196,6 +210,9 @@ class Engine(Composite):
     loss_factor_frequency: Maybe[Frequency] = optional(
         default=None, description="at which the loss factor holds; by default at all"
     )
+    damping_rule: Annotated[
+        str | None, BeforeValidator(one_of(tuple(DAMPING_RULES), "is no rule", 'write "mendes"'))
+    ] = Field(default=None, description="a published loss factor of a crank, instead of loss_factor")
     rigid: bool = Field(default=False, description="all throws as one inertia")
     bore: Maybe[Length] = optional(default=None, description="of a cylinder")
     stroke: Maybe[Length] = optional(default=None, description="of its piston, twice the crank radius")
@@ -203,6 +220,15 @@ class Engine(Composite):
     reciprocating_mass: Maybe[Mass] = optional(default=None, description="of piston, pin and part of the rod")
     gas_torque: Excitations = optional(default=(), description="harmonics of the gas torque of one cylinder")
     pressure: PressureCurves = optional(default=(), description="of one cylinder, a curve for each load")
+    mean_indicated_pressure: Annotated[OneOrSeveral[Pressure], BeforeValidator(_one_or_each("18 bar"))] = optional(
+        default=(), description="of a cylinder, one for all loads or several that rise", json_schema_extra=_also_one
+    )
+    peak_pressure: Annotated[OneOrSeveral[Pressure], BeforeValidator(_one_or_each("150 bar"))] = optional(
+        default=(), description="highest absolute pressure; one for all, or one for each", json_schema_extra=_also_one
+    )
+    expansion_exponent: Maybe[Dimensionless] = optional(
+        default=None, description="after combustion; default: polytropic_exponent"
+    )
     crankcase_pressure: Pressure = optional(default=101325.0, description="absolute, behind the piston")
     orders: Dimensionless = optional(default=12.0, description="highest order of gas torques and inertia torques")
     drive_share: Dimensionless = optional(
@@ -212,11 +238,20 @@ class Engine(Composite):
         default=(), description="what auxiliaries take from a throw; one for all, or one for each",
         json_schema_extra=_also_one,
     )  # fmt: skip
+    throw_viscous_load: Annotated[OneOrSeveral[Damping], BeforeValidator(_one_or_each("2 N*m*s/rad"))] = optional(
+        default=(), description="the same over the speed", json_schema_extra=_also_one
+    )
+    throw_quadratic_load: Annotated[
+        OneOrSeveral[QuadraticLoad], BeforeValidator(_one_or_each("0.02 N*m*s^2/rad^2"))
+    ] = optional(default=(), description="the same over the square of the speed", json_schema_extra=_also_one)
     misfiring: WholeNumber = Field(default=None, description="number of the cylinder that does not fire")
     cut_out: WholeNumber = Field(default=None, description="number of the cylinder without gas torque")
     compression: PressureCurves = optional(default=(), description="pressure in a cylinder that does not fire")
     compression_ratio: Maybe[Dimensionless] = optional(default=None, description="instead, of its volumes")
-    charge_pressure: Maybe[Pressure] = optional(default=None, description="absolute, where compression begins")
+    charge_pressure: Annotated[OneOrSeveral[Pressure], BeforeValidator(_one_or_each("3 bar"))] = optional(
+        default=(), description="absolute, where compression begins; one for all, or one for each mean pressure",
+        json_schema_extra=_also_one,
+    )  # fmt: skip
     polytropic_exponent: Maybe[Dimensionless] = optional(default=None, description="of compression and expansion")
 
     @model_validator(mode="after")
@@ -226,7 +261,7 @@ class Engine(Composite):
         self._check_cylinder()
         self._check_not_firing()
         # Also the parts say what is wrong with what they are given: phases in time, damping stated twice.
-        _gas(self)
+        gas(self)
         return self
 
     def _check_order(self) -> None:
@@ -280,16 +315,22 @@ class Engine(Composite):
                 what = "throw" if key == "throw_inertia" else "shaft between two throws"
                 problem = f"must be one for all or {count}, one for each {what}"
                 raise InputError(problem, key=key, value=len(values))
-        if len(self.throw_load_torque) > 1 and len(self.throw_load_torque) != self.throws:
-            problem = f"must be one for all or {self.throws}, one for each throw"
-            raise InputError(problem, key="throw_load_torque", value=len(self.throw_load_torque))
+        for key in LOADS:
+            given = len(getattr(self, key))
+            if given > 1 and given != self.throws:
+                problem = f"must be one for all or {self.throws}, one for each throw"
+                raise InputError(problem, key=key, value=given)
         positive(self, "loss_factor_frequency")
         not_negative(self, "damping", "loss_factor", "drive_share")
+        for key in ("loss_factor", "damping"):
+            if self.damping_rule is not None and getattr(self, key):
+                value, remedy = self.damping_rule, "leave one of the two out"
+                raise InputError(f"conflicts with {key}", key="damping_rule", value=value, remedy=remedy)
         if self.loss_factor is not None and self.damping:
             raise InputError(
                 "conflicts with loss_factor", key="damping", value=self.damping, remedy="leave one of the two out"
             )
-        if self.loss_factor is None and self.loss_factor_frequency is not None:
+        if self.crank_loss_factor is None and self.loss_factor_frequency is not None:
             raise InputError("is needed with loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
 
     def _check_drawing(self, given: str) -> None:
@@ -331,9 +372,10 @@ class Engine(Composite):
         self._needs("pressure", "bore", "stroke", "rod_length")
         if not 1 <= self.orders <= HIGHEST_ORDER:
             raise InputError(f"must be from 1 to {HIGHEST_ORDER}", key="orders", value=self.orders, remedy="12, say")
-        if self.gas_torque and self.pressure:
+        stated = [key for key in GAS if getattr(self, key)]
+        if len(stated) > 1:
             remedy = "leave one of the two out"
-            raise InputError("conflicts with gas_torque", key="pressure", remedy=remedy)
+            raise InputError(f"conflicts with {stated[0]}", key=stated[1], remedy=remedy)
         if any(one.frequency is not None for one in self.gas_torque):
             raise InputError("repeats orders, not a frequency", key="gas_torque", remedy="write orders")
         for key in ("pressure", "compression"):
@@ -375,7 +417,7 @@ class Engine(Composite):
         if len(self.compression) > 1:
             raise InputError("must be one curve", key="compression", value=len(self.compression))
         numbers = ("compression_ratio", "charge_pressure", "polytropic_exponent")
-        given = [key for key in numbers if getattr(self, key) is not None]
+        given = [key for key in numbers if getattr(self, key) not in (None, ())]
         if given and self.compression:
             remedy = "leave one of the two out"
             raise InputError("conflicts with compression", key=given[0], value=getattr(self, given[0]), remedy=remedy)
@@ -383,16 +425,53 @@ class Engine(Composite):
             missing = next(key for key in numbers if key not in given)
             raise InputError(f"is needed with {given[0]}", key=missing, remedy=f"write {', '.join(numbers)}")
         self._needs("compression_ratio", "bore", "stroke", "rod_length")
+        self._check_cycles()
         self._needs("compression", "bore", "stroke", "rod_length")
         if self.compression_ratio is not None and not self.compression_ratio > 1:
             problem = "leaves no clearance volume, which is that of the stroke over compression_ratio - 1"
             remedy = "write compression_ratio = 14, say"
             raise InputError(problem, key="compression_ratio", value=self.compression_ratio, remedy=remedy)
-        positive(self, "charge_pressure", "polytropic_exponent")
+        positive(self, "polytropic_exponent")
+
+    def _check_cycles(self) -> None:
+        """Refuse mean indicated pressures that no cycle has."""
+        means = self.mean_indicated_pressure
+        for key in ("mean_indicated_pressure", "peak_pressure", "charge_pressure"):
+            values = getattr(self, key)
+            if any(not one > 0 for one in values):
+                remedy = f'write {key} = "{150 if key == "peak_pressure" else 15} bar", say'
+                raise InputError("must be positive", key=key, value=min(values), remedy=remedy)
+            if len(values) > 1 and len(values) != len(means):
+                problem = f"must be one for all or {len(means)}, one for each mean_indicated_pressure"
+                raise InputError(problem, key=key, value=len(values))
+        positive(self, "expansion_exponent")
+        if not means:
+            for key in ("peak_pressure", "expansion_exponent"):
+                self._needs(key, "mean_indicated_pressure")
+            return
+        self._needs("mean_indicated_pressure", "bore", "stroke", "rod_length")
+        self._needs(
+            "mean_indicated_pressure", "peak_pressure", "compression_ratio", "charge_pressure", "polytropic_exponent"
+        )
+        if any(b <= a for a, b in pairwise(means)):
+            remedy = "sort them; each once"
+            raise InputError("must rise", key="mean_indicated_pressure", value=list(means), remedy=remedy)
+        for mean, cycle in cycles(self):
+            if not cycle.peak >= cycle.compressed:
+                problem = f"is below the {_bar(cycle.compressed)} to which compression alone leads"
+                remedy = "check compression_ratio, charge_pressure and polytropic_exponent"
+                raise InputError(problem, key="peak_pressure", value=_bar(cycle.peak), remedy=remedy)
+            if not cycle.least <= mean <= cycle.most:
+                end, what = ("least", "less") if mean < cycle.least else ("most", "more")
+                problem = (
+                    f"is {what} than the {_bar(getattr(cycle, end))} that a peak of {_bar(cycle.peak)} gives at {end}"
+                )
+                remedy = "give the peak_pressure and charge_pressure of that load"
+                raise InputError(problem, key="mean_indicated_pressure", value=_bar(mean), remedy=remedy)
 
     def _needs(self, key: str, *needed: str) -> None:
         """Refuse what is stated without what it needs."""
-        missing = next((one for one in needed if getattr(self, one) is None), None)
+        missing = next((one for one in needed if getattr(self, one) in (None, ())), None)
         if getattr(self, key) not in (None, ()) and missing is not None:
             raise InputError(f"is needed with {key}", key=missing, remedy=f"write {', '.join(needed)}")
 
@@ -403,6 +482,10 @@ class Engine(Composite):
             yield ("pressure", problem, "check its unit: bar read as Pa, say")
         if peaks and max(peaks) > HIGHEST_PEAK:
             yield ("pressure", f"reaches {max(peaks) / 1e5:.4g} bar", "check its unit: Pa read as bar, say")
+        means = self.mean_indicated_pressure
+        if means and not LOWEST_MEAN <= min(means) <= max(means) <= HIGHEST_MEAN:
+            odd = min(means) if min(means) < LOWEST_MEAN else max(means)
+            yield ("mean_indicated_pressure", f"is {_bar(odd)}", "check its unit: Pa read as bar, or bar as Pa, say")
         if self.bank_angle is None:
             return
         for a, b in self.on_throws:
@@ -430,6 +513,11 @@ class Engine(Composite):
         return tuple(at[number] for number in range(1, count + 1))
 
     @property
+    def crank_loss_factor(self) -> float | None:
+        """Of the crank between two throws, as stated or by the rule."""
+        return self.loss_factor if self.damping_rule is None else DAMPING_RULES[self.damping_rule]
+
+    @property
     def throws(self) -> int:
         """How many the crank has."""
         return len(self.firing_order) if self.bank_angle is None else len(self.firing_order) // 2
@@ -443,12 +531,12 @@ class Engine(Composite):
     @property
     def mean_reciprocating_inertia(self) -> float:
         """Mean inertia [kg m²] that the reciprocating mass of one cylinder adds to its throw."""
-        return _masses(self)[1]
+        return masses(self)[1]
 
     @property
     def of_one_cylinder(self) -> tuple[Excitation, ...]:
         """Gas and inertia torques of one cylinder that fires, phases from its own top dead centre."""
-        return (*_gas(self), *_masses(self)[0])
+        return (*gas(self), *masses(self)[0])
 
     def throw_of(self, cylinder: int) -> int:
         """Number of the throw, or 1 of a rigid engine, that bears a cylinder."""
@@ -457,10 +545,11 @@ class Engine(Composite):
     def made_of(self, name: str) -> tuple[Element, ...]:
         """Disks and the Shafts between them."""
         inertias = self._each(self.throw_inertia, self.throws)
-        loads = self._each(self.throw_load_torque or (0.0,), self.throws)
+        loads = {own: self._each(getattr(self, key) or (0.0,), self.throws) for key, own in LOADS.items()}
         if self.rigid:
             every = tuple(range(1, len(self.firing_order) + 1))
-            crank = self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, sum(loads), self.after)
+            taken = {own: sum(one) for own, one in loads.items()}
+            crank = self._throw(f"{name}.crankshaft", sum(inertias), every, self.drive_share, taken, self.after)
             return (crank,)
         found: list[Element] = []
         share, stiffnesses = self.drive_share / self.throws, self.stiffnesses if self.throws > 1 else ()
@@ -468,12 +557,13 @@ class Engine(Composite):
             if j > 1:
                 found.append(
                     Shaft(
-                        stiffness=stiffnesses[j - 2], damping=self.damping, loss_factor=self.loss_factor,
+                        stiffness=stiffnesses[j - 2], damping=self.damping, loss_factor=self.crank_loss_factor,
                         loss_factor_frequency=self.loss_factor_frequency, name=f"{name}.crank {j - 1}-{j}",
                     )
                 )  # fmt: skip
             after = self.after if j == 1 else None
-            found.append(self._throw(f"{name}.throw {j}", inertia, cylinders, share, loads[j - 1], after))
+            taken = {own: one[j - 1] for own, one in loads.items()}
+            found.append(self._throw(f"{name}.throw {j}", inertia, cylinders, share, taken, after))
         return tuple(found)
 
     def refitted(self, name: str, elements: Sequence[Element]) -> Self | None:
@@ -485,16 +575,19 @@ class Engine(Composite):
             return None
         changes: dict[str, Any] = {}
         if self.rigid:
-            changes["throw_load_torque"] = (float(disks[0].load_torque), *[0.0] * (self.throws - 1))
+            for key, one in LOADS.items():
+                taken = float(getattr(disks[0], one))
+                changes[key] = (taken, *[0.0] * (self.throws - 1)) if taken else ()
         else:
             moved = [
                 was if new.inertia == old.inertia else was + float(new.inertia or 0) - float(old.inertia or 0)
                 for was, new, old in zip(inertias, disks, own, strict=True)
             ]
             changes["throw_inertia"] = _short(moved)
-            if any(new.load_torque != old.load_torque for new, old in zip(disks, own, strict=True)):
-                loads = [float(one.load_torque) for one in disks]
-                changes["throw_load_torque"] = _short(loads) if any(loads) else ()
+            for key, one in LOADS.items():
+                loads = [float(getattr(disk, one)) for disk in disks]
+                if loads != [float(getattr(disk, one)) for disk in own]:
+                    changes[key] = _short(loads) if any(loads) else ()
         stiffnesses = [float(one.stiffness or 0) for one in elements if isinstance(one, Shaft)]
         if stiffnesses and tuple(stiffnesses) != self.stiffnesses:
             changes |= dict.fromkeys((*CRANK, "journal_bore", "pin_bore", "shear_modulus", "stiffness_formula"))
@@ -510,29 +603,39 @@ class Engine(Composite):
         return tuple(values) * count if len(values) == 1 else tuple(values)
 
     def _throw(
-        self, name: str, inertia: float, cylinders: Sequence[int], share: float, load: float, after: str | None
+        self,
+        name: str,
+        inertia: float,
+        cylinders: Sequence[int],
+        share: float,
+        taken: dict[str, float],
+        after: str | None,
     ) -> Disk:
-        masses, mean = _masses(self)
+        inertial, mean = masses(self)
         silent = {self.misfiring, self.cut_out} & set(cylinders)
-        gas, angles = _gas(self), [self.firing_angles[c - 1] for c in cylinders]
+        angles = [self.firing_angles[c - 1] for c in cylinders]
         many = len(cylinders)
-        firing = tuple(_for_several(one, many) for one in gas)
-        every = (*firing, *masses)
+        firing = tuple(for_several(one, many) for one in gas(self))
+        every = (*firing, *inertial)
         shakes: dict[str, Any] = {"excitation": every, "firing_angles": angles} if every else {}
         if silent:
             found: list[Excitation] = []
             for cylinder, angle in zip(cylinders, angles, strict=True):
-                own = (*firing, *masses)
+                own = every
                 if cylinder == self.misfiring:
-                    own = (*_compression(self), *masses)
+                    own = (*(for_several(one, many) for one in compression(self)), *inertial)
                 elif cylinder == self.cut_out:
-                    own = masses
+                    own = inertial
                 found += [one.but(phase=one.phase - float(one.order or 0) * angle) for one in own]
             shakes = {"excitation": tuple(found)}
         return Disk(
-            name=name, after=after, inertia=inertia + many * mean, drive_share=share, load_torque=load,
-            **{key: value for key, value in shakes.items() if value},
+            name=name, after=after, inertia=inertia + many * mean, drive_share=share,
+            **{key: value for key, value in {**taken, **shakes}.items() if value},
         )  # fmt: skip
+
+
+def _bar(pressure: float) -> str:
+    return f"{pressure / 1e5:.4g} bar"
 
 
 def _short(values: Sequence[float]) -> Sequence[float]:
@@ -546,87 +649,3 @@ def _but_rounding(new: Element, made: Element) -> bool:
         return new.stated == made.stated
     alike = isclose(float(new.inertia or 0), float(made.inertia or 0), rel_tol=1e-12)
     return alike and {**new.stated, "inertia": made.inertia} == made.stated
-
-
-def _for_several(law: Excitation, cylinders: int) -> Excitation:
-    """The harmonic of one cylinder on a disk that bears several, by the mean torque of that disk."""
-    if law.share is not None:
-        return law.but(share=law.share / cylinders)
-    return law.but(torques=tuple(cylinders * one for one in law.torques)) if law.torques else law
-
-
-@lru_cache(maxsize=64)
-def _masses(engine: Engine) -> tuple[tuple[Excitation, ...], float]:
-    """Inertia torques of one cylinder, and the mean inertia of its masses."""
-    if engine.reciprocating_mass is None or engine.stroke is None or engine.rod_length is None:
-        return (), 0.0
-    orders = min(int(engine.orders), MOST_ORDERS)
-    found, mean = reciprocating_mass(engine.reciprocating_mass, engine.stroke / 2, engine.rod_length, orders)
-    largest = max(one.largest for one in found)
-    return tuple(one for one in found if abs(one.largest) > ROUNDING * largest), mean
-
-
-@lru_cache(maxsize=64)
-def _gas(engine: Engine) -> tuple[Excitation, ...]:
-    """Gas torques of one cylinder by its own mean torque."""
-    if not engine.pressure:
-        return engine.gas_torque
-    found = sorted((_torque(engine, one) for one in engine.pressure), key=lambda one: one[0])
-    means = [mean for mean, _ in found]
-    if any(b - a <= DISTINCT * max(map(abs, means)) for a, b in pairwise(means)):
-        remedy = "leave one of them out; what tells loads apart is their mean torque"
-        raise InputError("has two curves of the same mean torque", key="pressure", remedy=remedy)
-    orders = _orders(engine)
-    if len(found) == 1:
-        return _harmonics(orders, found[0][1])
-    table = [[harmonics[i] for _, harmonics in found] for i in range(len(orders))]
-    return tuple(
-        Excitation(order=k, torques=means, amplitudes=[abs(c) for c in row], phases=[phase(c) for c in row])
-        for k, row in zip(orders, table, strict=True)
-    )
-
-
-@lru_cache(maxsize=64)
-def _compression(engine: Engine) -> tuple[Excitation, ...]:
-    """Gas torques of a cylinder that does not fire."""
-    if engine.compression:
-        return _harmonics(_orders(engine), _torque(engine, engine.compression[0])[1])
-    ratio, charge, exponent = engine.compression_ratio, engine.charge_pressure, engine.polytropic_exponent
-    if ratio is None or charge is None or exponent is None or engine.stroke is None or engine.rod_length is None:
-        return ()
-    import numpy as np
-
-    from trunnion.laws.gas_torque import polytropic_pressure
-
-    angles = np.linspace(-engine.cycle / 2, engine.cycle / 2, round(engine.cycle / STEP) + 1)
-    found = polytropic_pressure(angles, engine.stroke / 2 / engine.rod_length, ratio, charge, exponent)
-    pressures = np.where(np.abs(angles) <= pi, found, charge)
-    return _harmonics(_orders(engine), _torque(engine, PressureCurve(angles=angles, pressures=pressures))[1])
-
-
-def _orders(engine: Engine) -> tuple[float, ...]:
-    """Orders per turn of what repeats with the cycle."""
-    step = 2 / engine.strokes
-    return tuple(step * n for n in range(1, int(engine.orders / step + 1e-9) + 1))
-
-
-def _harmonics(orders: Sequence[float], found: Sequence[complex]) -> tuple[Excitation, ...]:
-    pairs = zip(orders, found, strict=True)
-    return tuple(Excitation(order=k, amplitude=abs(c), phase=phase(c)) for k, c in pairs)
-
-
-def _torque(engine: Engine, curve: PressureCurve) -> tuple[float, tuple[complex, ...]]:
-    """Mean torque [N m] of one cylinder under a curve, and its harmonics."""
-    import numpy as np
-
-    from trunnion.laws.gas_torque import gas_harmonics
-
-    assert engine.bore is not None and engine.stroke is not None and engine.rod_length is not None
-    angles, pressures = np.array(curve.angles), np.array(curve.pressures) - engine.crankcase_pressure
-    if engine.closes(curve):
-        angles[-1], pressures[[0, -1]] = angles[0] + engine.cycle, (pressures[0] + pressures[-1]) / 2
-    else:
-        angles, pressures = np.append(angles, angles[0] + engine.cycle), np.append(pressures, pressures[0])
-    share, lever = engine.stroke / 2 / engine.rod_length, pi / 4 * engine.bore**2 * engine.stroke / 2
-    mean, harmonics = gas_harmonics(angles, pressures, share, np.array(_orders(engine)))
-    return lever * mean, tuple(complex(lever * c) for c in harmonics)

@@ -11,6 +11,8 @@ are Gauss quadratures over pieces so short that each is exact to rounding.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from trunnion.arrays import Array, Complex
@@ -38,20 +40,20 @@ def gas_harmonics(angles: Array, pressures: Array, share: float, orders: Array) 
     angles : of the curve [rad], rising over one cycle, first and last point a cycle apart.
     orders : per turn, with a whole number of periods in the cycle.
     """
-    cycle = angles[-1] - angles[0]
-    pieces = np.maximum(np.ceil(np.diff(angles) / LONGEST), 1).astype(int)
-    begin = np.repeat(angles[:-1], pieces)
-    size = np.repeat(np.diff(angles) / pieces, pieces)
+    return harmonics_between(angles, lambda at: np.interp(at, angles, pressures), share, orders)
+
+
+def harmonics_between(
+    knots: Array, pressure: Callable[[Array], Array], share: float, orders: Array
+) -> tuple[float, Complex]:
+    """The same for a pressure that is smooth between ``knots`` [rad], rising over one cycle."""
+    cycle = knots[-1] - knots[0]
+    pieces = np.maximum(np.ceil(np.diff(knots) / LONGEST), 1).astype(int)
+    begin = np.repeat(knots[:-1], pieces)
+    size = np.repeat(np.diff(knots) / pieces, pieces)
     begin = begin + size * (np.arange(len(begin)) - np.repeat(np.cumsum(pieces) - pieces, pieces))
     points, weights = np.polynomial.legendre.leggauss(POINTS)
     at = (begin[:, None] + size[:, None] * (points + 1) / 2).ravel()
-    torque = np.interp(at, angles, pressures) * crank_lever(at, share)
+    torque = pressure(at) * crank_lever(at, share)
     parts = torque * (size[:, None] * weights / 2).ravel()
     return float(parts.sum() / cycle), np.asarray(2 / cycle * (np.exp(-1j * np.outer(orders, at)) @ parts))
-
-
-def polytropic_pressure(angle: Array, share: float, ratio: float, charge: float, exponent: float) -> Array:
-    """Pressure [Pa] of a charge that is compressed and expands again, without combustion: p Vⁿ stays what it is at the
-    bottom dead centre. ``ratio`` is the compression ratio ε, the clearance volume V_s/(ε − 1)."""
-    volume = 1 / (ratio - 1) + piston_depth(angle, share) / 2
-    return np.asarray(charge * ((1 + 1 / (ratio - 1)) / volume) ** exponent)

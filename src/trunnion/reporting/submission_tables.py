@@ -232,7 +232,29 @@ def _engine(name: str, engine: Engine) -> dict[str, object]:
         "stroke [mm]": millimetres(engine.stroke),
         "rod [mm]": millimetres(engine.rod_length),
         "reciprocating mass [kg]": np.nan if mass is None else float(mass),
+        "gas torque by": _gas(engine),
+        "crank stiffness by": "as stated" if engine.stiffness_of_throw is None else engine.stiffness_formula.title(),
+        "crank damping by": _damping(engine),
     }
+
+
+def _gas(engine: Engine) -> str:
+    """What the gas torque follows from."""
+    if engine.mean_indicated_pressure:
+        means = ", ".join(four(one / 1e5) for one in engine.mean_indicated_pressure)
+        return f"the ideal cycle of mean indicated pressure {means} bar; no table"
+    if engine.pressure:
+        count = len(engine.pressure)
+        return f"{count} pressure curves over load" if count > 1 else "a pressure curve, at all loads"
+    return "harmonics as stated" if engine.gas_torque else "none"
+
+
+def _damping(engine: Engine) -> str:
+    """What damps the crank between its throws, and whose number it is."""
+    if engine.damping_rule is not None:
+        return f"loss factor {four(engine.crank_loss_factor or 0.0)} after {engine.damping_rule.title()}"
+    stated = engine.damping or engine.loss_factor
+    return "as stated" if stated else "none stated"
 
 
 def powers(contents: SubmissionContents) -> Table:
@@ -252,7 +274,7 @@ def powers(contents: SubmissionContents) -> Table:
 
 
 def shafts(contents: SubmissionContents) -> Table:
-    """LargestTorque torques of every spring beside the limits stated for it."""
+    """Largest torques of every spring beside the limits stated for it."""
     words, several = Words(contents.seen.unit), len(contents.cases) > 1
     return Table.of(
         {

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from published.cases import chains, chaos, damping, forced, joints, mathieu, papers
+from published.cases import chains, chaos, damping, engines, forced, joints, mathieu, papers
 from published.printed_numbers import Batch, Source
 
 KINDS = {
     "Free vibration": chains,
     "Forced vibration": forced,
+    "Engines": engines,
     "Dampers and fatigue": damping,
     "Joints": joints,
     "Parametric stability": mathieu,

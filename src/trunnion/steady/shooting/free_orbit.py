@@ -39,7 +39,7 @@ from trunnion.systems.system import System
 BESIDE = 1e-5
 """Step of differences by the mean speed, over it."""
 SMALL = 1e-3
-"""Step of differences by the drives' torque, over the one that counts as one: that one bends the motion, so that Newton's
+"""Step of differences by the drives' torque, over the one that counts as one: over that the motion bends, and Newton's
 steps would gain a digit or two each."""
 
 
