@@ -12,7 +12,9 @@ STARTERS = {
     "three-shaft": "two Hooke's joints with forks in line, which cancel each other's irregularity",
     "electric-drive": "a pump on an asynchronous motor, which finds its own speed",
     "ship": "six-cylinder engine with viscous damper, flexible coupling, gear and propeller",
+    "two-stroke": "six-cylinder engine that drives its propeller directly, with a barred speed range",
     "rolling-mill": "stand of a strip mill: pinion stand, two spindles, rolls in a loop that the strip closes",
+    "passenger-car": "four-cylinder engine with dual-mass flywheel, gearbox, differential, tyres and car",
     "truck": "one-piece propeller shaft with final drive, axle shafts and vehicle",
 }
 """Name and one line about each."""
