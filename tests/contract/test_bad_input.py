@@ -562,17 +562,17 @@ PYTHON = [
     (lambda: indicated(peak_pressure="-1 bar"), "Engine.peak_pressure = '-1 bar': must be positive", "150 bar"),
     (
         lambda: indicated(peak_pressure="100 bar"),
-        "Engine.peak_pressure = '100 bar': is below the 124 bar to which compression alone leads",
+        "Engine.peak_pressure = '100 bar': has 100 bar, below the 124 bar of compression alone",
         "check compression_ratio",
     ),
     (
         lambda: indicated(mean_indicated_pressure="3 bar"),
-        "Engine.mean_indicated_pressure = '3 bar': is less than the",
+        "Engine.mean_indicated_pressure = '3 bar': has 3 bar, less than the",
         "give the peak_pressure",
     ),
     (
         lambda: indicated(mean_indicated_pressure="900 bar"),
-        "Engine.mean_indicated_pressure = '900 bar': is more than the",
+        "Engine.mean_indicated_pressure = '900 bar': has 900 bar, more than the",
         "give the peak_pressure",
     ),
     (lambda: engine(damping_rule="archer"), "Engine.damping_rule = 'archer': is no rule", 'write "mendes"'),

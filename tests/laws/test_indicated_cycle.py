@@ -69,7 +69,7 @@ def harmonic(pressure, corner, order, cycle=4 * np.pi):
     def part(turned):
         knots = sorted({-cycle / 2, -np.pi, -0.3, 0.0, corner, 0.6 + corner, np.pi, cycle / 2})
         return sum(
-            quad(lambda x: (pressure(x) - AIR) * lever(x) * turned(order * x), a, b, epsabs=1e-9, epsrel=1e-13)[0]
+            quad(lambda x: (pressure(x) - AIR) * lever(x) * turned(order * x), a, b, epsabs=1e-4, epsrel=1e-12)[0]
             for a, b in zip(knots, knots[1:], strict=False)
         )
 

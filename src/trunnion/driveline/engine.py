@@ -458,14 +458,13 @@ class Engine(Composite):
             raise InputError("must rise", key="mean_indicated_pressure", value=list(means), remedy=remedy)
         for mean, cycle in cycles(self):
             if not cycle.peak >= cycle.compressed:
-                problem = f"is below the {_bar(cycle.compressed)} to which compression alone leads"
+                problem = f"has {_bar(cycle.peak)}, below the {_bar(cycle.compressed)} of compression alone"
                 remedy = "check compression_ratio, charge_pressure and polytropic_exponent"
                 raise InputError(problem, key="peak_pressure", value=_bar(cycle.peak), remedy=remedy)
             if not cycle.least <= mean <= cycle.most:
                 end, what = ("least", "less") if mean < cycle.least else ("most", "more")
-                problem = (
-                    f"is {what} than the {_bar(getattr(cycle, end))} that a peak of {_bar(cycle.peak)} gives at {end}"
-                )
+                problem = f"has {_bar(mean)}, {what} than the {_bar(getattr(cycle, end))} that a peak of"
+                problem += f" {_bar(cycle.peak)} gives at {end}"
                 remedy = "give the peak_pressure and charge_pressure of that load"
                 raise InputError(problem, key="mean_indicated_pressure", value=_bar(mean), remedy=remedy)
 
