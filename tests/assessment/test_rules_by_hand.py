@@ -66,6 +66,12 @@ def test_ratings_that_are_not_stated_are_named():
     assert check.status is Status.NOT_APPLICABLE and check.because == "coupling states no heat_rating"
 
 
+def test_a_coupling_without_ratings_is_said_once():
+    (check,) = [one for one in tn.assess(pumped(), (150.0, 150.0)).checks if "rating" in one.name]
+    assert check.name == "ratings of coupling" and check.status is Status.NOT_APPLICABLE
+    assert check.because == "coupling states no nominal_torque, maximum_torque, vibratory_torque or heat_rating"
+
+
 @pytest.mark.parametrize(
     ("rpm", "degrees"),
     [

@@ -7,14 +7,13 @@ from collections.abc import Iterator, Sequence
 from functools import lru_cache
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from trunnion.driveline.cylinders import MOST_ORDERS, reciprocating_mass
 from trunnion.driveline.excitation import Excitation
 from trunnion.errors import InputError
 
 if TYPE_CHECKING:
-    from trunnion.driveline.engine import Engine
     from trunnion.driveline.pressure import PressureCurve
     from trunnion.laws.indicated_cycle import IndicatedCycle
 
@@ -26,6 +25,46 @@ _Torque = tuple[float, tuple[complex, ...]]
 """Mean torque [N m] of one cylinder, and its harmonics."""
 
 
+class Cylinders(Protocol):
+    """What of an ``Engine`` its cylinders are known by; units as there."""
+
+    @property
+    def strokes(self) -> int: ...
+    @property
+    def cycle(self) -> float: ...
+    @property
+    def orders(self) -> float: ...
+    @property
+    def bore(self) -> float | None: ...
+    @property
+    def stroke(self) -> float | None: ...
+    @property
+    def rod_length(self) -> float | None: ...
+    @property
+    def reciprocating_mass(self) -> float | None: ...
+    @property
+    def gas_torque(self) -> tuple[Excitation, ...]: ...
+    @property
+    def pressure(self) -> tuple[PressureCurve, ...]: ...
+    @property
+    def compression(self) -> tuple[PressureCurve, ...]: ...
+    @property
+    def mean_indicated_pressure(self) -> tuple[float, ...]: ...
+    @property
+    def peak_pressure(self) -> tuple[float, ...]: ...
+    @property
+    def charge_pressure(self) -> tuple[float, ...]: ...
+    @property
+    def compression_ratio(self) -> float | None: ...
+    @property
+    def polytropic_exponent(self) -> float | None: ...
+    @property
+    def expansion_exponent(self) -> float | None: ...
+    @property
+    def crankcase_pressure(self) -> float: ...
+    def closes(self, curve: PressureCurve, /) -> bool: ...
+
+
 def for_several(law: Excitation, cylinders: int) -> Excitation:
     """The harmonic of one cylinder on a disk that bears several, by the mean torque of that disk."""
     if law.share is not None:
@@ -34,7 +73,7 @@ def for_several(law: Excitation, cylinders: int) -> Excitation:
 
 
 @lru_cache(maxsize=64)
-def masses(engine: Engine) -> tuple[tuple[Excitation, ...], float]:
+def masses(engine: Cylinders) -> tuple[tuple[Excitation, ...], float]:
     """Inertia torques of one cylinder, and the mean inertia of its masses."""
     if engine.reciprocating_mass is None or engine.stroke is None or engine.rod_length is None:
         return (), 0.0
@@ -45,7 +84,7 @@ def masses(engine: Engine) -> tuple[tuple[Excitation, ...], float]:
 
 
 @lru_cache(maxsize=64)
-def gas(engine: Engine) -> tuple[Excitation, ...]:
+def gas(engine: Cylinders) -> tuple[Excitation, ...]:
     """Gas torques of one cylinder by its own mean torque."""
     if engine.mean_indicated_pressure:
         return _over_load(engine, _indicated(engine))
@@ -60,7 +99,7 @@ def gas(engine: Engine) -> tuple[Excitation, ...]:
 
 
 @lru_cache(maxsize=64)
-def compression(engine: Engine) -> tuple[Excitation, ...]:
+def compression(engine: Cylinders) -> tuple[Excitation, ...]:
     """Gas torques of a cylinder that does not fire."""
     if engine.compression:
         return _over_load(engine, [_torque(engine, engine.compression[0])])
@@ -75,7 +114,7 @@ def compression(engine: Engine) -> tuple[Excitation, ...]:
     return _over_load(engine, found)
 
 
-def cycles(engine: Engine) -> Iterator[tuple[float, IndicatedCycle]]:
+def cycles(engine: Cylinders) -> Iterator[tuple[float, IndicatedCycle]]:
     """Every mean indicated pressure [Pa] with its cycle; nothing is left out."""
     from trunnion.laws.indicated_cycle import IndicatedCycle
 
@@ -90,11 +129,11 @@ def cycles(engine: Engine) -> Iterator[tuple[float, IndicatedCycle]]:
         yield mean, IndicatedCycle(ratio, charge, exponent, expansion, peak)
 
 
-def _indicated(engine: Engine) -> list[_Torque]:
+def _indicated(engine: Cylinders) -> list[_Torque]:
     return [_of_cycle(engine, cycle, cycle.cut_off(mean)) for mean, cycle in cycles(engine)]
 
 
-def _of_cycle(engine: Engine, cycle: IndicatedCycle, cut_off: float) -> _Torque:
+def _of_cycle(engine: Cylinders, cycle: IndicatedCycle, cut_off: float) -> _Torque:
     import numpy as np
 
     share, lever = _crank(engine)
@@ -103,19 +142,19 @@ def _of_cycle(engine: Engine, cycle: IndicatedCycle, cut_off: float) -> _Torque:
     return lever * mean, tuple(complex(lever * c) for c in found)
 
 
-def _crank(engine: Engine) -> tuple[float, float]:
+def _crank(engine: Cylinders) -> tuple[float, float]:
     """λ = r/l, and what a pressure is multiplied by to be a torque, A r [m³]."""
     assert engine.bore is not None and engine.stroke is not None and engine.rod_length is not None
     return engine.stroke / 2 / engine.rod_length, pi / 4 * engine.bore**2 * engine.stroke / 2
 
 
-def _orders(engine: Engine) -> tuple[float, ...]:
+def _orders(engine: Cylinders) -> tuple[float, ...]:
     """Orders per turn of what repeats with the cycle."""
     step = 2 / engine.strokes
     return tuple(step * n for n in range(1, int(engine.orders / step + 1e-9) + 1))
 
 
-def _over_load(engine: Engine, found: Sequence[_Torque]) -> tuple[Excitation, ...]:
+def _over_load(engine: Cylinders, found: Sequence[_Torque]) -> tuple[Excitation, ...]:
     """Harmonics of every order, over the mean torque where there are several."""
     orders = _orders(engine)
     if len(found) == 1:
@@ -129,7 +168,7 @@ def _over_load(engine: Engine, found: Sequence[_Torque]) -> tuple[Excitation, ..
     )
 
 
-def _torque(engine: Engine, curve: PressureCurve) -> _Torque:
+def _torque(engine: Cylinders, curve: PressureCurve) -> _Torque:
     """Under a curve."""
     import numpy as np
 

@@ -28,6 +28,7 @@ from trunnion.design.assessment.measures import (
 )
 from trunnion.design.assessment.response_curve import WHOLE, course
 from trunnion.driveline.dampers import Damper
+from trunnion.driveline.elements import Element
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.quantities import LENGTH, POWER, TORQUE, shown
 
@@ -60,17 +61,25 @@ LIMITED = {"vibratory_torque": "T_KW/S_t"}
 def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """Every rating that a coupling, a damper or a pendulum states."""
     for name, element in subject.line.parts:
+        stated = [key for key in element.ratings if getattr(element, key) is not None]
+        if len(element.ratings) > 1 and not stated:
+            why = f"{name} states no {', '.join(element.ratings[:-1])} or {element.ratings[-1]}"
+            yield Check(f"ratings of {name}", Status.NOT_APPLICABLE, _rule(element, element.ratings[0]), why)
+            continue
         for key in element.ratings:
-            rating = getattr(element, key)
-            title, rule = rating_name(name, key), Rule(FORMULAS[key], SOURCE, "known", "din-740")
-            if isinstance(element, Damper | CentrifugalPendulum):
-                rule = OF_DAMPERS if isinstance(element, Damper) else OF_PENDULUMS
+            rating, title, rule = getattr(element, key), rating_name(name, key), _rule(element, key)
             if rating is None:
                 yield Check(title, Status.NOT_APPLICABLE, rule, f"{name} states no {key}")
             elif isinstance(case.answer, str):
                 yield unanswered(subject, case, title, rule)
             else:
                 yield _rated(subject, case, name, key, rating, rule)
+
+
+def _rule(element: Element, key: str) -> Rule:
+    if isinstance(element, Damper):
+        return OF_DAMPERS
+    return OF_PENDULUMS if isinstance(element, CentrifugalPendulum) else Rule(FORMULAS[key], SOURCE, "known", "din-740")
 
 
 def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str, rating: float, rule: Rule) -> Check:
