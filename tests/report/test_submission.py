@@ -13,7 +13,9 @@ import trunnion as tn
 from trunnion.cli.program import app
 from trunnion.equations.coefficients import assemble
 from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
+from trunnion.reporting.submission_tables import excitations
 
 TEXT = """
 format = 1
@@ -276,3 +278,47 @@ def test_what_stands_still_has_no_node_beside_it_and_lines_without_springs_are_d
     assert nodes == [1, 2]
     alone = tn.Driveline([tn.Disk(inertia=1.0, drive_share=1.0, viscous_load=1.0)])
     assert "Torsional vibration calculation" in tn.submission(alone, speed="900 rpm").html
+
+
+INDICATED = """
+bore = "130 mm"
+stroke = "150 mm"
+rod_length = "250 mm"
+mean_indicated_pressure = ["2 bar", "20 bar"]
+peak_pressure = ["75 bar", "160 bar"]
+charge_pressure = ["1.5 bar", "3 bar"]
+compression_ratio = 15
+polytropic_exponent = 1.35
+"""
+
+
+def test_a_signer_reads_what_cylinders_do_at_the_operating_speed_and_out_of_work() -> None:
+    """Harmonics of one cylinder at the mean torque it drives with, interpolated here; cut out beside misfiring; what is
+    exceeded then stands on the first sheet; what gas torque, stiffness and damping follow from; sheets are numbered."""
+    gas = ENGINE.split("gas_torque = ")[1].split("\n")[0]
+    text = ENGINE.replace(f"gas_torque = {gas}\n", "").replace("MORE", "").replace("OWN", INDICATED)
+    line = tn.loads(text.replace('speed_range = ["700 rpm", "1000 rpm"]', 'speed_range = ["900 rpm", "901 rpm"]'))
+    made = tn.submission(line)
+    ways = [str(one) for one in made.contents.misfiring]
+    assert ways == [f"cylinder {n} of main.engine, {how}" for how in ("misfiring", "cut out") for n in (1, 2, 3, 4)]
+    engine = line.as_stated.elements[0]
+    torque = 0.03 * (30 * np.pi) ** 2 / 4
+    rows = {row[1]: row for row in excitations(made.contents).rows if row[0].startswith("main.engine")}
+    for one in engine.of_one_cylinder:
+        ends = np.array(one.amplitudes) * np.exp(1j * np.array(one.phases))
+        there = ends[0] + (torque - one.torques[0]) / (one.torques[1] - one.torques[0]) * (ends[1] - ends[0])
+        size, phase = (float(text.replace("−", "-")) for text in rows[f"order {one.order:g}"][4:])
+        assert size == pytest.approx(abs(there), rel=6e-4) and phase == pytest.approx(
+            np.angle(there, deg=True), abs=0.06
+        )
+    over = sorted({check.name for one in made.contents.misfiring for check in one.checks if check.exceeded})
+    first = made.html.split('id="first"')[1].split("</section>")[0]
+    assert over and "With one cylinder out of work exceeded: " in first and all(name in first for name in over)
+    assert "the ideal cycle of mean indicated pressure 2, 20 bar; no table" in made.html
+    assert "counter(page)" in made.html
+    torques = made.html.split('id="malfunction"')[1]
+    assert "one misfiring [N" in torques and "one cut out [N" in torques
+
+
+def test_words_in_a_style_sheet_end_nothing() -> None:
+    assert in_css('a"}</style>') == r"a\000022\00007d\00003c\00002fstyle\00003e"

@@ -537,6 +537,11 @@ class Engine(Composite):
         """Gas and inertia torques of one cylinder that fires, phases from its own top dead centre."""
         return (*gas(self), *masses(self)[0])
 
+    @property
+    def compresses(self) -> bool:
+        """Whether a cylinder that misfires keeps a gas torque, that of its compression."""
+        return bool(compression(self))
+
     def throw_of(self, cylinder: int) -> int:
         """Number of the throw, or 1 of a rigid engine, that bears a cylinder."""
         return 1 if self.rigid else next(j for j, there in enumerate(self.on_throws, start=1) if cylinder in there)

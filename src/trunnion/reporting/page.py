@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from trunnion.reporting.tables import with_signs
+from trunnion.reporting.tables import TIED, with_signs
 from trunnion.writing import written_whole
 
 
@@ -40,4 +41,16 @@ def environment(*parts: str) -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["signs"] = with_signs
+    environment.filters["tied"] = tied
+    environment.filters["in_css"] = in_css
     return environment
+
+
+def tied(head: str) -> str:
+    """A column head whose unit in brackets stays on one line."""
+    return re.sub(r"\[[^\]]*\]", lambda unit: unit[0].replace(" ", TIED), head)
+
+
+def in_css(text: str) -> str:
+    """Text as a string of a style sheet holds it: whatever is no letter or digit escaped, so that it ends nothing."""
+    return "".join(one if one.isascii() and one.isalnum() else f"\\{ord(one):06x}" for one in text)

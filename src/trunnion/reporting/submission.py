@@ -96,6 +96,8 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "description": seen.line.description or "",
         "verdict": seen.assessment.sentence,
         "status": str(seen.assessment.verdict).replace(" ", "-"),
+        "footer": _footer(seen.line),
+        "malfunction": tables.exceeded_by_malfunction(contents),
         "title_block": tables.title_block(seen.line.document, made.strftime("%Y-%m-%d")),
         "signatures": tables.signatures(seen.line.document),
         "particulars": tables.particulars(contents),
@@ -129,6 +131,13 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "digest": digest,
     }
     return environment().get_template("submission.html.j2").render(**facts)
+
+
+def _footer(line: Driveline) -> str:
+    """What every sheet says of the document."""
+    of = line.document
+    revision = f"revision {of.revision}" if of and of.revision else ""
+    return ", ".join(one for one in (of.number if of else "", revision, line.name or "Driveline") if one)
 
 
 def _mode_title(mode: HolzerTable) -> str:

@@ -16,6 +16,7 @@ from trunnion.design.assessment.assessment_input import LoadCaseResponse, with_t
 from trunnion.design.assessment.check import Check, worst
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.measures import torque_measures
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.silent_cylinders import SILENT, cylinders
 from trunnion.equations.coefficients import assemble
@@ -72,7 +73,7 @@ class ShaftTorque:
 
 @dataclass(frozen=True)
 class Malfunction:
-    """One cylinder out of work.
+    """One cylinder out of work, ``how``: "misfiring" or "cut out".
 
     vibratory: largest torque [N m] of every spring over range and load cases; checks: those of the response that
     decide; ended: what ended the search before it was done, "" where nothing did.
@@ -82,6 +83,10 @@ class Malfunction:
     vibratory: tuple[LargestTorque, ...]
     checks: tuple[Check, ...]
     ended: str
+    how: str = SILENT["misfiring"]
+
+    def __str__(self) -> str:
+        return f"{self.cylinder}, {self.how}"
 
 
 @dataclass(frozen=True)
@@ -123,7 +128,7 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
     normal = unless_refused("All cylinders firing", lambda: _vibratory(firing)) if firing else None
     misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, firing, progress)))
     left_out += [f"Torques{case.suffix}: searched in part, {why}" for case in cases for why in {*case.ended_by}]
-    left_out += [f"Misfire of {one.cylinder}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
+    left_out += [f"Malfunction, {one}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
     return SubmissionContents(
         seen=seen,
         campbell=campbell,
@@ -221,21 +226,26 @@ def _vibratory(cases: tuple[LoadCaseResponse, ...]) -> tuple[LargestTorque, ...]
 def _misfiring(
     seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
 ) -> Iterator[Malfunction]:
-    """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds."""
-    every = tuple(cylinders(seen.line.as_stated.parts))
-    for done, one in enumerate(every if firing else (), start=1):
+    """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds. Cut out as
+    well where a misfire leaves the gas torque of compression, which is then gone."""
+    parts = seen.line.as_stated.parts
+    compressing = {name for name, one in parts if isinstance(one, Engine) and one.compresses}
+    every = [("misfiring", one) for one in cylinders(parts)] if firing else []
+    every += [("cut_out", one) for one in cylinders(parts, "cut_out") if one.owner in compressing] if firing else []
+    for done, (key, one) in enumerate(every, start=1):
         called = one.owner if one.alone else f"cylinder {one.number} of {one.owner}"
-        failing = tuple(_with_misfire(case, one.owner, one.number) for case in firing)
+        failing = tuple(_without(case, one.owner, key, one.number) for case in firing)
         found = weighed(worst(check for case in failing for check in of_response(seen.subject, case)), seen.operation)
         yield Malfunction(
             cylinder=called,
             vibratory=_vibratory(failing),
             checks=tuple(check for check in found if check.exceeded or check.satisfied or check.missing),
             ended="; ".join({why: None for case in failing for why in case.ended_by}),
+            how=SILENT[key],
         )
         if progress is not None:
             progress(done / len(every))
 
 
-def _with_misfire(case: LoadCaseResponse, name: str, number: int) -> LoadCaseResponse:
-    return replace(case, assembly=assemble(case.assembly.line.replace(name, misfiring=number)))
+def _without(case: LoadCaseResponse, name: str, key: str, number: int) -> LoadCaseResponse:
+    return replace(case, assembly=assemble(case.assembly.line.replace(name, **{key: number})))

@@ -6,12 +6,15 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.design.assessment.check import Check, Status
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
 from trunnion.driveline.title_block import TitleBlock
+from trunnion.equations.harmonics import disk_torques
+from trunnion.errors import InputError
 from trunnion.modes.mass_elastic import HolzerTable, masses, springs
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
@@ -23,6 +26,8 @@ EMPTY = "–"
 FIRST_CHECKS = 8
 """Checks on the first page, which is one sheet."""
 MOST_EXCITATIONS = 60
+ROUNDING = 1e-9
+"""Share of the largest below which a number is printed as nothing."""
 KIND_OF = {kind.unit: kind for kind in (ANGLE, TORQUE, PRESSURE, POWER, ACCELERATION, RATIO)}
 """Kinds of what checks compare, by the unit that they compare in."""
 VIBRATORY, PEAK, HEAT = "vibratory_torque", "max_torque", "heat rating"
@@ -75,11 +80,16 @@ def particulars(contents: SubmissionContents) -> Table:
 
 def _malfunction(contents: SubmissionContents) -> str:
     """How the checks end with a cylinder out of work, in a few words."""
-    over = dict.fromkeys(c.name for one in contents.misfiring for c in one.checks if c.exceeded)
+    over = exceeded_by_malfunction(contents)
     unknown = any(c.missing for one in contents.misfiring for c in one.checks)
     if over:
         return f"exceeded, see section 6: {', '.join(over)}"
     return "not all judged, see section 6" if unknown else "checks of torque satisfied, section 6"
+
+
+def exceeded_by_malfunction(contents: SubmissionContents) -> tuple[str, ...]:
+    """Names of the checks that a cylinder out of work exceeds."""
+    return tuple(dict.fromkeys(c.name for one in contents.misfiring for c in one.checks if c.exceeded))
 
 
 def _power(watts: float) -> str:
@@ -150,6 +160,9 @@ def spring_table(contents: SubmissionContents) -> Table:
 def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table, Table]:
     """Masses and springs of one mode, at ±1 mrad of the mass that moves most."""
     milli = 1e-3
+    amplitudes, inertial, between = (
+        _without_rounding(one) for one in (mode.amplitude, mode.inertia_torque, mode.torque)
+    )
     listed = masses(contents.seen.assembly)
     balance = [
         {
@@ -157,7 +170,7 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
             "relative amplitude": float(amplitude),
             "J ω² θ [N m]": milli * float(torque),
         }
-        for row, amplitude, torque in zip(listed, mode.amplitude, mode.inertia_torque, strict=True)
+        for row, amplitude, torque in zip(listed, amplitudes, inertial, strict=True)
     ]
     at = dict(mode.nodes)
     in_springs = [
@@ -166,37 +179,72 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
             "torque [N m]": milli * float(torque),
             "node": f"at {100 * at[row.name]:.0f} % of its twist" if row.name in at else "",
         }
-        for row, torque in zip(springs(contents.seen.assembly), mode.torque, strict=True)
+        for row, torque in zip(springs(contents.seen.assembly), between, strict=True)
     ]
     return Table.of(balance), Table.of(in_springs)
 
 
+def _without_rounding(values: Array) -> Array:
+    """Zero where a value is rounding beside the largest."""
+    return np.where(np.abs(values) > ROUNDING * np.abs(values).max(initial=0.0), values, 0.0)
+
+
 def excitations(contents: SubmissionContents) -> Table:
-    """Everything that excites: harmonics of disks, joints, meshes."""
-    rows = list(_excitations(contents))
+    """Everything that excites: harmonics of disks, joints, meshes; at the operating speed too, where there is one."""
+    rows, heads = list(_excitations(contents)), ["element", "excitation", "amplitude", "phase [°]"]
+    speed = contents.seen.speed
+    if speed:
+        there = Words(contents.seen.unit).speed(speed)
+        heads += [f"at {there} [N m]", f"phase at {there} [°]"]
     if len(rows) > MOST_EXCITATIONS:
         left = len(rows) - MOST_EXCITATIONS
-        rows = [*rows[:MOST_EXCITATIONS], ("", f"and {left} more, in the description", "", "")]
-    return Table(("element", "excitation", "amplitude", "phase [°]"), tuple(rows))
+        rows = [*rows[:MOST_EXCITATIONS], ("", f"and {left} more, in the description", "", "", "", "")]
+    return Table(tuple(heads), tuple(row[: len(heads)] for row in rows))
 
 
-def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str]]:
+def _at_speed(contents: SubmissionContents) -> dict[tuple[str, int], complex]:
+    """A e^{iφ} [N m] at the operating speed, by disk and number of the harmonic there; of one cylinder."""
+    seen, found = contents.seen, {}
+    if not seen.speed:
+        return {}
+    row = seen.assembly.table(1, seen.speed)
+    for one in disk_torques(seen.assembly):
+        if abs(one.cylinders) > ROUNDING:
+            try:
+                found[one.name, one.number] = complex(one.size(seen.assembly, row)[0] / one.cylinders)
+            except InputError:  # a table that does not hold the speed
+                continue
+    return found
+
+
+def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str, str, str]]:
     """Of every element as it is stated: of an engine what one cylinder does, in its own phase."""
+    sizes = _at_speed(contents)
     for name, element in contents.seen.line.as_stated.parts:
         several = isinstance(element, Engine) and len(element.firing_order) > 1
         called = f"{name}, each cylinder" if several else name
         shakes = element.of_one_cylinder if isinstance(element, Engine) else getattr(element, "excitation", ())
-        for one in shakes:
+        disk = _firing_throw(name, element) if isinstance(element, Engine) else name
+        for i, one in enumerate(shakes, start=1):
             phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
-            yield called, order_name(one.order or 0.0, one.frequency or 0.0), _size(one), phase
+            known = sizes.get((disk, i))
+            there = ("", "") if known is None else (four(abs(known)), four(float(np.rad2deg(np.angle(known)))))
+            yield called, order_name(one.order or 0.0, one.frequency or 0.0), _size(one), phase, *there
         if isinstance(element, Disk) and element.firing_angles:
             angles = ", ".join(four(float(np.rad2deg(angle))) for angle in element.firing_angles)
-            yield name, f"{len(element.firing_angles)} cylinders", "each as above", f"firing at {angles}"
+            yield name, f"{len(element.firing_angles)} cylinders", "each as above", f"firing at {angles}", "", ""
         if hasattr(element, "angle") and element.angle:
             angle = four(float(np.rad2deg(element.angle)))
             orders = getattr(element, "orders", ())
             counted = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
-            yield name, f"{element.kind}, {counted if orders else 'even'}", f"{angle}° bend", ""
+            yield name, f"{element.kind}, {counted if orders else 'even'}", f"{angle}° bend", "", "", ""
+
+
+def _firing_throw(name: str, engine: Engine) -> str:
+    """The first of its disks all of whose cylinders fire; "" where there is none."""
+    silent = {engine.throw_of(one) for one in (engine.misfiring, engine.cut_out) if one is not None}
+    made = [one for one in engine.made_of(name) if isinstance(one, Disk)]
+    return next((str(one.name) for j, one in enumerate(made, start=1) if j not in silent), "")
 
 
 def _size(one: Excitation) -> str:
@@ -213,16 +261,19 @@ def _size(one: Excitation) -> str:
 def engines(contents: SubmissionContents) -> Table | None:
     """Cylinder data of every engine, as stated."""
     found = [(name, one) for name, one in contents.seen.line.as_stated.parts if isinstance(one, Engine)]
-    return Table.of(_engine(name, one) for name, one in found) if found else None
+    if not found:
+        return None
+    across = Table.of(_engine(one) for _, one in found)
+    rows = tuple((head, *(row[i] for row in across.rows)) for i, head in enumerate(across.heads))
+    return Table(("", *(name for name, _ in found)), rows)
 
 
-def _engine(name: str, engine: Engine) -> dict[str, object]:
+def _engine(engine: Engine) -> dict[str, object]:
     def millimetres(length: float | None) -> float:
         return np.nan if length is None else 1e3 * length
 
     mass = engine.reciprocating_mass
     return {
-        "engine": name,
         "strokes": engine.strokes,
         "cylinders": len(engine.firing_order),
         "firing order": "-".join(map(str, engine.firing_order)),
@@ -310,15 +361,15 @@ def misfires(contents: SubmissionContents) -> Table:
     words = Words(contents.seen.unit)
 
     def row(s: int, spring: str) -> dict[str, object]:
-        worst = max(contents.misfiring, key=lambda one: one.vibratory[s].value)
-        top = worst.vibratory[s]
-        return {
-            "spring": spring,
-            "all firing [N m]": contents.firing[s].value,
-            "one misfiring [N m]": top.value,
-            "worst": worst.cylinder,
-            f"at [{words.unit}]": top.speed * words.factor,
-        }
+        found: dict[str, object] = {"spring": spring, "all firing [N m]": contents.firing[s].value}
+        for how in dict.fromkeys(one.how for one in contents.misfiring):
+            of_how = [one for one in contents.misfiring if one.how == how]
+            worst = max(of_how, key=lambda one: one.vibratory[s].value)
+            top = worst.vibratory[s]
+            found[f"one {how} [N m]"] = top.value
+            found[f"{how}, worst"] = worst.cylinder
+            found[f"{how}, at [{words.unit}]"] = top.speed * words.factor
+        return found
 
     return Table.of(row(s, shaft.spring) for s, shaft in enumerate(contents.shafts))
 
@@ -331,7 +382,7 @@ def misfire_checks(contents: SubmissionContents) -> Table:
         for check in one.checks:
             known = found.get(check.name)
             if known is None or _severity(check) < _severity(known[0]):
-                found[check.name] = check, one.cylinder
+                found[check.name] = check, str(one)
     ordered = sorted(found.values(), key=lambda one: _severity(one[0]))
     rows = [
         (str(c.status), c.name, c.margin_word, _speed(c.speed, words), *_sides(c, words), cylinder)
@@ -361,11 +412,19 @@ def crossings(contents: SubmissionContents) -> Table:
             "mode": one.mode,
             "frequency [Hz]": one.frequency * HERTZ.factor,
             "excitation": one.line.name,
-            "by": ", ".join(one.line.causes),
+            "by": ", ".join(_owners(contents, one.line.causes)),
             "amplification": one.amplification,
         }
         for one in found
     )
+
+
+def _owners(contents: SubmissionContents, names: Iterable[str]) -> dict[str, None]:
+    """Elements, each composite once for those of its parts that are among ``names``."""
+    owners = {
+        name: one.part_of for name, one in zip(contents.seen.line.names, contents.seen.line.elements, strict=True)
+    }
+    return dict.fromkeys(str(owners[name][0]) if owners.get(name) else name for name in names)
 
 
 def heats(contents: SubmissionContents) -> Table:
