@@ -575,7 +575,7 @@ PYTHON = [
         "Engine.mean_indicated_pressure = '900 bar': has 900 bar, more than the",
         "give the peak_pressure",
     ),
-    (lambda: engine(damping_rule="archer"), "Engine.damping_rule = 'archer': is no rule", 'write "mendes"'),
+    (lambda: engine(damping_rule="archer"), "Engine.damping_rule = 'archer': is not a rule", 'write "mendes"'),
     (
         lambda: engine(damping_rule="mendes", loss_factor=0.1),
         "Engine.damping_rule = 'mendes': conflicts with loss_factor",

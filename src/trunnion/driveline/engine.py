@@ -211,7 +211,7 @@ class Engine(Composite):
         default=None, description="at which the loss factor holds; by default at all"
     )
     damping_rule: Annotated[
-        str | None, BeforeValidator(one_of(tuple(DAMPING_RULES), "is no rule", 'write "mendes"'))
+        str | None, BeforeValidator(one_of(tuple(DAMPING_RULES), "is not a rule", 'write "mendes"'))
     ] = Field(default=None, description="a published loss factor of a crank, instead of loss_factor")
     rigid: bool = Field(default=False, description="all throws as one inertia")
     bore: Maybe[Length] = optional(default=None, description="of a cylinder")
