@@ -9,13 +9,15 @@ from generate.markdown import write
 
 TOP = Path(__file__).parents[2]
 PAGES = {
+    "README.md": "readme.md",
     "CHANGELOG.md": "changelog.md",
     "CONTRIBUTING.md": "contributing.md",
     "benchmarks/README.md": "benchmarks.md",
     "CODE_OF_CONDUCT.md": "code-of-conduct.md",
     "SECURITY.md": "security.md",
 }
-LINK = re.compile(r"\]\((?!https?:|#)([^)]*)\)")
+LINK = re.compile(r"\[([^\]]*)\]\((?!https?:|#)([^)]*)\)")
+"""Words and target."""
 
 
 def link(target: str, home: Path) -> str:
@@ -35,8 +37,8 @@ def turned(text: str, home: Path, up: str = "") -> str:
     """Links of a text written in folder ``home``, for a page ``up`` from ``docs``; what is not a page is named by its path."""
 
     def one(found: re.Match[str]) -> str:
-        page = link(found[1], home)
-        return f"]({up}{page})" if page else f"] (`{found[1]}`)"
+        page = link(found[2], home)
+        return f"[{found[1]}]({up}{page})" if page else f"{found[1]} (`{found[2]}`)"
 
     return LINK.sub(one, text)
 
@@ -45,14 +47,14 @@ def leaving(text: str, home: Path, up: str = "") -> str:
     """Of a page below ``docs``, only the links to files that are pages of the site though they stand elsewhere."""
 
     def one(found: re.Match[str]) -> str:
-        path, _, anchor = found[1].partition("#")
+        path, _, anchor = found[2].partition("#")
         wanted = (home / path).resolve()
         name = wanted.relative_to(TOP).as_posix() if wanted.is_relative_to(TOP) else ""
         if name not in PAGES:
             if wanted.is_relative_to(TOP / "docs") or not path:
                 return found[0]
-            return f"] (`{found[1]}`)"
-        return f"]({up}generated/{PAGES[name]}" + (f"#{anchor}" if anchor else "") + ")"
+            return f"{found[1]} (`{path.removeprefix('../')}`)"
+        return f"[{found[1]}]({up}generated/{PAGES[name]}" + (f"#{anchor}" if anchor else "") + ")"
 
     return LINK.sub(one, text)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from as_printed import ROOT
-from generate import api, elements, examples, player
+from generate import api, changelog, elements, examples, player
 
 import trunnion as tn
 from trunnion.driveline.kinds import KINDS
@@ -68,3 +68,15 @@ def test_the_line_on_the_home_page_is_that_of_its_verdict(tmp_path: Path) -> Non
     )
     home = (ROOT / "docs/index.md").read_text(encoding="utf-8")
     assert f"at {player.SPEED}, " in home and f"analyze {player.LINE}" in home
+
+
+def test_links_to_files_at_the_top_lead_to_their_pages_and_others_name_the_file() -> None:
+    docs = ROOT / "docs"
+    assert changelog.leaving("see [README](../README.md#start)", docs) == "see [README](generated/readme.md#start)"
+    assert changelog.leaving("a [recipe](../.ci/release) and [signs](conventions.md)", docs) == (
+        "a recipe (`.ci/release`) and [signs](conventions.md)"
+    )
+    text = "![A verdict](docs/images/verdict.png), [MIT](LICENSE), [how](docs/how-do-i.md#x), [out](https://a.example)"
+    assert changelog.turned(text, ROOT, "../") == (
+        "![A verdict](../images/verdict.png), MIT (`LICENSE`), [how](../how-do-i.md#x), [out](https://a.example)"
+    )
