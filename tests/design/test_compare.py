@@ -125,3 +125,11 @@ def test_what_has_no_bound_is_not_called_missing():
     speed = float(tn.natural_frequencies(undamped).frequency[0])
     found = tn.compare(undamped, line(joint={"angle": 0.4}), (0.98 * speed, 1.02 * speed))
     assert "margin of parametric stability: without bound → " in str(found)
+
+
+def test_a_number_that_is_left_out_stands_at_its_default() -> None:
+    """A fork offset and a damping that are taken away are zero; an excitation is none."""
+    a = line(front={"fork_offset": "90 deg"}, rear={"damping": 3.0})
+    b = line(front={"fork_offset": "0 deg"}, rear={"damping": 0.0})
+    said = [str(one) for one in changes(a, b)]
+    assert said == ["front, fork offset: 90 deg → 0 deg", "rear, damping: 3.0 N*m*s/rad → 0 N*m*s/rad"]

@@ -12,6 +12,7 @@ from trunnion.driveline.files import dumps
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS
 from trunnion.driveline.operation import Operation
+from trunnion.driveline.quantities import shown
 
 NOTHING = "none"
 WHOLE = ""
@@ -21,7 +22,8 @@ WHOLE = ""
 @dataclass(frozen=True)
 class Change:
     """One place that differs: the element ("" for the whole line, "limit of …", "operation"), the key as a reader says
-    it ("" where the element itself was added or removed), and both values as text with units, "none" where missing."""
+    it ("" where the element itself was added or removed), and both values as text with units, "none" where
+    missing."""
 
     element: str
     key: str
@@ -51,7 +53,7 @@ def changes(before: Driveline, after: Driveline) -> tuple[Change, ...]:
             continue
         for key in dict.fromkeys([*one, *two]):
             if one.get(key) != two.get(key):
-                found.append(Change(owner, key, one.get(key, NOTHING), two.get(key, NOTHING)))
+                found.append(Change(owner, key, *(table.get(key) or _left_out(table, key) for table in (one, two))))
     common = [name for name in before.names if name in after.names]
     moved = [name for name in after.names if name in before.names]
     if common != moved:
@@ -76,6 +78,17 @@ def _tables(line: Driveline) -> dict[str, dict[str, str]]:
         own |= {label_of(k): text_of(v, LIMIT_KINDS.get(k)) for k, v in table.items() if k != "of"}
     found[WHOLE] = {label_of(key): text_of(value, None) for key, value in data.items() if key != "format"}
     return found
+
+
+def _left_out(table: dict[str, str], label: str) -> str:
+    """What a key that an element does not state stands at: "0 deg", or "none"."""
+    model = KINDS.get(table.get("type", "").strip('"'))
+    if model is None:
+        return NOTHING
+    for key, field in model.model_fields.items():
+        if label_of(key) == label and isinstance(field.default, float) and (kind := model.quantity_of(key)):
+            return shown(field.default, kind)
+    return NOTHING
 
 
 def _running(key: str, value: Any) -> str:

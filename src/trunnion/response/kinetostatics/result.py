@@ -245,8 +245,8 @@ class Kinetostatics(Result):
                     f"slowest [{words.unit}]": float(slow) * words.factor,
                     f"fastest [{words.unit}]": float(fast) * words.factor,
                     "largest acceleration [rad/s^2]": float(largest(self.acceleration[s])),
-                    "least torque [N*m]": float(weak),
-                    "largest torque [N*m]": float(strong),
+                    "least torque [N*m]": float(weak) + 0.0,  # not -0
+                    "largest torque [N*m]": float(strong) + 0.0,
                     "largest twist [rad]": float(largest(self.twist[s])),
                 }
             )
