@@ -11,7 +11,7 @@ Parts = Sequence[tuple[str, Element]]
 
 
 def throws_of(name: str, parts: Parts) -> list[str]:
-    """The disks of the Engine called ``name``; none where it is no Engine."""
+    """The disks of the Engine called ``name``; none where it is not an Engine."""
     return [n for n, one in parts if isinstance(one, Rotor) and one.part_of is not None and one.part_of[0] == name]
 
 
