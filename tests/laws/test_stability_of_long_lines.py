@@ -12,7 +12,7 @@ from oracles.sampling import quick_only
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
-from trunnion.floquet.propagation import tree_mode_motion, tree_modes
+from trunnion.floquet.propagation import hill_line, tree_mode_motion, tree_modes, tree_propagation
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.floquet.ranges import exponents
@@ -85,8 +85,8 @@ def test_growth_where_modes_meet(order: int, real: bool) -> None:
     assert abs(radius - other.spectral_radius) <= found.error[0] + other.error_estimate
 
 
-def test_two_modes_that_are_one_count_as_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Their states are not independent, which no count of exponents would tell."""
+def test_two_modes_that_are_one_leave_states_to_be_carried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Followed twice, a mode counts once, and what it stands in the way of is found in time."""
     line = uniform(20, 0.05, 0.3)
 
     class Twice(tree_modes.HillLine):
@@ -95,21 +95,96 @@ def test_two_modes_that_are_one_count_as_not_found(monkeypatch: pytest.MonkeyPat
             value[3], shape[3] = value[4], shape[4]
             return value, shape
 
-        def lost(self, value: Any) -> Any:
-            return np.zeros(len(value), dtype=bool)
-
-    assert modes(line, SPEED) is not None
+    right = modes(line, SPEED)
     monkeypatch.setattr(tree_modes, "HillLine", Twice)
-    assert modes(line, SPEED) is None
+    found = modes(line, SPEED)
+    assert right.carried == 0 and found.carried == 4  # neither of the two is taken
+    apart = np.abs(found.multiplier[:, None] - right.multiplier)
+    assert (apart.min(axis=1) <= found.error).all() and (apart.min(axis=0) <= right.error).all()
+
+
+@pytest.mark.parametrize("angle, every", [(0.3, False), (0.3, True)])
+def test_states_carried_in_time_against_modes_and_the_period(
+    angle: float, every: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some beside most modes, whose parts are alike and modes close; all."""
+    elements: list[Any] = [tn.ConstantSpeed()]
+    for i in range(20):
+        elements += [tn.Shaft(stiffness=[2e5, 2e6][i % 4 == 0], damping=0.2), tn.Disk(inertia=[0.1, 1.0][i % 4 == 1])]
+        if i == 9:
+            elements.append(tn.HookeJoint(angle=angle))
+    line = tn.Driveline(elements)
+    monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: not every)
+    found, other = modes(line, SPEED), by_the_period(line, SPEED)
+    assert found.carried == 40 if every else found.carried < 40
+    apart = np.abs(found.multiplier[:, None] - other.multipliers)
+    bound = found.error[:, None] + other.multiplier_error
+    assert (apart <= bound).any(axis=1).all() and (apart <= bound).any(axis=0).all()
+    assert found.off < 1e-11 and found.error[0] < 1e-9
+
+
+def test_a_step_that_is_too_long_is_in_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The series then ends before it has converged, by more than rounding."""
+    line = uniform(20, 0.05, 0.3)
+    right = modes(line, SPEED)
+    monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: False)
+    monkeypatch.setattr(tree_propagation, "REACH", 8.0)
+    monkeypatch.setattr(tree_propagation, "CONVERGED", 1.0)
+    found = modes(line, SPEED)
+    off = np.abs(found.multiplier[:, None] - right.multiplier).min(axis=1)
+    assert off.max() > 1e-9 and (off <= found.error + right.error).all()
+
+
+@pytest.mark.parametrize("damping", [0.0, 0.05])
+def test_a_free_uniform_chain_has_the_multipliers_of_its_closed_form(damping: float) -> None:
+    """ω_k = 2 √(k/J) sin(kπ/2n), k = 0 … n − 1: the pair at 1 of its rigid rotation is set aside."""
+    n = 80
+    line = tn.Driveline(list(uniform(n, damping).elements[2:]))
+    found = tn.stability(line, SPEED)
+    root = 2 * np.sqrt(2e5 / 0.1) * np.sin(np.arange(1, n) * np.pi / (2 * n))
+    decay = damping / 2e5 * root**2 / 2
+    exponent = -decay + 1j * np.sqrt(root**2 - decay**2)
+    expected = np.exp(np.concatenate([exponent, exponent.conj(), [0, 0]]) * found.period / SPEED)
+    apart = np.abs(found.multipliers[:, None] - expected).min(axis=1)
+    assert (apart <= found.multiplier_error + 1e-13).all() and found.multiplier_error.max() < 1e-10
+    assert found.set_aside == 2 and found.verdict == (Verdict.STABLE if damping else Verdict.MARGINAL)
+    rotation, rate = np.split(found.floquet_modes, 2)
+    assert np.isfinite(rotation).all() and np.isfinite(rate).all()
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_a_long_free_line_with_a_mesh_and_a_ring_in_oil_against_the_period(loaded: bool) -> None:
+    """What turns as a whole, the ring by itself, and with a load by speed no longer the whole line's speed."""
+    elements: list[Any] = []
+    for i in range(22):
+        if i == 11:
+            wave = [{"share": 0.3, "order": 1, "phase": 0.5}]
+            elements.append(tn.GearPair(teeth_in=3, teeth_out=3, module=0.03, mesh_stiffness=5e7, mesh_damping=20.0,
+                                        stiffness_variation=wave))  # fmt: skip
+        elif i:
+            elements.append(tn.Shaft(stiffness=1e5 * (2 + np.sin(i * i)), damping=1.0))
+        load: dict[str, Any] = {0: {"drive_share": 1}, 20: {"viscous_load": 0.4}}.get(i, {}) if loaded else {}
+        elements.append(tn.Disk(inertia=0.1 * (1 + i % 3), **load))
+        if i == 5:
+            elements.append(tn.ViscousDamper(ring_inertia=0.05, damping=3.0))
+    line = tn.Driveline(elements)
+    found, other = tn.stability(line, SPEED), by_the_period(line, SPEED)
+    assert found.set_aside == other.set_aside and len(found.multipliers) == len(other.multipliers)
+    assert abs(found.spectral_radius - other.spectral_radius) <= found.error_estimate + other.error_estimate
+    apart = np.abs(found.multipliers[:, None] - other.multipliers)
+    bound = found.multiplier_error[:, None] + other.multiplier_error
+    assert (apart <= bound).any(axis=1).all() and (apart <= bound).any(axis=0).all()
+    assert found.error_estimate < 1e-8 and found.verdict == other.verdict
 
 
 def test_what_side_orders_leave_out_is_in_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
     """With a third of them, wrong by more than rounding and known to be."""
     line = uniform(20, 0.05, 0.6)
     right = np.abs(modes(line, 80.0).multiplier[0])
-    monkeypatch.setattr(tree_modes, "DECADES", 1.0)
-    monkeypatch.setattr(tree_modes, "WIDER", 0.0)
-    monkeypatch.setattr(tree_modes.HillLine, "_settled", _narrow(tree_modes.HillLine._settled))
+    monkeypatch.setattr(hill_line, "DECADES", 1.0)
+    monkeypatch.setattr(hill_line, "WIDER", 0.0)
+    monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: True)
+    monkeypatch.setattr(hill_line.HillLine, "_settled", _narrow(hill_line.HillLine._settled))
     found = modes(line, 80.0)
     assert 1e-12 < abs(np.abs(found.multiplier[0]) - right) < found.error[0]
 

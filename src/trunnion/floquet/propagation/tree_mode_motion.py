@@ -1,6 +1,6 @@
 """How one Floquet mode of a long line and its adjoint move over the period, from Hill's blocks along the tree.
 
-With s_h = λ + ihbΩ and A(λ) the blocks of ``tree_modes``, the mode is the right null vector, x = Σ X_h e^{s_h t}, and
+With s_h = λ + ihbΩ and A(λ) the blocks of ``hill_line``, the mode is the right null vector, x = Σ X_h e^{s_h t}, and
 its adjoint the left one, z = Σ Z_h e^{−s_h t}. As rows that go with the states (x, dx/dt) of M x″ + C x′ + K x = 0, M
 constant, the adjoint is
 
@@ -19,7 +19,7 @@ from trunnion.arrays import Complex
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeEntries, tree_matrices
-from trunnion.floquet.propagation.tree_modes import HillLine
+from trunnion.floquet.propagation.hill_line import HillLine
 from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.tree_blocks import TreeMatrix
 

@@ -28,7 +28,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
-from trunnion.floquet.propagation.tree_modes import LONGEST, FloquetModes, floquet_modes
+from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -258,22 +258,17 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
     forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
     turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
+    aside = rigid_motions(assembly.topology, coefficients)
     if assembly.topology.size >= LONG and not assembly.topology.graph:
         modes = floquet_modes(assembly.topology, coefficients, turns)
-        if modes is not None and (found := _of_modes(system, modes, forced, tolerance)) is not None:
+        if modes is not None and (found := _of_modes(system, modes, aside, forced, tolerance)) is not None:
             if found.verdict not in (Verdict.UNSTABLE, Verdict.UNDECIDED):
                 return found
             # Only what grows belongs to a resonance.
             motion = mode_motion(assembly.topology, coefficients, turns, complex(modes.exponent[0]))
             named = _named(motion, found.verdict, system.rate, frequency, sources(assembly), turns)
             return replace(found, resonance=named)
-        if assembly.topology.size > LONGEST:
-            raise ComputationError(
-                f"not all modes of {assembly.topology.size} unknowns are told apart at this speed, and matrices of the "
-                f"period are taken of up to {LONGEST}: change the speed a little, or join neighbouring parts"
-            )
     run = propagated(system, tolerance)
-    aside = rigid_motions(assembly.topology, coefficients)
     return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
 
 
@@ -376,7 +371,11 @@ def _judge(
 
 
 def _of_modes(
-    system: PeriodicLinearSystem, modes: FloquetModes, forced: Callable[[], LinearResponse], tolerance: float
+    system: PeriodicLinearSystem,
+    modes: FloquetModes,
+    aside: Array,
+    forced: Callable[[], LinearResponse],
+    tolerance: float,
 ) -> Stability | None:
     """Of the modes of a long line; None where they are known less well than asked."""
     radius, error = spectral_radius(modes.multiplier, modes.error)
@@ -384,10 +383,13 @@ def _of_modes(
     verdict = Verdict(int(verdicts(radius, error, undamped)))
     if modes.off > max(tolerance, ROUNDING * system.size):
         return None
+    ones, rigid = np.ones(aside.shape[1]), aside / np.abs(aside).max(axis=0, initial=0.0)
+    value = np.concatenate([modes.multiplier, ones])
+    order = np.argsort(-np.abs(value), kind="stable")
     return Stability(
-        multipliers=modes.multiplier,
-        multiplier_error=modes.error,
-        floquet_modes=modes.states,
+        multipliers=value[order],
+        multiplier_error=np.concatenate([modes.error, 0 * ones])[order],
+        floquet_modes=np.concatenate([modes.states, rigid], axis=1)[:, order],
         spectral_radius=float(radius),
         error_estimate=float(error),
         verdict=verdict,
@@ -397,7 +399,7 @@ def _of_modes(
         forced=forced,
         liouville_defect=modes.liouville_defect,
         names=system.names,
-        set_aside=0,
+        set_aside=aside.shape[1],
     )
 
 

@@ -2,7 +2,7 @@
 
 All speeds share the work. Up to ``LARGEST_DENSE`` unknowns the monodromy matrices come from exponentials in plain
 NumPy, so that nothing is compiled and stiff lines cost no more than soft ones; beyond that from the compiled chain
-kernel, and of driven lines of ``LONG`` unknowns and more from the modes, each by Hill's blocks.
+kernel, and of lines of ``LONG`` unknowns and more from the modes along the tree.
 Free–free lines with joint angles are taken about their own periodic motions.
 """
 
@@ -107,7 +107,7 @@ def stability_along(
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     if assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph:
         return _by_exponentials(assembly, table, statically_twisted)
-    if assembly.topology.size < LONG or assembly.topology.still:
+    if assembly.topology.size < LONG:
         return _by_kernel(assembly, co)
     return _by_modes(assembly, table, statically_twisted)
 
@@ -160,7 +160,7 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
 
 
 def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityOverSpeed:
-    """Speed by speed; where modes cannot be told apart, by the kernel."""
+    """Speed by speed; where that leaves more than the tolerance, by the kernel."""
     topo, period = assembly.topology, period_of(assembly)
     turns = require_period(assembly.line, topo)
     parts = []

@@ -1,0 +1,223 @@
+"""The equations of a long line at one speed over a period: Hill's blocks, modes followed by them, states in time.
+
+A free motion Re[e^{λt} Σ_h X_h e^{ihbΩt}] obeys A(λ) X = 0 (``ranges.exponents``). Every mode is followed from that of
+the line's mean matrices by inverse iteration,
+
+    A(λ) u = A′(λ) x,    λ − x*x/x*u,
+
+all of them together, in as many harmonics as the joints' spread asks for. Some may not settle, or be found twice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+
+import numpy as np
+
+from trunnion.arrays import Array, Complex, Flags, Integers
+from trunnion.equations.line_coefficients import LineCoefficients
+from trunnion.equations.topology import Topology
+from trunnion.equations.tree_matrices import TreeEntries, TreeMatrices, tree_matrices
+from trunnion.floquet.propagation.tree_propagation import SHORTER, TreePropagation, rounding
+from trunnion.steady.orders.sidebands import side_orders, spreads
+from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.waiting import keep_time
+
+DECADES, WIDER = 9.0, 4.0
+"""Side orders are taken until their shares fall below 10^−9; what is left out shows in those of four decades more."""
+STEPS = 8
+SETTLED = 1e-10
+"""Share of |λ| by which the last step may move it: the next would move it by the square of that."""
+MOST_NUMBERS = 1_500_000
+"""Complex numbers of a batch of modes."""
+LEAST = 1e-12
+"""Share of the largest squared frequency below which a mode turns as a whole."""
+SEEN, SURE = 8, 3.0
+"""States whose error is seen, mixtures where there are more, and the factor by which mixtures may show too little."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Exponents [1/s] (mode,), their rotation and its rate at τ = 0 (n, mode), and what they leave unbalanced,
+    Σ_h ‖r_h‖ in units of √mass (mode,)."""
+
+    value: Complex
+    rotation: Complex
+    rate: Complex
+    left: Array
+
+    def of(self, which: Flags) -> Found:
+        """Some of the modes."""
+        return Found(self.value[which], self.rotation[:, which], self.rate[:, which], self.left[which])
+
+    @staticmethod
+    def together(parts: list[Found]) -> Found:
+        """The modes of all ``parts``."""
+        keys = ("value", "rotation", "rate", "left")
+        return Found(*(np.concatenate([getattr(part, key) for part in parts], axis=-1) for key in keys))
+
+    @staticmethod
+    def nothing(n: int) -> Found:
+        """No mode of ``n`` unknowns."""
+        empty = np.zeros((n, 0), dtype=complex)
+        return Found(empty[0], empty, empty, np.zeros(0))
+
+
+class HillLine:
+    """Its equations over a period, in a narrow and a wide set of harmonics."""
+
+    def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction) -> None:
+        fall = spreads(topo, co, turns)
+        self.narrow, self.wide = (_harmonics(fall, decades) for decades in (DECADES, DECADES + WIDER))
+        times = 1 << int(np.ceil(np.log2(max(64, 4 * int(np.ptp(self.wide)) + 4))))
+        period = 2 * np.pi * float(turns)
+        matrices = tree_matrices(topo, co, period * np.arange(times) / times)
+        self.n, self.speed = topo.size, float(co.speed[0])
+        self.rate, self.time = self.speed / float(turns), period / self.speed
+        mass, damping = matrices.mass.own[:, 0], matrices.damping.own[:, 0]
+        self.root = np.sqrt(mass.mean(axis=1))
+        self.trace = float((damping / mass).mean(axis=1).sum()) * self.time
+        self.blocks = TreeHill(topo, matrices, np.zeros((1, len(topo.compliances))), np.array([self.rate]))
+        self._mean = [_mean(part, matrices) for part in (matrices.stiffness, matrices.damping)]
+
+    @cached_property
+    def _modes(self) -> tuple[Array, Array]:
+        """Squared frequencies (n,) and shapes (n, n) of the mean line without damping, in units of √mass."""
+        square, basis = np.linalg.eigh(self._mean[0] / (self.root[:, None] * self.root))
+        return square, basis
+
+    @cached_property
+    def _frequency(self) -> Array:
+        """In units of energy of the mean line's modes, undamped modes of a straight line are orthogonal. What turns as
+        a whole has that of the slowest vibration."""
+        square = np.abs(self._modes[0])
+        vibrates = square > LEAST * square.max()
+        return np.asarray(np.sqrt(np.where(vibrates, square, square[vibrates].min(initial=square.max()))))
+
+    @property
+    def mean_stiffness(self) -> Array:
+        """The symmetric part of K's mean over the period (n, n)."""
+        return self._mean[0]
+
+    @property
+    def places_left(self) -> int:
+        """Unknowns beside what varies, whose harmonics are eliminated together."""
+        return len(self.blocks.plan.left)
+
+    @cached_property
+    def _propagation(self) -> TreePropagation:
+        return TreePropagation(self.blocks)
+
+    @cached_property
+    def steps(self) -> int:
+        """Steps of a period in which states are carried."""
+        return self._propagation.steps(float(np.abs(self.starts()[0]).max()))
+
+    def starts(self) -> tuple[Complex, Complex]:
+        """Exponents (mode,) of the mean matrices, of each pair one, and shapes (mode, n), of what vibrates: damping
+        between undamped modes is left out."""
+        square, basis = self._modes
+        moves = np.abs(square) > LEAST * np.abs(square).max()
+        square, basis = square[moves], basis[:, moves]
+        damping = self._mean[1] / (self.root[:, None] * self.root)
+        half = np.einsum("ij,ij->j", basis, damping @ basis) / 2
+        root = np.sqrt((half**2 - square).astype(complex))
+        above = root.imag != 0
+        value = np.concatenate([-half + root, (-half - root)[~above]])
+        shape = (basis / self.root[:, None]).T
+        return value, np.concatenate([shape, shape[~above]]).astype(complex)
+
+    def followed(self, value: Complex, shape: Complex) -> Found:
+        """From exponents (mode,) and shapes (mode, n) on; NaN where one does not settle."""
+        inside, parts = np.searchsorted(self.wide, self.narrow), []
+        batch_size = max(1, MOST_NUMBERS // (self.n * len(self.wide)))
+        for begin in range(0, len(value), batch_size):
+            keep_time()
+            some = slice(begin, begin + batch_size)
+            near = np.zeros((self.n, len(value[some]), len(self.narrow)), dtype=complex)
+            near[..., int(np.searchsorted(self.narrow, 0))] = shape[some].T
+            found, near = self._settled(value[some], near, self.narrow)
+            x = np.zeros((*near.shape[:2], len(self.wide)), dtype=complex)
+            x[..., inside] = near
+            if len(self.wide) > len(self.narrow):
+                found, x = self._settled(found, x, self.wide)
+            parts.append(self._seen(found, x, self.wide))
+        return Found.together(parts)
+
+    def _seen(self, value: Complex, x: Complex, h: Integers) -> Found:
+        s = value[:, None] + 1j * h * self.rate
+        left = self.blocks.at(s, h).times(x) / self.root[:, None, None]
+        total = np.sqrt((np.abs(left) ** 2).sum(axis=0)).sum(axis=1)
+        return Found(value, x.sum(axis=2), (x * s).sum(axis=2), total)
+
+    def _settled(self, value: Complex, x: Complex, h: Integers) -> tuple[Complex, Complex]:
+        value, x = value.copy(), x.copy()
+        left = np.arange(len(value))
+        for _ in range(STEPS):
+            one = x[:, left] / _size(x[:, left])
+            s = value[left, None] + 1j * h * self.rate
+            right = self.blocks.at(s, h, slope=True).times(one)
+            u = self.blocks.at(s, h).eliminated(right)
+            with np.errstate(all="ignore"):
+                change = 1 / (one.conj() * u).sum(axis=(0, 2))
+                u = u / _size(u)
+            good = np.isfinite(u).all(axis=(0, 2)) & np.isfinite(change)
+            value[left] = np.where(good, value[left] - change, np.nan)
+            x[:, left[good]] = u[:, good]
+            with np.errstate(invalid="ignore"):
+                left = left[good & (np.abs(change) > SETTLED * np.abs(value[left]))]
+            if not len(left):
+                break
+        value[left] = np.nan
+        return value, x
+
+    def energies(self, rotation: Complex, rate: Complex) -> Complex:
+        """States (2n, m) in units of energy, of rotations and their rates [1/s] (n, m)."""
+        turned = self._modes[1].T @ (np.concatenate([rotation, rate], axis=1) * self.root[:, None])
+        count = rotation.shape[1]
+        return np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]])
+
+    def states(self, energies: Complex) -> tuple[Complex, Complex]:
+        """Rotations and rates [1/s] (n, m) of ``energies`` (2n, m)."""
+        basis = self._modes[1] / self.root[:, None]
+        return basis @ (energies[: self.n] / self._frequency[:, None]), basis @ energies[self.n :]
+
+    def exponents(self, multiplier: Complex, energies: Complex) -> Complex:
+        """Of ``multiplier`` (m,), among all that differ by multiples of i times the rate those at which the states turn
+        most."""
+        rotation, rate = (part * self.root[:, None] for part in self.states(energies))
+        turns = (rotation.conj() * rate).sum(axis=0).imag / np.maximum((np.abs(rotation) ** 2).sum(axis=0), 1e-300)
+        least = np.log(np.where(multiplier == 0, 1e-300, multiplier)) / self.time
+        return np.asarray(least + 1j * self.rate * np.round((turns - least.imag) / self.rate))
+
+    def carried(self, energies: Array) -> tuple[Array, float]:
+        """States (2n, m) one period later, and the Frobenius norm of their error: from shorter steps, of mixtures of
+        them where there are many."""
+        count, carry, steps = energies.shape[1], self._propagation, self.steps
+        later = self.energies(*carry.carried(*self.states(energies), steps))
+        mixed, sure = np.eye(count), 1.0
+        if count > SEEN:
+            mixed, sure = np.random.default_rng(0).normal(size=(count, SEEN)) / np.sqrt(SEEN), SURE
+        again = self.energies(*carry.carried(*self.states(energies @ mixed), int(np.ceil(SHORTER * steps))))
+        off = sure * float(np.linalg.norm(again - later @ mixed))
+        return later, off + rounding(steps) * float(np.linalg.norm(later))
+
+
+def _harmonics(fall: dict[int, float], decades: float) -> Integers:
+    return np.array(sorted(side_orders(fall, decades)), dtype=np.int64)
+
+
+def _mean(entries: TreeEntries, matrices: TreeMatrices) -> Array:
+    """The symmetric part of a matrix's mean over the period (n, n)."""
+    own, down, up = (part[:, 0].mean(axis=1) for part in (entries.own, entries.down, entries.up))
+    found, tied = np.diag(own), np.flatnonzero(matrices.parent >= 0)
+    front = matrices.parent[tied]
+    found[tied, front] = found[front, tied] = (down[tied] + up[tied]) / 2
+    return found
+
+
+def _size(x: Complex) -> Array:
+    """Euclidean norm of each case (case, 1) of x (n, case, h)."""
+    return np.asarray(np.sqrt((np.abs(x) ** 2).sum(axis=(0, 2)))[:, None])
