@@ -13,6 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import TypeVar, cast
 
 import numpy as np
 
@@ -36,6 +37,10 @@ LEAST = 1e-12
 """Share of the largest squared frequency below which a mode turns as a whole."""
 SEEN, SURE = 8, 3.0
 """States whose error is seen, mixtures where there are more, and the factor by which mixtures may show too little."""
+
+
+States = TypeVar("States", Array, Complex)
+"""Real or complex."""
 
 
 @dataclass(frozen=True)
@@ -173,16 +178,17 @@ class HillLine:
         value[left] = np.nan
         return value, x
 
-    def energies(self, rotation: Complex, rate: Complex) -> Complex:
+    def energies(self, rotation: States, rate: States) -> States:
         """States (2n, m) in units of energy, of rotations and their rates [1/s] (n, m)."""
         turned = self._modes[1].T @ (np.concatenate([rotation, rate], axis=1) * self.root[:, None])
         count = rotation.shape[1]
-        return np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]])
+        return cast(States, np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]]))
 
-    def states(self, energies: Complex) -> tuple[Complex, Complex]:
+    def states(self, energies: States) -> tuple[States, States]:
         """Rotations and rates [1/s] (n, m) of ``energies`` (2n, m)."""
         basis = self._modes[1] / self.root[:, None]
-        return basis @ (energies[: self.n] / self._frequency[:, None]), basis @ energies[self.n :]
+        rotation, rate = basis @ (energies[: self.n] / self._frequency[:, None]), basis @ energies[self.n :]
+        return cast(States, rotation), cast(States, rate)
 
     def exponents(self, multiplier: Complex, energies: Complex) -> Complex:
         """Of ``multiplier`` (m,), among all that differ by multiples of i times the rate those at which the states turn

@@ -91,7 +91,7 @@ class _Basis:
         basis = self if len(self.modes) == self.whole.shape[1] else self._independent()
         while True:
             try:
-                inverse = np.linalg.inv(basis.whole)
+                inverse = np.asarray(np.linalg.inv(basis.whole))
             except np.linalg.LinAlgError:
                 basis = basis._independent()
                 continue
@@ -101,8 +101,14 @@ class _Basis:
             basis = basis._of(good)
 
     def _of(self, kept: Flags) -> _Basis:
-        parts = (part[..., kept] for part in (self.exponent, self.multiplier, self.modes, self.pair, self.left))
-        basis = _Basis(*parts, self.others[:, :0])
+        basis = _Basis(
+            self.exponent[kept],
+            self.multiplier[kept],
+            self.modes[:, kept],
+            self.pair[kept],
+            self.left[kept],
+            self.others[:, :0],
+        )
         if not (whole := basis.whole).shape[1]:
             return replace(basis, others=np.eye(len(whole)))
         return replace(basis, others=np.linalg.qr(whole, mode="complete")[0][:, whole.shape[1] :])

@@ -86,7 +86,7 @@ class TreePropagation:
         y = h * rate
         for begin in range(0, steps, batch):
             keep_time()
-            every = self._series(h * np.arange(begin, min(begin + batch, steps)), h)
+            every = self._series(np.asarray(h * np.arange(begin, min(begin + batch, steps))), h)
             for one in every:
                 mass = self.mass.copy()
                 for row, place in enumerate(self.rows):
