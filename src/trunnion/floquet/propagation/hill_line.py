@@ -44,7 +44,7 @@ States = TypeVar("States", Array, Complex)
 
 
 @dataclass(frozen=True)
-class Found:
+class FollowedModes:
     """Exponents [1/s] (mode,), their rotation and its rate at τ = 0 (n, mode), and what they leave unbalanced,
     Σ_h ‖r_h‖ in units of √mass (mode,)."""
 
@@ -53,21 +53,21 @@ class Found:
     rate: Complex
     left: Array
 
-    def of(self, which: Flags) -> Found:
+    def of(self, which: Flags) -> FollowedModes:
         """Some of the modes."""
-        return Found(self.value[which], self.rotation[:, which], self.rate[:, which], self.left[which])
+        return FollowedModes(self.value[which], self.rotation[:, which], self.rate[:, which], self.left[which])
 
     @staticmethod
-    def together(parts: list[Found]) -> Found:
+    def together(parts: list[FollowedModes]) -> FollowedModes:
         """The modes of all ``parts``."""
         keys = ("value", "rotation", "rate", "left")
-        return Found(*(np.concatenate([getattr(part, key) for part in parts], axis=-1) for key in keys))
+        return FollowedModes(*(np.concatenate([getattr(part, key) for part in parts], axis=-1) for key in keys))
 
     @staticmethod
-    def nothing(n: int) -> Found:
+    def nothing(n: int) -> FollowedModes:
         """No mode of ``n`` unknowns."""
         empty = np.zeros((n, 0), dtype=complex)
-        return Found(empty[0], empty, empty, np.zeros(0))
+        return FollowedModes(empty[0], empty, empty, np.zeros(0))
 
 
 class HillLine:
@@ -134,7 +134,7 @@ class HillLine:
         shape = (basis / self.root[:, None]).T
         return value, np.concatenate([shape, shape[~above]]).astype(complex)
 
-    def followed(self, value: Complex, shape: Complex) -> Found:
+    def followed(self, value: Complex, shape: Complex) -> FollowedModes:
         """From exponents (mode,) and shapes (mode, n) on; NaN where one does not settle."""
         inside, parts = np.searchsorted(self.wide, self.narrow), []
         batch_size = max(1, MOST_NUMBERS // (self.n * len(self.wide)))
@@ -149,13 +149,13 @@ class HillLine:
             if len(self.wide) > len(self.narrow):
                 found, x = self._settled(found, x, self.wide)
             parts.append(self._seen(found, x, self.wide))
-        return Found.together(parts)
+        return FollowedModes.together(parts)
 
-    def _seen(self, value: Complex, x: Complex, h: Integers) -> Found:
+    def _seen(self, value: Complex, x: Complex, h: Integers) -> FollowedModes:
         s = value[:, None] + 1j * h * self.rate
         left = self.blocks.at(s, h).times(x) / self.root[:, None, None]
         total = np.sqrt((np.abs(left) ** 2).sum(axis=0)).sum(axis=1)
-        return Found(value, x.sum(axis=2), (x * s).sum(axis=2), total)
+        return FollowedModes(value, x.sum(axis=2), (x * s).sum(axis=2), total)
 
     def _settled(self, value: Complex, x: Complex, h: Integers) -> tuple[Complex, Complex]:
         value, x = value.copy(), x.copy()

@@ -23,7 +23,7 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import rigid_motions
 from trunnion.equations.topology import Topology
 from trunnion.floquet.propagation.cost_model import by_modes, in_time
-from trunnion.floquet.propagation.hill_line import Found, HillLine
+from trunnion.floquet.propagation.hill_line import FollowedModes, HillLine
 from trunnion.numerics.spectrum import bounds_of, without
 
 REAL = 1e-9
@@ -59,7 +59,7 @@ def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> Floq
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where nothing is known of
     them."""
     line = HillLine(topo, co, turns)
-    found = line.followed(*line.starts()) if _blocks_pay(line) else Found.nothing(line.n)
+    found = line.followed(*line.starts()) if _blocks_pay(line) else FollowedModes.nothing(line.n)
     return _judged(line, found, rigid_motions(topo, co))
 
 
@@ -134,7 +134,7 @@ class _Basis:
         return rows
 
 
-def _judged(line: HillLine, found: Found, aside: Array) -> FloquetModes | None:
+def _judged(line: HillLine, found: FollowedModes, aside: Array) -> FloquetModes | None:
     turned = np.exp(found.value * line.time)
     known = np.isfinite(found.value)
     if aside.shape[1]:
