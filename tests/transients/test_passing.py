@@ -91,6 +91,15 @@ def test_many_lines_are_judged_right() -> None:
     assert min(kinds.count("passed"), kinds.count("captured")) > 30
 
 
+@pytest.mark.study
+def test_five_hundred_lines_are_judged_right() -> None:
+    """None wrong, and undecided below 2 %."""
+    kinds, open_cases = judged(500, 3)
+    assert kinds.count("undecided") < 0.02 * len(kinds)
+    assert open_cases <= 10
+    assert min(kinds.count("passed"), kinds.count("captured")) > 100
+
+
 def test_fifteen_degrees_hang_at_half_the_natural_frequency_and_five_pass() -> None:
     """A weak motor and a mode at 50 rad/s: the joint shakes twice a turn, so that the line hangs below 25 rad/s."""
     one, other = 1.0, 4.0

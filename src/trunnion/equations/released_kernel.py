@@ -65,9 +65,10 @@ _RATE = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64,
 _GUARD = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, _POINTER, _POINTER)
 _JUMP = types.int64(types.float64, _POINTER, _POINTER, types.int64, types.int64, types.int64, _POINTER)
 # Per clutch: its compliance, T_s, T_c, v_s, the stride of its stages among the regimes, how many points its table of
-# shares over time has, and where that begins behind these: time and share of each.
-OF, HOLDS, SLIDES, OVER, STEP, POINTS, TABLE = range(7)
-PER_CLUTCH = 7
+# shares over time has, where that begins behind these: time and share of each; and what it carries while friction keeps
+# both of its sides at rest.
+OF, HOLDS, SLIDES, OVER, STEP, POINTS, TABLE, HELD = range(8)
+PER_CLUTCH = 8
 # Per pendulum: its compliance, m, R, r, whether its path is an epicycloid, and c of S′ [N s/m].
 MASS, RADIUS, CURVATURE, EPICYCLOID, DRAG = range(1, 6)
 PER_PENDULUM = 6
@@ -246,9 +247,9 @@ def effects(p, scratch, n, count, alpha, slip, without, mutual):
 
 
 @njit(cache=True, nogil=True)
-def solved(stage, torque, without, mutual, number):
+def solved(stage, torque, without, mutual, number, p, first):
     """Put the torques of those that stick into ``torque``, those of the others being there (elimination in place).
-    Between two that friction keeps at rest nothing tells what a clutch carries: it is none, and they stand alone."""
+    Between two that friction keeps at rest no motion tells what a clutch carries: it is HELD."""
     a, b, which = np.empty((MOST, MOST)), np.empty(MOST), np.empty(MOST, dtype=np.int64)
     m = 0
     for c in range(number):
@@ -272,7 +273,7 @@ def solved(stage, torque, without, mutual, number):
     for k in range(m - 1, -1, -1):
         for column in range(k + 1, m):
             b[k] -= a[k, column] * torque[which[column]]
-        torque[which[k]] = b[k] / a[k, k] if a[k, k] != 0.0 else 0.0
+        torque[which[k]] = b[k] / a[k, k] if a[k, k] != 0.0 else p[first + which[k] * PER_CLUTCH + HELD]
 
 
 @njit(cache=True, nogil=True)
@@ -310,7 +311,7 @@ def rates(t, x, p, regime, out):
         effects(p, scratch, n, count, alpha, slip, without, mutual)
         stages_of(regime, p, first, number, stage)
         sliding(t, p, first, number, stage, slip, torque)
-        solved(stage, torque, without, mutual, number)
+        solved(stage, torque, without, mutual, number, p, first)
         r, inertia, shaft = scratch + 2 * count, scratch + 5 * count, scratch + 5 * count + 7 * n
         pulled = scratch + 5 * count + 3 * n
         for c in range(number):
@@ -391,7 +392,7 @@ def released_guards(t, x_, p_, regime, sloped, g_, slope_):
         own = stage[c]
         stage[c] = STICKS
         sliding(t, p, first, number, stage, slip, torque)
-        solved(stage, torque, without, mutual, number)
+        solved(stage, torque, without, mutual, number, p, first)
         most = holds(t, p, first, c)
         for guard in range(GUARDS):
             g[m + guard] = 1.0
@@ -447,7 +448,7 @@ def located(rate, t, x, p, regime):
             stage[c] = SLIPS_ON if slip[c] > 0.0 else SLIPS_BACK
     for _ in range(number):
         sliding(t, p, first, number, stage, slip, torque)
-        solved(stage, torque, without, mutual, number)
+        solved(stage, torque, without, mutual, number, p, first)
         worst, beyond = -1, 0.0
         for c in range(number):
             if stage[c] == STICKS and abs(torque[c]) - holds(t, p, first, c) > beyond:

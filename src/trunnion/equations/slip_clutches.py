@@ -30,7 +30,7 @@ class PlacedClutch:
 
     def numbers(self, stride: int, table: int) -> list[float]:
         """As ``released_kernel`` reads them, its table standing at ``table`` of all clutches' numbers."""
-        return [self.compliance, self.holds, self.slides, self.over, stride, len(self.table), table]
+        return [self.compliance, self.holds, self.slides, self.over, stride, len(self.table), table, 0.0]
 
 
 def refuse_slip_clutches(line: Driveline) -> None:

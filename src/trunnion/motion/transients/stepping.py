@@ -15,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import product
 
 import numpy as np
 
@@ -25,11 +24,12 @@ from trunnion.driveline.scenarios import LevelCrossing
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
-from trunnion.equations.line_regimes import LineRegimes, line_kernel, watch_kernel
+from trunnion.equations.line_regimes import LineRegimes, line_kernel, released_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
 from trunnion.motion.transients.lagging import held_lags, with_lags
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
+from trunnion.motion.transients.together import Bonds, bonds_of
 from trunnion.motion.transients.watched import WatchedValue
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory, Watch, integrate, kernel
 from trunnion.results.outcome import Outcome
@@ -62,8 +62,6 @@ SIDE = 1e-3
 """Share of its change in a short time below which what a kink switches by counts as zero."""
 LONGEST_FORMULA = 100
 """Characters that a sentence shows of a formula."""
-MOST_JUDGED = 6
-"""Groups at rest and clutches that stick, which are judged together."""
 
 
 class Stepper:
@@ -376,55 +374,54 @@ class Stepper:
         place = replace(place, senses={first: way for first, way in place.senses.items() if first in self.groups})
         self._write_course(place)
         if self.line.clutches and self.groups:
-            return self._jointly(place, soon)
+            return self._jointly(place)
         place = self._groups_settled(place, soon)
         return self._slipping(place, soon) if self.line.clutches else place
 
-    def _jointly(self, place: Place, soon: float) -> Place:
-        """The same place, where groups that are at rest and clutches that stick are judged together, for what one of
-        them bears is asked for by the others: the state with the fewest that let go in which each does what it can."""
+    def _jointly(self, place: Place) -> Place:
+        """The same place, where groups at rest and clutches without slip are judged together (``together``)."""
         place = self._senses_known(place)
-        standing, sticking = [first for first, sense in place.senses.items() if sense == 0.0], self._sticking(place)
+        standing = [first for first, sense in place.senses.items() if sense == 0.0]
         for first in standing:
             place = self._at_rest(place, first)
-        if len(standing) + len(sticking) <= MOST_JUDGED:
-            ways = [*product((0.0, 1.0, -1.0), repeat=len(standing) + len(sticking))]
-            for way in sorted(ways, key=lambda one: sum(map(abs, one))):
-                senses = dict(zip(standing, way, strict=False))
-                slips = dict(zip(sticking, way[len(standing) :], strict=True))
-                if (found := self._possible(place, senses, slips, soon)) is not None:
-                    return found
-        return self._slipping(self._groups_settled(place, soon), soon)
+        place = self._stuck_without_slip(place)
+        sticking = self._sticking(place)
+        if self._all_hold(place, standing, sticking):
+            return place
+        way, torque = self._bonds(place, standing, sticking).judged()
+        first, per = len(standing), released_kernel().PER_CLUTCH
+        clutches = released_kernel().clutches(self.numbers, int(self.core.places(self.numbers)[3]))[1]
+        for c, goes, held in zip(sticking, way[first:], torque[first:], strict=True):
+            self.numbers[clutches + c * per + released_kernel().HELD] = held
+            moved = int(goes) * (SLIPS_ON - STICKS) * self._regimes.clutches[c].stride
+            place = replace(place, regime=place.regime + moved)
+        return replace(place, senses={**place.senses, **dict(zip(standing, way.tolist(), strict=False))})
 
-    def _possible(self, place: Place, senses: dict[int, float], slips: dict[int, float], soon: float) -> Place | None:
-        """The place where groups at rest stand (0) or set off and clutches stick (0) or slip the ways given, if what
-        acts makes them do just that."""
-        strides = {c: self._regimes.clutches[c].stride for c in slips}
-        regime = place.regime + sum(
-            ((SLIPS_ON if way > 0 else SLIPS_BACK) - STICKS) * strides[c] for c, way in slips.items() if way
-        )
-        there = replace(place, senses={**place.senses, **senses}, regime=regime)
-        self._write(there)
-        rates = self._rates(there)
-        n, usual = self.topo.size, EQUAL * self.usual / soon
-        later = replace(there, time=there.time + soon, state=there.state + soon * rates)
-        for first, way in senses.items():
-            if way == 0.0:
-                pulled, (bears, _) = self._pull(there, first)
-                if abs(pulled) > bears * (1 + EQUAL):
-                    return None
-            else:
-                gained = rates[n + int(self.topo.unknown_of[first])]
-                if not way * (gained + self.topo.mean_speeds[first] * there.acceleration) > usual:
-                    return None
-        for c, way in slips.items():
-            if way == 0.0:
-                carried, most = self._carried(there, c)
-                if abs(carried) > most * (1 + EQUAL):
-                    return None
-            elif not way * (self._slip(later, c) - self._slip(there, c)) / soon > usual:
-                return None
-        return there
+    def _bonds(self, place: Place, standing: Sequence[int], sticking: Sequence[int]) -> Bonds:
+        """What groups at rest and clutches that stick are asked for."""
+        loose = replace(place, senses={f: sense for f, sense in place.senses.items() if f not in standing})
+        self._write(loose)
+        bears = [self._pull(loose, first)[1][0] for first in standing]
+        rubs = [self._bears(first, loose.time, rest=False)[0] for first in standing]
+        carries = [self._carried(loose, c)[1] for c in sticking]
+        limits = np.array([*bears, *carries]), np.array([*rubs, *carries])
+        return bonds_of(self.line, self.numbers, standing, sticking, *limits)
+
+    def _stuck_without_slip(self, place: Place) -> Place:
+        """The same place, where clutches stick whose sides turn alike, whatever they did before."""
+        self._write(place)
+        for c, clutch in enumerate(self._regimes.clutches):
+            stage = clutch.stage(place.regime)
+            if stage != STICKS and abs(self._slip(place, c)) <= EQUAL * max(self.usual, abs(place.speed)):
+                place = replace(place, regime=place.regime + (STICKS - stage) * clutch.stride)
+        return place
+
+    def _all_hold(self, place: Place, standing: Sequence[int], sticking: Sequence[int]) -> bool:
+        """Whether groups at rest and clutches that stick bear what they are asked for, as they are."""
+        self._write(place)
+        pulls = [(pulled, most[0]) for pulled, most in (self._pull(place, first) for first in standing)]
+        pulls += [self._carried(place, c) for c in sticking]
+        return all(abs(torque) <= most * (1 + EQUAL) for torque, most in pulls)
 
     def _slip(self, place: Place, clutch: int) -> float:
         """Slip [rad/s] of a clutch."""
@@ -577,12 +574,16 @@ class Stepper:
         self._rates(place)
         count, scratch = len(self.topo.stations), int(self.core.places(self.numbers)[3])
         pulled = self.numbers[scratch + 5 * count + 3 * self.topo.size + int(self.topo.unknown_of[first])]
-        bears = [0.0, 0.0]
+        return float(pulled), self._bears(first, place.time)
+
+    def _bears(self, first: int, time: float, *, rest: bool = True) -> tuple[float, float]:
+        """What friction on a group bears at rest or resists with in motion, and its slope [N m/s], after ``_rates``."""
+        reach, bears = int(self.core.places(self.numbers)[3]) + 2 * len(self.topo.stations), [0.0, 0.0]
         for one in self.groups[first]:
-            carried = abs(self.numbers[scratch + 2 * count + one.station]) * one.stated.at_rest
-            for k, part in enumerate(one.share(place.time)):
-                bears[k] += carried * part
-        return float(pulled), (bears[0], bears[1])
+            size = abs(self.numbers[reach + one.station]) * (one.stated.at_rest if rest else one.stated.torque)
+            for k, part in enumerate(one.share(time)):
+                bears[k] += size * part
+        return bears[0], bears[1]
 
     # What is watched.
 
