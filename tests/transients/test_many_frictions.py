@@ -1,5 +1,5 @@
-"""Many disks that friction keeps at rest, with clutches between them, all judged at one moment: against the accelerations
-of Gauss's principle, found torque by torque in turn."""
+"""Many disks that friction keeps at rest, with clutches between them, all judged at one moment: against accelerations
+by Gauss's principle, found torque by torque in turn."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def row(inertia: np.ndarray, carries: np.ndarray) -> tn.Driveline:
         elements.append(tn.Disk(name=f"disk {i}", inertia=float(one)))
         if i < len(carries):
             elements.append(tn.SlipClutch(name=f"clutch {i}", torque=float(carries[i])))
-    return tn.Driveline([*elements, tn.Shaft(stiffness=50.0, damping=0.01), tn.Disk(name="end", inertia=1.0)])
+    return tn.Driveline([*elements, tn.Shaft(stiffness=1e-4), tn.Disk(name="end", inertia=1.0)])
 
 
 def test_five_disks_and_four_clutches_at_rest() -> None:
@@ -52,8 +52,7 @@ def test_five_disks_and_four_clutches_at_rest() -> None:
         run = tn.transient(row(inertia, carries), SOON, torque=act, friction=friction, speed=0.0)
         known = accelerations(inertia, pushed, rubs, carries)
         assert run.outcome.kind == "reached", run.outcome
-        np.testing.assert_allclose(run.speed[-1][:4], known[:4] * SOON, atol=1e-9)
-        np.testing.assert_allclose(run.speed[-1][4], known[4] * SOON, atol=2e-2 * abs(known[4]) * SOON + 1e-9)
+        np.testing.assert_allclose(run.speed[-1][:5], known * SOON, rtol=1e-6, atol=1e-9)
         moved += int((np.abs(known) > 1e-9).sum())
         stood += int((np.abs(known) < 1e-9).sum())
     assert moved > 8 and stood > 8
@@ -68,8 +67,8 @@ def test_a_neighbour_holds_what_its_own_friction_does_not() -> None:
         act = [tn.AppliedTorque(on="disk 0", time=[0.0], torque=[pushed], between="steps")]
         return tn.transient(row(inertia, np.array([carries])), 0.5, torque=act, friction=two, speed=0.0)
 
-    assert np.abs(run(20.0, 15.0).speed).max() == 0.0
+    assert np.abs(run(20.0, 15.0).speed).max() < 1e-12
     alone = run(2.0, 20.0).speed[-1]
     assert abs(alone[0] - 0.5 * 6.0) < 1e-9
-    assert alone[1] == 0.0
+    assert abs(alone[1]) < 1e-12
     assert run(20.0, 30.0).speed[-1][0] > 0.2

@@ -128,7 +128,7 @@ def _motions_with_stages() -> None:
 
 
 def _transients() -> None:
-    """With what is watched, with formulas, and with clutches that slip; a pendulum that swings."""
+    """With what is watched, with formulas, and with clutches that slip; a passage; a pendulum that swings."""
     clutch = tn.SlipClutch(name="clutch", torque=5.0)
     ends = tn.Disk(name="motor", inertia=1.0), tn.Disk(name="load", inertia=1.0)
     shaft = tn.Shaft(stiffness=100.0, damping=0.1)
@@ -136,6 +136,9 @@ def _transients() -> None:
     level = tn.LevelCrossing(of="motor", speed=1e3)
     for elements in ([ends[0], shaft, ends[1]], [ends[0], clutch, tn.Disk(inertia=1.0), shaft, ends[1]]):
         tn.transient(tn.Driveline(elements), 0.02, torque=[push], crossing=[level], speed=1.0)
+    even = tn.AppliedTorque(on="motor", time=[0], torque=[5.0], between="steps")
+    plain, over = tn.Driveline([ends[0], shaft, ends[1]]), ("load.inertia", 1.0, 1.1, 2)
+    tn.capture_map(plain, (10.0, 11.0), over, ("factor", 1.0, 1.1, 2), torque=[even], phases=1)
     pendulum = tn.CentrifugalPendulum(mass=0.1, radius=0.1, order=2.0)
     tn.simulate(tn.Driveline([tn.ConstantSpeed(), shaft, ends[0], pendulum]), turns=1, speed=1.0)
 

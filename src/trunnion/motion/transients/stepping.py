@@ -393,8 +393,7 @@ class Stepper:
         clutches = released_kernel().clutches(self.numbers, int(self.core.places(self.numbers)[3]))[1]
         for c, goes, held in zip(sticking, way[first:], torque[first:], strict=True):
             self.numbers[clutches + c * per + released_kernel().HELD] = held
-            moved = int(goes) * (SLIPS_ON - STICKS) * self._regimes.clutches[c].stride
-            place = replace(place, regime=place.regime + moved)
+            place = replace(place, regime=place.regime + int(goes) * self._regimes.clutches[c].stride)
         return replace(place, senses={**place.senses, **dict(zip(standing, way.tolist(), strict=False))})
 
     def _bonds(self, place: Place, standing: Sequence[int], sticking: Sequence[int]) -> Bonds:
