@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.special import erf
 
 import trunnion as tn
 
@@ -179,3 +180,36 @@ def test_a_clutch_that_lets_go_and_closes_again() -> None:
     assert [round(t, 3) for t, _ in run.crossings] == [0.079, 0.25]
     np.testing.assert_allclose(run.speed[-1], 10 + 30 / WHOLE, rtol=1e-6)
     assert run.energy.error < 1e-8 and run.energy.losses > 100
+
+
+def swept(t: np.ndarray, frequency: float, ratio: float, acceleration: float) -> np.ndarray:
+    """x of x″ + 2ζω x′ + ω² x = cos(½ α t²) from rest, in closed form by the error function of a complex argument
+    (Lewis's resonance passed at uniform acceleration)."""
+    root = frequency * (-ratio + 1j * np.sqrt(1 - ratio**2))
+    found = np.zeros(len(t), dtype=complex)
+    for sign in (1.0, -1.0):
+        p = -1j * sign * acceleration / 2
+        reach, middle = np.sqrt(p), root / (2 * p)
+        apart = erf(reach * (t + middle)) - erf(reach * middle)
+        found += np.exp(root * t + root**2 / (4 * p)) * np.sqrt(np.pi) / (2 * reach) * apart / 2
+    return np.asarray(found.imag / root.imag)
+
+
+@pytest.mark.parametrize("acceleration", [40.0, 160.0])
+def test_a_resonance_is_passed_as_by_lewis(acceleration: float) -> None:
+    """A torque whose frequency rises evenly through the one resonance at 80 rad/s; the envelope's peak comes late."""
+    one, other, push, until = 1.0, 2.0, 30.0, 240.0 / acceleration
+    reduced = one * other / (one + other)
+    stiffness, damping = reduced * 80.0**2, 2 * 0.02 * reduced * 80.0
+    shaft = tn.Shaft(name="shaft", stiffness=stiffness, damping=damping)
+    line = tn.Driveline([tn.Disk(name="motor", inertia=one), shaft, tn.Disk(inertia=other)])
+    torque = tn.AppliedTorque(on="motor", formula=f"{push}*cos({acceleration / 2}*t^2)")
+    run = tn.transient(line, until, torque=[torque], speed=20.0, tolerance=1e-11)
+    times = np.linspace(0, until, 20_001)
+    known = -push / one * swept(times, 80.0, 0.02, acceleration)
+    found = run.at(times).twist[:, 0]
+    np.testing.assert_allclose(found, known, atol=1e-8 * np.abs(known).max())
+    late = times[np.argmax(np.abs(found))]
+    assert 80.0 / acceleration < late < 1.5 * 80.0 / acceleration
+    steady = push / one / (2 * 0.02 * 80.0**2)
+    assert np.abs(found).max() < 0.95 * steady
