@@ -9,6 +9,7 @@ from typing import Any
 import panel as pn
 
 from trunnion.app.parts.widgets import HtmlPane, ProgrammaticChange, column, heading, joined, markup, pane
+from trunnion.app.themes import css
 from trunnion.app.views.base import View
 
 MOST_OFTEN = 0.1
@@ -20,6 +21,25 @@ _TEMPLATE = """
 {% block preamble %}
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <script>
+// The theme that was chosen here before, from the first moment on; none leaves it to the system.
+const themes = ["", "light", "dark"], named = { "": "as the system", light: "light", dark: "dark" }
+const kept = () => { try { return localStorage.getItem("trunnion-theme") ?? "" } catch { return "" } }
+const dress = (theme) => {
+  if (theme) document.documentElement.dataset.theme = theme
+  else delete document.documentElement.dataset.theme
+  const button = document.getElementById("theme")
+  if (button) button.textContent = "Theme: " + named[theme]
+}
+dress(themes.includes(kept()) ? kept() : "")
+document.addEventListener("DOMContentLoaded", () => {
+  dress(document.documentElement.dataset.theme ?? "")
+  document.getElementById("theme").addEventListener("click", () => {
+    const now = document.documentElement.dataset.theme ?? ""
+    const next = themes[(themes.indexOf(now) + 1) % themes.length]
+    dress(next)
+    try { localStorage.setItem("trunnion-theme", next) } catch {}
+  })
+})
 // A slider's handle has no name of its own: it gets the words above it, which change with the parameter.
 const attached = Element.prototype.attachShadow
 Element.prototype.attachShadow = function (...given) {
@@ -36,57 +56,73 @@ Element.prototype.attachShadow = function (...given) {
 {% endblock %}
 {% block postamble %}
 <style>
-body { margin: 0; font-family: system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: #1a1a1a; background: #fff;
-  font-size: 15px; }
-header { display: flex; align-items: center; gap: 4px 20px; flex-wrap: wrap; background: #12324a; color: #fff;
-  padding: 6px 16px; }
-header h1 { font-size: 19px; margin: 0; }
+THEMES
+body { margin: 0; font-family: system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: var(--ink);
+  background: var(--ground); font-size: var(--text); }
+header { display: flex; align-items: center; gap: var(--near) var(--far); flex-wrap: wrap; background: var(--bar);
+  color: var(--on-bar); padding: 6px var(--far); }
+header h1 { font-size: var(--title); margin: 0; }
 header > div { min-width: 0; max-width: 100%; }
-.layout { display: grid; grid-template-columns: minmax(0, 1fr) 330px; gap: 0 18px; padding: 4px 16px 24px; }
-.side { border-left: 1px solid #d5d9de; padding-left: 14px; }
+#theme { font: inherit; font-size: var(--small); color: var(--on-bar); background: none; margin-left: auto;
+  border: 1px solid var(--bar-edge); border-radius: 4px; padding: 4px 10px; min-height: 28px; cursor: pointer; }
+#theme:focus-visible { outline: 3px solid var(--bar-focus); outline-offset: 1px; }
+.layout { display: grid; grid-template-columns: minmax(0, 1fr) 330px; gap: 0 18px; padding: 4px var(--far) 24px; }
+.side { border-left: 1px solid var(--line); padding-left: 14px; }
 h2 { font-size: 16px; margin: 10px 0 2px; }
 @media (max-width: 900px) {
-  .layout { grid-template-columns: minmax(0, 1fr); }
-  .side { border-left: 0; border-top: 1px solid #d5d9de; padding-left: 0; }
+  .layout { grid-template-columns: minmax(0, 1fr); padding: 4px var(--apart) 24px; }
+  .side { border-left: 0; border-top: 1px solid var(--line); padding-left: 0; }
 }
-.skip { position: absolute; left: -999px; } .skip:focus { left: 8px; top: 8px; background: #fff; padding: 6px; }
+.skip { position: absolute; left: -999px; }
+.skip:focus { left: 8px; top: 8px; background: var(--ground); color: var(--ink); padding: 6px; z-index: 20; }
+@media (prefers-reduced-motion: reduce) { * { transition: none !important; animation-duration: 0.001s !important; } }
 </style>
 {% endblock %}
 {% block contents %}
 <a class="skip" href="#main">to the pictures</a>
-<header><h1>Trunnion</h1>{{ embed(roots.navigation) }}</header>
+<header><h1>Trunnion</h1>{{ embed(roots.navigation) }}<button id="theme" type="button">Theme</button></header>
 <div class="layout">
 <main id="main" tabindex="-1">{{ embed(roots.status) }}{{ embed(roots.main) }}</main>
 <aside class="side" aria-label="sliders and variants">{{ embed(roots.aside) }}</aside>
 </div>
 {{ embed(roots.location) }}
 {% endblock %}
-"""
+""".replace("THEMES", css())
 
 _STYLE = """
+:host { --panel-border-color: var(--edge); --panel-shadow-color: transparent; }
+:host(.drawn), img.picture { filter: var(--picture-filter, none); mix-blend-mode: var(--picture-blend, normal); }
+select.bk-input { appearance: none; padding-right: 24px; background-repeat: no-repeat !important;
+  background-image: linear-gradient(45deg, transparent 50%, var(--ink) 50%),
+    linear-gradient(135deg, var(--ink) 50%, transparent 50%) !important;
+  background-position: calc(100% - 14px) 55%, calc(100% - 9px) 55% !important; background-size: 5px 5px !important; }
+.bk-input { border-color: var(--edge) !important; }
+.bk-input::placeholder { color: var(--faint); opacity: 1; }
+.noUi-target { background: var(--button); border: 1px solid var(--edge); } .noUi-connect { background: var(--edge); }
+.noUi-handle { background: var(--ground); border: 1px solid var(--edge); box-shadow: none; }
 table.plain { border-collapse: collapse; font-size: 14px; }
-table.plain th, table.plain td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid #d5d9de;
+table.plain th, table.plain td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid var(--line);
   vertical-align: top; overflow-wrap: break-word; }
 pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 .held { container-type: inline-size; }
 @container (max-width: 560px) {
-  table.checks tr { display: block; padding: 6px 0; border-bottom: 1px solid #d5d9de; }
+  table.checks tr { display: block; padding: 6px 0; border-bottom: 1px solid var(--line); }
   table.checks th, table.checks td:empty { display: none; }
   table.checks td { display: block; border: 0 !important; padding: 0 !important; }
   table.checks td:first-child { font-weight: 600; }
 }
-.stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: #1a1a1a;
-  background: #fff3d6; border: 1px solid #b58900; animation: late 0.3s step-end; }
+.stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: var(--ink);
+  background: var(--note); border: 1px solid var(--note-edge); animation: late 0.3s step-end; }
 @keyframes late { from { visibility: hidden; } }
-.refusal, .refusal * { color: #8d0016; overflow-wrap: anywhere; }
+.refusal, .refusal * { color: var(--bad); overflow-wrap: anywhere; }
 h2, p, li, td, th { overflow-wrap: anywhere; }
-.verdict { font-size: 17px; font-weight: 600; border-left: 8px solid #6b6b6b; padding: 4px 10px; }
+.verdict { font-size: 17px; font-weight: 600; border-left: 8px solid var(--undecided); padding: 4px 10px; }
 .verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
 .sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
-.verdict.satisfied { border-color: #0072b2; } .verdict.exceeded { border-color: #d55e00; }
-a { color: #00558a; }
+.verdict.satisfied { border-color: var(--satisfied); } .verdict.exceeded { border-color: var(--exceeded); }
+a { color: var(--accent); }
 .bk-spin-btn { display: none !important; }
-:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
+:focus-visible { outline: 3px solid var(--focus); outline-offset: 1px; }
 """
 
 
@@ -196,7 +232,8 @@ class Page:
 
 _NAVIGATION = """
 :host { max-width: 100%; } .bk-btn-group { flex-wrap: wrap; }
-.bk-btn { background: #12324a; color: #fff; border: 1px solid #6f8ba0; font-size: 15px; }
-.bk-btn.bk-active { background: #fff !important; color: #12324a !important; font-weight: 600; }
-.bk-btn:focus-visible { outline: 3px solid #f0b400; outline-offset: 1px; z-index: 2; }
+.bk-btn { background: var(--bar) !important; color: var(--on-bar) !important; font-size: 15px;
+  border: 1px solid var(--bar-edge) !important; }
+.bk-btn.bk-active { background: var(--on-bar) !important; color: var(--bar) !important; font-weight: 600; }
+.bk-btn:focus-visible { outline: 3px solid var(--bar-focus); outline-offset: 1px; z-index: 2; }
 """

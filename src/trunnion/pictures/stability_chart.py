@@ -122,7 +122,7 @@ def _verdicts(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
         if bad.any():
             colours = Colours(GROWTH, "growth", 0.0, float(growth[bad].max()))
             items.append(ColouredGrid(x, y, np.where(bad, growth, np.nan), colours, growth))
-            items.append(Key("unstable", "unstable (darker: faster)", "area"))
+            items.append(Key("unstable", "unstable (stronger: faster)", "area"))
     for verdict, (role, words) in OTHERS.items():
         if chart.count(verdict):
             items.append(Cells(x, y, chart.verdict == verdict, role, words))

@@ -25,7 +25,7 @@ class Canvas:
     def __init__(self, on: Mapping[type, Callable[[Any], None]] | None = None, name: str = "") -> None:
         self.on, self.name, self.is_narrow = on or {}, name, False
         self.drawn: list[Drawn] = []
-        self.panel = column()
+        self.panel = column(css_classes=["drawn"])
         self.own: tuple[Picture, tuple[Item, ...]] | None = None
         self.others: Sequence[tuple[str, Picture]] = ()
 

@@ -197,26 +197,26 @@ export function render({ model }) {
 
 _STYLE = """
 :host { display: block; width: 100%; }
-.group { display: flex; border-top: 1px solid #d5d9de; padding: 4px 0; gap: 8px; }
+.group { display: flex; border-top: 1px solid var(--line); padding: 4px 0; gap: 8px; }
 .head { flex: 0 0 210px; display: flex; align-items: center; gap: 6px; font-weight: 600; align-self: flex-start; }
 .head[draggable] { cursor: grab; }
-.group.before { box-shadow: 0 -3px 0 #0072b2; } .group.behind { box-shadow: 0 3px 0 #0072b2; }
-.number { color: #555; min-width: 1.5em; text-align: right; font-weight: 400; }
+.group.before { box-shadow: 0 -3px 0 var(--focus); } .group.behind { box-shadow: 0 3px 0 var(--focus); }
+.number { color: var(--faint); min-width: 1.5em; text-align: right; font-weight: 400; }
 .kind { flex: 1; overflow-wrap: anywhere; }
 .body { flex: 1; min-width: 0; }
 .fields { display: flex; flex-wrap: wrap; gap: 4px 12px; }
 .field { display: flex; flex-direction: column; }
-label { font-size: 12px; color: #444; }
-input, select, button { font: inherit; padding: 2px 4px; border: 1px solid #8a929b; border-radius: 3px;
-  background: #fff; }
-input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
-input[aria-invalid="true"] { border: 2px solid #b3001b; background: #fff3f3; }
+label { font-size: 12px; color: var(--faint); }
+input, select, button { font: inherit; padding: 2px 4px; border: 1px solid var(--edge); border-radius: 3px;
+  background: var(--field); color: var(--ink); }
+input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid var(--focus); outline-offset: 1px; }
+input[aria-invalid="true"] { border: 2px solid var(--bad); background: var(--bad-ground); }
 input[type="number"] { width: 5em; }
-button { cursor: pointer; background: #f2f4f6; min-width: 24px; min-height: 24px; }
+button { cursor: pointer; background: var(--button); min-width: 24px; min-height: 24px; }
 .tools { white-space: nowrap; }
-.note { color: #8d0016; font-size: 13px; max-width: 34em; white-space: pre-line; }
+.note { color: var(--bad); font-size: 13px; max-width: 34em; white-space: pre-line; }
 .alone .group { flex-direction: column; } .alone .new { flex-direction: row; } .alone .head { flex-basis: auto; }
-.add { font-size: 12px; margin-top: 3px; color: #444; }
+.add { font-size: 12px; margin-top: 3px; color: var(--faint); }
 .new { align-items: center; flex-wrap: wrap; }
 @media (max-width: 700px) { .group { flex-direction: column; } .head { flex-basis: auto; }
   .new { flex-direction: row; } }

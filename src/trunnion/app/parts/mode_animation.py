@@ -38,10 +38,10 @@ export function render({ model }) {
 }
 """
 _STYLE = """
-button { font: inherit; font-size: 14px; padding: 5px 12px; margin: 5px; border: 1px solid #8a929b; cursor: pointer;
-  border-radius: 4px; background: #f2f4f6; color: #1a1a1a; }
-button[aria-pressed="true"] { background: #12324a; color: #fff; }
-button:focus-visible { outline: 3px solid #0072b2; outline-offset: 1px; }
+button { font: inherit; font-size: 14px; padding: 5px 12px; margin: 5px; border: 1px solid var(--edge); cursor: pointer;
+  border-radius: 4px; background: var(--button); color: var(--ink); }
+button[aria-pressed="true"] { background: var(--chosen); color: var(--on-chosen); }
+button:focus-visible { outline: 3px solid var(--focus); outline-offset: 1px; }
 """
 
 

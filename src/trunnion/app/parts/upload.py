@@ -31,8 +31,8 @@ export function render({ model }) {
 }
 """
 _STYLE = """
-label { display: block; font-size: 13px; } span { color: #8d0016; display: block; max-width: 30em; }
-input { font: inherit; } input:focus-visible { outline: 3px solid #0072b2; }
+label { display: block; font-size: 13px; } span { color: var(--bad); display: block; max-width: 30em; }
+input { font: inherit; } input:focus-visible { outline: 3px solid var(--focus); }
 """
 
 

@@ -135,5 +135,5 @@ def facts(rows: Mapping[str, object]) -> Html:
 def picture(svg: str, about: str, width: int) -> Html:
     """A picture, ``width`` pixels at most. As an image it runs no script, whatever stands in it."""
     content = base64.b64encode(svg.encode()).decode()
-    template = "<img alt='{}' style='width:100%;max-width:{}px' src='data:image/svg+xml;base64,{}'>"
+    template = "<img class='picture' alt='{}' style='width:100%;max-width:{}px' src='data:image/svg+xml;base64,{}'>"
     return markup(template, about, width, content)

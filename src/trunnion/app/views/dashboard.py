@@ -23,12 +23,12 @@ REST = 0.4
 """Seconds without a further change before the line is judged: sliders under way do not wait for that."""
 MOST_CHECKS, MOST_SPEEDS = 4, 6
 TILE = """
-:host { border: 1px solid #d5d9de; border-radius: 6px; padding: 0 8px 4px; background: #fff; overflow: hidden; }
+:host { border: 1px solid var(--line); border-radius: 6px; padding: 0 8px 4px; background: var(--raised); overflow: hidden; }
 """
 TITLE = """
-.bk-btn { background: none !important; border: 0 !important; box-shadow: none !important; color: #00558a !important;
+.bk-btn { background: none !important; border: 0 !important; box-shadow: none !important; color: var(--accent) !important;
   font-size: 15px; font-weight: 600; padding: 4px 2px !important; text-align: left; }
-.bk-btn:hover { text-decoration: underline; } .bk-btn:focus-visible { outline: 3px solid #0072b2; }
+.bk-btn:hover { text-decoration: underline; } .bk-btn:focus-visible { outline: 3px solid var(--focus); }
 """
 UNCHECKED = "not yet checked"
 
@@ -100,7 +100,7 @@ class _DashboardPane(VariantPane["DashboardView"]):
     def show_worst(self, step: ViewStep, data: Any) -> None:
         """The shaft loaded most, of the speeds looked at."""
         self.torque.show(low(data["picture"]))
-        self.worst.object = small(markup("{}. Black: all orders together; red: its limits.", data["said"]))
+        self.worst.object = small(markup("{}. The thick line: all orders together; red: its limits.", data["said"]))
         self.so_far = small(f"so far: {data['said']}")
         if "assessment" not in self.shown:
             self._unchecked()

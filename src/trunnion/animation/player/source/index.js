@@ -70,8 +70,11 @@ class Player {
     this.choose(Math.min(options.choice ?? 0, data.choices.length - 1))
     this.watch = new ResizeObserver(() => this.fit())
     this.watch.observe(this.stage)
-    this.onTheme = () => { if (!this.options.theme) this.restage() }
+    this.onTheme = () => { if (!this.options.theme && this.theme !== this.drawn_theme) this.restage() }
     this.dark.addEventListener("change", this.onTheme)
+    this.dressed = new MutationObserver(this.onTheme)
+    this.dressed.observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme", "data-jp-theme-light"] })
+    this.dressed.observe(document.body, { attributes: true, attributeFilter: ["data-jp-theme-light"] })
     this.onCalm = () => { if (this.calm.matches) this.pause() }
     this.calm.addEventListener("change", this.onCalm)
     this.step = this.step.bind(this)
@@ -79,7 +82,12 @@ class Player {
     requestAnimationFrame(this.step)
   }
 
-  get theme() { return this.options.theme ?? (this.dark.matches ? "dark" : "light") }
+  // What was asked for; else what the page was switched to, a notebook's included; else as the system has it.
+  get theme() {
+    const switched = document.documentElement.dataset.theme, notebook = document.body.dataset.jpThemeLight
+    return this.options.theme ?? (["light", "dark"].includes(switched) ? switched
+      : notebook === "true" ? "light" : notebook === "false" ? "dark" : this.dark.matches ? "dark" : "light")
+  }
 
   build() {
     const field = (text, input, ...more) => element("label", {}, text, input, ...more)
@@ -162,7 +170,7 @@ class Player {
 
   // Begins the picture anew: in WebGL, in the one context of the page, or on a plain canvas.
   restage() {
-    const look = this.theme
+    const look = this.drawn_theme = this.theme
     this.box.classList.toggle("dark", look === "dark")
     if (this.painter instanceof Solid && !this.options.flat) this.painter.rebuild(this.parts, this.camera, look)
     else this.begin(look)
@@ -390,6 +398,7 @@ class Player {
     if (!this.alive) return
     this.alive = false
     this.watch.disconnect()
+    this.dressed.disconnect()
     this.dark.removeEventListener("change", this.onTheme)
     this.calm.removeEventListener("change", this.onCalm)
     this.painter.dispose()
