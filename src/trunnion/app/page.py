@@ -39,7 +39,7 @@ document.addEventListener("DOMContentLoaded", () => {
     dress(next)
     try { localStorage.setItem("trunnion-theme", next) } catch {}
   })
-})
+}, { once: true })
 // A slider's handle has no name of its own: it gets the words above it, which change with the parameter.
 const attached = Element.prototype.attachShadow
 Element.prototype.attachShadow = function (...given) {
@@ -111,8 +111,8 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
   table.checks td { display: block; border: 0 !important; padding: 0 !important; }
   table.checks td:first-child { font-weight: 600; }
 }
-.stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px; color: var(--ink);
-  background: var(--note); border: 1px solid var(--note-edge); animation: late 0.3s step-end; }
+.stamp { position: absolute; right: 0; z-index: 9; max-width: 34em; padding: 3px 10px; font-size: 14px;
+  color: var(--ink); background: var(--note); border: 1px solid var(--note-edge); animation: late 0.3s step-end; }
 @keyframes late { from { visibility: hidden; } }
 .refusal, .refusal * { color: var(--bad); overflow-wrap: anywhere; }
 h2, p, li, td, th { overflow-wrap: anywhere; }

@@ -47,7 +47,8 @@ TEXTS = (
 """Colours of letters, and what they stand on."""
 EDGES = (
     ("edge", "ground"), ("edge", "raised"), ("edge", "field"), ("focus", "ground"), ("focus", "raised"),
-    ("focus", "field"), ("satisfied", "raised"), ("exceeded", "raised"), ("undecided", "raised"), ("bar-edge", "bar"), ("bar-focus", "bar"),
+    ("focus", "field"), ("satisfied", "raised"), ("exceeded", "raised"), ("undecided", "raised"), ("bar-edge", "bar"),
+    ("bar-focus", "bar"),
 )  # fmt: skip
 """Colours of edges and marks that say something, and what they stand on."""
 SCALE: Mapping[str, str] = {"small": "13px", "text": "15px", "large": "17px", "title": "19px"}

@@ -209,7 +209,8 @@ _STYLE = """
 label { font-size: 12px; color: var(--faint); }
 input, select, button { font: inherit; padding: 2px 4px; border: 1px solid var(--edge); border-radius: 3px;
   background: var(--field); color: var(--ink); }
-input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid var(--focus); outline-offset: 1px; }
+input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid var(--focus);
+  outline-offset: 1px; }
 input[aria-invalid="true"] { border: 2px solid var(--bad); background: var(--bad-ground); }
 input[type="number"] { width: 5em; }
 button { cursor: pointer; background: var(--button); min-width: 24px; min-height: 24px; }

@@ -23,10 +23,12 @@ REST = 0.4
 """Seconds without a further change before the line is judged: sliders under way do not wait for that."""
 MOST_CHECKS, MOST_SPEEDS = 4, 6
 TILE = """
-:host { border: 1px solid var(--line); border-radius: 6px; padding: 0 8px 4px; background: var(--raised); overflow: hidden; }
+:host { border: 1px solid var(--line); border-radius: 6px; padding: 0 8px 4px; background: var(--raised);
+  overflow: hidden; }
 """
 TITLE = """
-.bk-btn { background: none !important; border: 0 !important; box-shadow: none !important; color: var(--accent) !important;
+.bk-btn { background: none !important; border: 0 !important; box-shadow: none !important;
+  color: var(--accent) !important;
   font-size: 15px; font-weight: 600; padding: 4px 2px !important; text-align: left; }
 .bk-btn:hover { text-decoration: underline; } .bk-btn:focus-visible { outline: 3px solid var(--focus); }
 """
