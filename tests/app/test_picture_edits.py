@@ -3,7 +3,10 @@ neighbour beside it; undo takes back."""
 
 from __future__ import annotations
 
+import re
+
 import pytest
+from playwright.sync_api import Page
 from served import Look
 from test_live_view import FOUND, plays
 
@@ -99,3 +102,53 @@ def test_an_element_is_dragged_to_another_place_and_back(look: Look) -> None:
     page.wait_for_timeout(500)
     look.settled_anew()
     assert order() == before
+
+
+def parts(page: Page) -> list[str]:
+    """Names of the parts of the sketch, from the drive on."""
+    return [str(one) for one in page.locator(".stage .part").evaluate_all("all => all.map(e => e.title)")]
+
+
+def becomes(page: Page, wanted: list[str]) -> None:
+    page.wait_for_function(
+        """wanted => { const deep = root => [...root.querySelectorAll('*')].flatMap(e =>
+          [...(e.matches('.stage .part') ? [e.title] : []), ...(e.shadowRoot ? deep(e.shadowRoot) : [])])
+          return JSON.stringify(deep(document)) === JSON.stringify(wanted) }""",
+        arg=wanted,
+    )
+
+
+def test_in_the_sketch_parts_are_dragged_put_between_and_taken_away(look: Look) -> None:
+    """By dragging, and the same by keys: what comes of it is the order of the file."""
+    look.at("?view=driveline")
+    page = look.page
+    page.set_default_timeout(90_000)
+    page.locator(".stage .part").first.wait_for()
+    first = parts(page)
+    assert first == ["ConstantSpeed 1", "Shaft 1", "Disk 1", "HookeJoint 1", "Shaft 2", "load"]
+    page.get_by_role("button", name="Disk 1, Disk", exact=True).drag_to(page.locator("[data-where='behind load']"))
+    becomes(page, ["ConstantSpeed 1", "Shaft 1", "HookeJoint 1", "Shaft 2", "load", "Disk 1"])
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    becomes(page, first)
+    between = page.locator("[data-where='between Shaft 1 and Disk 1']")
+    page.locator(".chip[data-kind=Coupling]").drag_to(between)
+    becomes(page, [*first[:2], "Coupling 1", *first[2:]])
+    page.get_by_role("button", name="Coupling 1, Coupling", exact=True).press("Alt+ArrowRight")
+    becomes(page, [*first[:3], "Coupling 1", *first[3:]])
+    page.get_by_role("button", name="Coupling 1, Coupling", exact=True).press("Delete")
+    becomes(page, first)
+    page.get_by_label("kind of the part to insert", exact=True).select_option("Disk")
+    page.get_by_role("button", name="insert Disk between HookeJoint 1 and Shaft 2", exact=True).press("Enter")
+    becomes(page, [*first[:4], "Disk 2", *first[4:]])
+    page.get_by_role("button", name="Disk 2, Disk", exact=True).press("Enter")
+    field = page.get_by_label("inertia of Disk 2", exact=True).first
+    field.fill("2 kg*m^2")
+    field.press("Enter")
+    page.get_by_role("button", name="On a branch", exact=True).press("Enter")
+    page.wait_for_function(
+        """() => { const deep = root => [...root.querySelectorAll('*')].flatMap(e =>
+          [...(e.matches('.stage .part') ? [e] : []), ...(e.shadowRoot ? deep(e.shadowRoot) : [])])
+          return deep(document).length === 8 }"""
+    )
+    after = page.get_by_label(re.compile("^after of "))
+    assert after.first.input_value() == "Disk 2"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,8 @@ from trunnion.results.written import write_numbers
 
 Plain = dict[str, Any]
 MOST_SAMPLES = 3000
+LEAST = 6.5
+"""Width of the page of a sketch, in its units: a short line fills it."""
 HELPFUL = 16
 """Numbers named that a check follows most."""
 
@@ -49,6 +51,13 @@ def sketch(result: Any) -> str:
 def plotted(result: Any, **options: Any) -> Plain:
     """The picture of a result, and how it prints."""
     return {"picture": described(result, "plot")(result, **options), "text": str(result)}
+
+
+def touchable(result: Any) -> Plain:
+    """The driveline as SVG, and where its elements are on it."""
+    from trunnion.pictures.driveline_sketch import draw, spots
+
+    return {"svg": drawn(draw(result, LEAST)), "spots": [asdict(one) for one in spots(result, LEAST)]}
 
 
 campbell = tolerances = run_up = plotted

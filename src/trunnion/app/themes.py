@@ -86,5 +86,5 @@ def _variables(theme: int) -> str:
 
 def _alike() -> str:
     """What both themes have, or what follows from their own."""
-    sizes = "".join(f"--{name}: {value}; " for name, value in (SCALE | SPACES).items())
+    sizes = "".join(f"--{name}: {value}; " for name, value in {**SCALE, **SPACES}.items())
     return sizes + "".join(f"{name}: var(--{of}); " for name, of in _PANEL.items())

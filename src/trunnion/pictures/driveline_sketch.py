@@ -31,7 +31,8 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.pictures.draw_matplotlib import SMALL, new_figure, through
 from trunnion.pictures.looks import ACCENT, FAINT, INK
 
-WIDTH = 7.4
+WIDTH, WIDEST = 7.4, 9.0
+"""Of the figure [inches], and of the page that a short line does not fill, in units of the sketch."""
 SLANT = 38 * DEGREE
 """Slope of the names."""
 STEEPEST = 30 * DEGREE
@@ -81,11 +82,21 @@ class _ElementPlace:
         return replace(self, start=self.middle + begin * along, end=self.middle + end * along)
 
 
-def draw(line: Driveline) -> Figure:
-    """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1."""
+@dataclass(frozen=True)
+class _Layout:
+    """Elements on their page: its lower left and upper right corner, size and width of letters, floors of the rows."""
+
+    places: list[_ElementPlace]
+    low: Array
+    high: Array
+    size: float
+    floor: dict[int, float]
+
+
+def _layout(line: Driveline, least: float) -> _Layout:
     places = _places(line)
     x = np.array([p for q in places for p in (q.start[0], q.end[0])])
-    scale = WIDTH / max(x.max() - x.min() + 1.6, 9.0)
+    scale = WIDTH / max(x.max() - x.min() + 1.6, least)
     size = float(np.clip(SMALL * scale / 0.62, 7.5, SMALL))
     letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
     names = max(len(q.name) for q in places) + 3
@@ -95,18 +106,29 @@ def draw(line: Driveline) -> Figure:
     right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
     high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
-    scale = WIDTH / max(high[0] - low[0], 9.0)
+    high[0] = max(high[0], low[0] + least)
+    return _Layout(places, low, high, size, floor)
+
+
+def draw(line: Driveline, least: float = WIDEST) -> Figure:
+    """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1.
+
+    least : width of the page in units of the sketch; a shorter line leaves place beside it.
+    """
+    laid = _layout(line, least)
+    places, low, high = laid.places, laid.low, laid.high
+    scale = WIDTH / (high[0] - low[0])
     figure = new_figure(WIDTH, scale * (high[1] - low[1]), layout=None)
     axes: Any = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    axes.set_xlim(low[0], low[0] + WIDTH / scale)
+    axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
     disks = [p.element.moment_of_inertia for p in places if isinstance(p.element, Disk)]
     for number, place in enumerate(places, start=1):
         _DRAW.get(place.element.kind, _joint)(axes, place, disks)
-        _name(axes, place, number, size, floor[place.row])
-        _numbers(axes, place, size, _between_joints(line.as_stated, number - 1))
+        _name(axes, place, number, laid.size, laid.floor[place.row])
+        _numbers(axes, place, laid.size, _between_joints(line.as_stated, number - 1))
     for place, parent in zip(places, line.as_stated.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
             _bar(axes, places[parent].end, place.start, color=FAINT, lw=1.2, ls=(0, (3, 2)))
@@ -114,6 +136,55 @@ def draw(line: Driveline) -> Figure:
             closed = places[line.as_stated.index(to)]
             _bar(axes, place.end, closed.end, color=FAINT, lw=1.2, ls=(0, (3, 2)))
     return figure
+
+
+@dataclass(frozen=True)
+class Spot:
+    """Where an element is on its sketch, in shares of its width and height from the upper left corner.
+
+    left, top, width, height : of what is drawn of it; begins, ends (2,) : its two ends; parent : place of the element
+    that it hangs on, −1 for none.
+    """
+
+    name: str
+    kind: str
+    left: float
+    top: float
+    width: float
+    height: float
+    begins: tuple[float, float]
+    ends: tuple[float, float]
+    parent: int
+
+
+def spots(line: Driveline, least: float = WIDEST) -> tuple[Spot, ...]:
+    """Where the elements of ``line`` are on what ``draw`` makes of it."""
+    laid, found = _layout(line, least), []
+    whole = laid.high - laid.low
+
+    def share(point: Array) -> tuple[float, float]:
+        x, y = (point - laid.low) / whole
+        return float(x), float(1.0 - y)
+
+    for place, parent in zip(laid.places, line.as_stated.parents, strict=True):
+        half = 0.95 if isinstance(place.element, Rotor) else 0.5
+        ends = np.array([place.start, place.end])
+        left, top = share(np.array([ends[:, 0].min(), ends[:, 1].max() + half]))
+        right, below = share(np.array([ends[:, 0].max(), ends[:, 1].min() - half]))
+        found.append(
+            Spot(
+                place.name,
+                place.element.kind,
+                left,
+                top,
+                right - left,
+                below - top,
+                share(place.start),
+                share(place.end),
+                -1 if parent is None else parent,
+            )  # fmt: skip
+        )
+    return tuple(found)
 
 
 def _places(line: Driveline, letter: float = 0.0) -> list[_ElementPlace]:

@@ -18,6 +18,7 @@ from typing import Any
 
 import tomli_w
 
+from trunnion.app.parts.chain_edits import ChainEdit, chain_of
 from trunnion.app.parts.form import (
     ANGLES,
     FACTORS,
@@ -28,6 +29,7 @@ from trunnion.app.parts.form import (
     SWITCHED_OFF,
     FieldGroup,
     Path,
+    about,
     disks_of,
     form,
     joints_of,
@@ -97,6 +99,19 @@ class Document:
             made.append(replace(group, key=keys[section][int(group.path[-1])]) if section else group)
         return tuple(made)
 
+    @property
+    def element_keys(self) -> list[int]:
+        """Of the elements of ``line``, which was accepted last."""
+        return list(self._accepted.keys["element",])
+
+    def about(self, name: str) -> tuple[FieldGroup, ...]:
+        """Fields of an element of ``line``, its limits, and what load cases and schedules say of it."""
+        names = self.line.as_stated.names
+        if name not in names:
+            return ()
+        place = self.place(("element", names.index(name)), self.element_keys[names.index(name)])
+        return about(self.groups(), int(place[1])) if place else ()
+
     def file(self) -> Rewritten:
         """The file to save: the one opened with what was changed, comments and layout kept; the last valid line."""
         state = self._accepted
@@ -163,12 +178,23 @@ class Document:
 
     def add_element(self, place: int, kind: str) -> None:
         """A new element of a kind before ``place``, with the example of its kind, or a component, "maker/type"."""
-        with self._changing() as data, self._names_kept(data):
-            elements = data.setdefault("element", [])
-            place = min(max(place, 0), len(elements))
-            made = find(kind).table if "/" in kind else {"type": kind} | _EXAMPLES.get(kind, {})
-            elements.insert(place, deepcopy(made))
-            self._changed_keys["element",].insert(place, next(self._fresh))
+        with self._changing_chain() as (chain, fresh):
+            if place < len(chain.nodes):
+                chain.put_in_front(max(place, 0), _made(kind), fresh)
+            elif chain.nodes:
+                chain.put_behind(len(chain.nodes) - 1, _made(kind), fresh)
+            else:
+                chain.begin(_made(kind), fresh)
+
+    def insert(self, place: int, kind: str, front: bool) -> None:
+        """A new element in front of, or behind, that at ``place``, in its own chain."""
+        with self._changing_chain() as (chain, fresh):
+            (chain.put_in_front if front else chain.put_behind)(place, _made(kind), fresh)
+
+    def branch(self, place: int, kind: str) -> None:
+        """A new element on a branch of its own that leaves from that at ``place``."""
+        with self._changing_chain() as (chain, fresh):
+            chain.branch(place, _made(kind), fresh)
 
     def add_limit(self, of: str) -> None:
         """An empty limit of an element."""
@@ -216,6 +242,12 @@ class Document:
         """Take an element, a limit, a load case, a schedule or a rule switched off away."""
         *outer, section, place = path
         with self._changing() as data, self._names_kept(data):
+            if section == "element":
+                with chain_of(data["element"], self._changed_keys["element",]) as chain:
+                    chain.remove(int(place))
+                if not data["element"]:
+                    del data["element"]
+                return
             owner: Any = data
             for key in outer:
                 owner = owner[key]
@@ -225,12 +257,14 @@ class Document:
                 del owner[section]
 
     def move(self, place: int, by: int) -> None:
-        """Move an element toward the drive (−1) or the load (+1)."""
-        with self._changing() as data, self._names_kept(data):
-            elements, keys = data["element"], self._changed_keys["element",]
-            if 0 <= place + by < len(elements):
-                elements.insert(place + by, elements.pop(place))
-                keys.insert(place + by, keys.pop(place))
+        """Move an element toward the drive (−1) or the load (+1) along its chain."""
+        with self._changing_chain() as (chain, _):
+            chain.step(place, by)
+
+    def put(self, place: int, target: int, front: bool) -> None:
+        """Move an element to the front of, or behind, that at ``target``; branches that leave from it come along."""
+        with self._changing_chain() as (chain, _):
+            chain.move(place, target, front)
 
     def replace_text(self, text: str) -> None:
         """Another file.
@@ -276,6 +310,14 @@ class Document:
         self._changed_keys = {section: list(keys) for section, keys in self._history[self._now].keys.items()}
         yield data
         self._take(data, self._changed_keys)
+
+    @contextmanager
+    def _changing_chain(self) -> Iterator[tuple[ChainEdit, int]]:
+        """The elements to change, and a key for one more."""
+        with self._changing() as data, self._names_kept(data):
+            elements = data.setdefault("element", [])
+            with chain_of(elements, self._changed_keys["element",]) as chain:
+                yield chain, next(self._fresh)
 
     @contextmanager
     def _names_kept(self, data: dict[str, Any]) -> Iterator[None]:
@@ -329,6 +371,11 @@ class Document:
             else:
                 self.problems, self._accepted = (), self._history[self._now]
                 self.toml = text  # as typed: what is stated stays so, be it a default
+
+
+def _made(kind: str) -> dict[str, Any]:
+    """The table of a new element."""
+    return deepcopy(find(kind).table if "/" in kind else {"type": kind} | _EXAMPLES.get(kind, {}))
 
 
 def _with_sheets(data: dict[str, Any]) -> dict[str, Any]:

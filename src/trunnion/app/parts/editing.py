@@ -19,7 +19,12 @@ def change_of(data: Mapping[str, Any]) -> Callable[[Document], None]:
             case {"do": "set", "text": str(text)} if found:
                 document.set_text(found, text)
             case {"do": "insert", "kind": str(kind), "by": int(by)} if found:
-                document.add_element(int(found[1]) + by, kind)
+                document.insert(int(found[1]), kind, by == 0)
+            case {"do": "branch", "kind": str(kind)} if found:
+                document.branch(int(found[1]), kind)
+            case {"do": "put", "target": list(target), "target_key": int(key), "front": bool(front)} if found:
+                if (there := document.place(tuple(target), key)) is not None:
+                    document.put(int(found[1]), int(there[1]), front)
             case {"do": "add", "kind": str(kind), "place": int(place)}:
                 document.add_element(place, kind)
             case {"do": "remove"} if found:
@@ -27,7 +32,7 @@ def change_of(data: Mapping[str, Any]) -> Callable[[Document], None]:
             case {"do": "move", "by": int(by)} if found:
                 document.move(int(found[1]), by)
             case {"do": "limit"}:
-                document.add_limit("Shaft *")
+                document.add_limit(str(data.get("of", "Shaft *")))
             case {"do": "load_case"}:
                 document.add_load_case()
             case {"do": "schedule"}:

@@ -115,7 +115,8 @@ export function render({ model }) {
     event.preventDefault()
     const from = dragged.path[1], place = group.path[1] + (isBefore(event, row) ? 0 : 1)
     const by = place - from - (place > from ? 1 : 0)
-    if (by) say({ do: "move", by, path: dragged.path, key: dragged.key })
+    if (by) say({ do: "put", path: dragged.path, key: dragged.key, target: group.path, target_key: group.key,
+      front: isBefore(event, row) })
     drop()
   }
 
@@ -143,14 +144,16 @@ export function render({ model }) {
     if (model.alone) {
       const [group] = model.groups
       if (!group) return
-      const act = (text, data) => element("button", { type: "button",
-        onclick: () => say({ ...data, path: group.path, key: group.key }) }, text)
+      const act = (text, data, made = false) => element("button", { type: "button",
+        onclick: () => say({ ...data, path: group.path, key: group.key, ...(made && { kind: kind.value }) }) }, text)
       const insert = (text, by) => element("button", { type: "button",
         onclick: () => say({ do: "insert", by, kind: kind.value, path: group.path, key: group.key }) }, text)
       table.className = "groups alone"
       table.append(element("div", { class: "group new" }, element("label", { for: "new-kind" }, "insert"), kind,
-        insert("In front", 0), insert("Behind", 1)),
-        element("div", { class: "group new" }, act("Undo", { do: "undo" }), act("Redo", { do: "redo" })))
+        insert("In front", 0), insert("Behind", 1),
+        act("On a branch", { do: "branch" }, true)),
+        element("div", { class: "group new" }, act("Add limit", { do: "limit", of: group.title }),
+        act("Undo", { do: "undo" }), act("Redo", { do: "redo" })))
       return
     }
     const place = element("input", { type: "number", min: 1, id: "new-place", "aria-label": "place of the new element",
@@ -235,7 +238,7 @@ class Editor(JSComponent):
     _stylesheets = [_STYLE]
 
     def __init__(self, on_edit: Callable[[dict[str, Any]], None], **params: Any) -> None:
-        super().__init__(kinds=[*KINDS, *_components()], **params)
+        super().__init__(kinds=kinds_to_add(), **params)
         self._on_edit = on_edit
 
     def show(self, groups: tuple[FieldGroup, ...]) -> None:
@@ -244,6 +247,11 @@ class Editor(JSComponent):
 
     def _handle_msg(self, data: Any) -> None:
         self._on_edit(data)
+
+
+def kinds_to_add() -> list[str]:
+    """Of elements that can be added: kinds, then components as "maker/type"."""
+    return [*KINDS, *_components()]
 
 
 def _components() -> list[str]:

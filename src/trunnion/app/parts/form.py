@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from trunnion.driveline import patterns
 from trunnion.driveline.field_text import label_of, text_of
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
@@ -204,6 +205,26 @@ def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], lef
             text = text_of(values.get(one, ""), kind)
             fields.append(Field((*path, key, one), f"{word} {one}", text, "as it is", "; ".join(filter(None, said))))
     return FieldGroup(path, f"schedule {name}", SCHEDULE, tuple(fields), (), left.rest(owners))
+
+
+def about(groups: Iterable[FieldGroup], place: int) -> tuple[FieldGroup, ...]:
+    """What concerns one element: its own fields, its limits, what load cases and schedules say of it."""
+    groups = tuple(groups)
+    own = next((one for one in groups if one.path == ("element", place)), None)
+    if own is None:
+        return ()
+    found = [own]
+    for one in groups:
+        if one.kind == "limit":
+            of = next((f.text for f in one.fields if f.path[-1] == "of"), "")
+            if patterns.names(of, own.title, own.kind.partition(":")[0]):
+                found.append(one)
+        elif one.kind in (LOAD_KIND, SCHEDULE):
+            fields = tuple(f for f in one.fields if f.path[-1] == own.title)
+            over = tuple(f for f in one.fields if one.kind == SCHEDULE and f.path[-1] in SCHEDULE_OVER)
+            if fields:
+                found.append(replace(one, fields=over + fields, kind=f"in {one.title}", addable=()))
+    return tuple(found)
 
 
 def kind_key(key: str) -> str:

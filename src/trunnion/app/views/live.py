@@ -147,11 +147,7 @@ class LiveView(View):
 
     def group_of(self, name: str) -> tuple[FieldGroup, ...]:
         """The fields of an element of the file."""
-        document = self.session.document
-        if name not in document.line.as_stated.names:
-            return ()
-        place = document.line.as_stated.index(name)
-        return tuple(one for one in document.groups() if one.path == ("element", place))
+        return self.session.document.about(name)
 
     def edited(self, data: dict[str, Any]) -> None:
         """What is done in the fields beside the picture."""
