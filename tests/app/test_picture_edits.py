@@ -4,9 +4,9 @@ neighbour beside it; undo takes back."""
 from __future__ import annotations
 
 import re
+from typing import Any
 
 import pytest
-from playwright.sync_api import Page
 from served import Look
 from test_live_view import FOUND, plays
 
@@ -104,12 +104,12 @@ def test_an_element_is_dragged_to_another_place_and_back(look: Look) -> None:
     assert order() == before
 
 
-def parts(page: Page) -> list[str]:
+def parts(page: Any) -> list[str]:
     """Names of the parts of the sketch, from the drive on."""
     return [str(one) for one in page.locator(".stage .part").evaluate_all("all => all.map(e => e.title)")]
 
 
-def becomes(page: Page, wanted: list[str]) -> None:
+def becomes(page: Any, wanted: list[str]) -> None:
     page.wait_for_function(
         """wanted => { const deep = root => [...root.querySelectorAll('*')].flatMap(e =>
           [...(e.matches('.stage .part') ? [e.title] : []), ...(e.shadowRoot ? deep(e.shadowRoot) : [])])

@@ -328,7 +328,11 @@ class Player {
 
   toggle() { this.playing ? this.pause() : this.play() }
   play() { this.playing = true; if (!this.rows[0].data.repeats && this.time >= this.whole) this.time = 0; this.sound() }
-  pause() { this.playing = false; this.sound() }
+  pause() {
+    this.playing = false
+    if (this.quality < 1) { this.quality = 1; this.fit() }  // a picture that rests has all its pixels
+    this.sound()
+  }
   seek(time) { this.time = Math.max(0, time); this.draw() }
 
   step(now) {
@@ -389,7 +393,7 @@ class Player {
 
   colours(row = 0) {
     this.painter.draw([this.shown(row)])
-    const found = (this.painter.bodies ?? []).map(body => body.coloured.length ? body.coloured[0].color.getHexString() : "")
+    const found = (this.painter.bodies ?? []).map(body => body.tint ? body.tint.getHexString() : "")
     this.draw()
     return found
   }
