@@ -127,7 +127,7 @@ def test_in_the_sketch_parts_are_dragged_put_between_and_taken_away(look: Look) 
     first = parts(page)
     assert first == ["ConstantSpeed 1", "Shaft 1", "Disk 1", "HookeJoint 1", "Shaft 2", "load"]
     page.get_by_role("button", name="Disk 1, Disk", exact=True).drag_to(page.locator("[data-where='behind load']"))
-    becomes(page, ["ConstantSpeed 1", "Shaft 1", "HookeJoint 1", "Shaft 2", "load", "Disk 1"])
+    becomes(page, ["ConstantSpeed 1", "Shaft 1", "HookeJoint 1", "Shaft 2", "load", "Disk 2"])  # the second now
     page.get_by_role("button", name="Undo", exact=True).first.click()
     becomes(page, first)
     between = page.locator("[data-where='between Shaft 1 and Disk 1']")
