@@ -142,16 +142,13 @@ def draw(line: Driveline, least: float = WIDEST) -> Figure:
 class Spot:
     """Where an element is on its sketch, in shares of its width and height from the upper left corner.
 
-    left, top, width, height : of what is drawn of it; begins, ends (2,) : its two ends; parent : place of the element
-    that it hangs on, −1 for none.
+    box : left, top, width and height of what is drawn of it; begins, ends (2,) : its two ends; parent : place of the
+    element that it hangs on, −1 for none.
     """
 
     name: str
     kind: str
-    left: float
-    top: float
-    width: float
-    height: float
+    box: tuple[float, float, float, float]
     begins: tuple[float, float]
     ends: tuple[float, float]
     parent: int
@@ -171,19 +168,9 @@ def spots(line: Driveline, least: float = WIDEST) -> tuple[Spot, ...]:
         ends = np.array([place.start, place.end])
         left, top = share(np.array([ends[:, 0].min(), ends[:, 1].max() + half]))
         right, below = share(np.array([ends[:, 0].max(), ends[:, 1].min() - half]))
-        found.append(
-            Spot(
-                place.name,
-                place.element.kind,
-                left,
-                top,
-                right - left,
-                below - top,
-                share(place.start),
-                share(place.end),
-                -1 if parent is None else parent,
-            )  # fmt: skip
-        )
+        box = left, top, right - left, below - top
+        hangs = -1 if parent is None else parent
+        found.append(Spot(place.name, place.element.kind, box, share(place.start), share(place.end), hangs))
     return tuple(found)
 
 

@@ -74,7 +74,7 @@ export function render({ model }) {
     return element("div", { class: "part", role: "button", tabindex: 0, draggable: "true", title: spot.name,
       "aria-label": `${spot.name}, ${spot.kind}`, "aria-pressed": String(spot.name === model.picked),
       "data-id": "part " + spot.key,
-      style: ["left", "top", "width", "height"].map(side => `${side}:${percent(spot[side])}`).join(";"),
+      style: ["left", "top", "width", "height"].map((side, i) => `${side}:${percent(spot.box[i])}`).join(";"),
       ondragstart: event => begin(event, { spot }), ondragend: end, onclick: press,
       onkeydown: event => {
         if (event.key === "Enter" || event.key === " ") { event.preventDefault(); press() }
