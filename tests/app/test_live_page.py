@@ -197,3 +197,37 @@ def test_it_fits_a_telephone(opened: Any, address: str, scheme: str) -> None:
     page.wait_for_timeout(100)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert page.evaluate(f"{PLAYER}.theme") == scheme
+
+
+def test_tubes_are_coloured_by_their_stress(opened: Any, tmp_path: Path) -> None:
+    """τ = 16 T D/(π(D⁴ − d⁴)), blue against the twist, vermilion with it; without a section there is none."""
+    wide, slim = (0.08, 0.06), (0.05, 0.0)
+    tubes = [
+        tn.Shaft(outer_diameter=outer, inner_diameter=inner, length=1.0, material="steel", damping=2.0, name=name)
+        for name, (outer, inner) in {"wide": wide, "slim": slim}.items()
+    ]
+    first = tn.Disk(inertia=0.3, excitation=[{"order": 2, "amplitude": 50.0}])
+    second = tn.Disk(inertia=0.2, excitation=[{"order": 3, "amplitude": 80.0}])
+    plain = tn.Shaft(stiffness=3e3)
+    line = tn.Driveline([tn.ConstantSpeed(), tubes[0], first, tubes[1], second, plain, tn.Disk(inertia=0.1)])
+    shown = tn.animate(line, "response", speed=60.0)
+    page = opened(shown.save(tmp_path / "stress.html").as_uri())
+    (movement,) = shown.motions[0].movements
+    per = np.array([16 * d / (np.pi * (d**4 - inner**4)) for d, inner in (wide, slim)])
+    stress = movement.torque[:, :2] * per
+    page.evaluate(f"{PLAYER}.pause()")
+    page.get_by_label("coloured by").select_option("stress")
+    assert f"{np.abs(stress).max() / 1e6:.3g} MPa" in page.locator(".legend").inner_text()
+    parts = [part.name for part in shown.motions[0].parts]
+    for k in (7, 40, 63):
+        page.evaluate(f"{PLAYER}.seek({movement.time[k] - movement.time[0]})")
+        found = dict(zip(parts, page.evaluate(f"{PLAYER}.colours()"), strict=True))
+        assert found["Shaft 1"] == ""
+        for name, share in zip(("wide", "slim"), stress[k] / np.abs(stress).max(), strict=True):
+            end = np.array([213, 94, 0]) if share > 0 else np.array([0, 114, 178])
+            expected = 214 + abs(share) * (end - 214)
+            seen = [int(found[name][i : i + 2], 16) for i in (0, 2, 4)]
+            assert np.allclose(seen, expected, atol=1.5), (name, k)
+    page.get_by_label("coloured by").select_option("torque")
+    assert f"{np.abs(movement.torque).max():.3g} N m" in page.locator(".legend").inner_text()
+    assert page.evaluate(f"{PLAYER}.colours()")[parts.index("Shaft 1")] != ""

@@ -52,6 +52,8 @@ def _part(part: DrawnPart) -> dict[str, Any]:
         "axes": _axes(part.frame), "stations": list(part.stations), "turned": _numbers(np.array(part.turned)),
         "spring": part.spring, "size": {key: round(float(value), FIGURES) for key, value in part.size.items()},
     }  # fmt: skip
+    if part.stress:
+        found["stress"] = float(f"{part.stress:.6g}")
     if part.far is not None:
         found["far"] = _numbers(part.far)
     if part.back is not None:

@@ -22,6 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.gears import GearPair
+from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
 from trunnion.driveline.planetary import Planetary
@@ -51,8 +52,9 @@ class DrawnPart:
 
     element : number in the line, from 0; name : as the line has it; at (3,) : its middle, or of what has a length, its
     beginning; frame : rows e, u, v, left-handed where the shaft is drawn against its sense; stations : that turn it, or
-    its two ends; turned : what is taken off their angles [rad]; spring : whose torque colours it, −1 for none; far : of
-    what joins two places; size : lengths by name, of the shape.
+    its two ends; turned : what is taken off their angles [rad]; spring : whose torque colours it, −1 for none; stress :
+    largest shear stress of its section over that torque [1/m³], 0 where no section is stated; far : of what joins two
+    places; size : lengths by name, of the shape.
     """
 
     element: int
@@ -63,6 +65,7 @@ class DrawnPart:
     stations: tuple[int, ...] = ()
     turned: tuple[float, ...] = ()
     spring: int = -1
+    stress: float = 0.0
     far: Array | None = None
     back: Array | None = None
     size: dict[str, float] = field(default_factory=dict)
@@ -220,7 +223,7 @@ class _Draft:
         shape = "shaft" if element.kind == "Shaft" else "coupling"
         drawn = self._part(
             i, shape, axle, stations=(axle.station, station), turned=(axle.turned, axle.turned + fork), spring=spring,
-            size=size,
+            size=size, stress=_section(element),
         )  # fmt: skip
         return [drawn], replace(axle.on(length), station=station)
 
@@ -321,6 +324,12 @@ def _is_heavy(element: Element) -> bool:
 def _tube(element: Element) -> float:
     """Length of a tube [m], 0 where none is stated."""
     return float(getattr(element, "length", None) or 0.0) if element.kind == "Shaft" else 0.0
+
+
+def _section(element: Element) -> float:
+    """Shear stress at the outside over the torque [1/m³], 0 where no diameter is stated."""
+    outer = float(getattr(element, "outer_diameter", None) or 0.0)
+    return float(tube_stress(outer, float(getattr(element, "inner_diameter", None) or 0.0))) if outer else 0.0
 
 
 def _throw(element: Element) -> dict[str, float] | None:

@@ -83,7 +83,7 @@ export class Flat {
     const g = this.context, looks = LOOKS[this.theme], tall = this.height / shown.length
     g.setTransform(this.ratio, 0, 0, this.ratio, 0, 0)
     g.fillStyle = looks.ground; g.fillRect(0, 0, this.width, this.height)
-    shown.forEach(({ angles, torques, most }, row) => {
+    shown.forEach(({ angles, shares }, row) => {
       g.save(); g.beginPath(); g.rect(0, row * tall, this.width, tall); g.clip()
       const aspect = this.width / tall, scale = tall / 2
       const pixel = p => { const [x, y] = this.camera.seen(p, aspect); return [this.width / 2 + x * scale, row * tall + tall / 2 - y * scale] }
@@ -91,8 +91,8 @@ export class Flat {
       this.last = this.parts.map(part => part.stations.map((s, k) => angles[s] - (part.turned[k] ?? 0)))
       const order = this.parts.map((part, i) => [i, dot(part.far ? add(part.at, part.far).map(x => x / 2) : add(part.at, part.axes.e, (part.size.length ?? 0) / 2), out)])
       for (const [i] of order.sort((a, b) => a[1] - b[1])) {
-        const part = this.parts[i], share = part.spring >= 0 && torques && most ? torques[part.spring] / most : null
-        for (const piece of outline(part, this.last[i], share, looks, this.theme, out)) this.piece(g, piece, pixel, scaled)
+        const part = this.parts[i]
+        for (const piece of outline(part, this.last[i], shares[i], looks, this.theme, out)) this.piece(g, piece, pixel, scaled)
       }
       g.restore()
     })

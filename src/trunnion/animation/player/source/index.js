@@ -108,6 +108,8 @@ class Player {
     this.naming = element("input", { type: "checkbox", onchange: () => { this.names = this.naming.checked; this.draw() } })
     this.select = element("select", { onchange: () => this.choose(this.select.selectedIndex) })
     for (const choice of this.data.choices) this.select.append(element("option", { text: choice.title }))
+    this.by = element("select", { "aria-label": "coloured by", onchange: () => { this.key(); this.draw() } },
+      element("option", { value: "torque", text: "torque" }), element("option", { value: "stress", text: "stress" }))
     this.legend = element("span", { class: "legend" })
     this.said = element("p", { class: "said", id: `${this.id}said` })
     const row = element("div", { class: "controls", role: "group", "aria-label": "playing" })
@@ -204,15 +206,25 @@ class Player {
 
   get kind() { return this.painter instanceof Solid ? "webgl" : "2d" }
 
+  // What colours the parts, the torque of their springs or the stress in those whose section is stated, and its largest
+  // value, by which colours are scaled.
+  get quantity() {
+    const { most, unit } = this.rows[0].data, stressed = this.parts.filter(part => part.stress && part.spring >= 0)
+    if (this.by.value !== "stress" || !stressed.length) return { name: "torque", most, unit, per: part => part.spring >= 0 ? 1 : null }
+    const largest = Math.max(...this.rows.map(row => Math.max(...stressed.map(part => part.stress * row.largest(part.spring)))))
+    return { name: "stress", most: largest / 1e6, unit: unit.replace("N m", "MPa"), per: part => part.stress && part.spring >= 0 ? part.stress / 1e6 : null }
+  }
+
   key() {
-    const most = this.rows[0].data.most
+    this.by.hidden = !this.parts.some(part => part.stress && part.spring >= 0) || !this.rows[0].data.most
+    this.coloured = this.quantity
+    const { name, most, unit } = this.coloured
     this.legend.replaceChildren()
     if (!most) { this.legend.append("no torque shown"); return }
-    const bar = element("i", { role: "img", "aria-label": "colours from the most negative torque to the most positive" })
+    const bar = element("i", { role: "img", "aria-label": `colours from the most negative ${name} to the most positive` })
     const stops = [-1, -0.5, 0, 0.5, 1].map(x => css(colour(x, this.theme)))
     bar.style.background = `linear-gradient(90deg, ${stops.join(",")})`
-    const { unit } = this.rows[0].data
-    this.legend.append("torque ", `−${round(most)}`, bar, `${round(most)} ${unit}`)
+    this.legend.append(...(this.by.hidden ? [`${name} `] : [this.by]), `−${round(most)}`, bar, `${round(most)} ${unit}`)
   }
 
   listen(canvas) {
@@ -280,8 +292,11 @@ class Player {
   }
 
   shown(row) {
-    const one = this.rows[row]
-    return { angles: one.angles(this.time, this.factor, this.held), torques: one.data.springs ? one.torques(this.time) : null, most: one.data.most }
+    const one = this.rows[row], { most, per, name } = this.coloured
+    const angles = one.angles(this.time, this.factor, this.held), scale = name === "torque" ? one.data.most : most
+    if (!one.data.springs || !scale) return { angles, shares: this.parts.map(() => null) }
+    const torques = one.torques(this.time)
+    return { angles, shares: this.parts.map(part => per(part) === null ? null : torques[part.spring] * per(part) / scale) }
   }
 
   draw() {

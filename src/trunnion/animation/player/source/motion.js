@@ -51,6 +51,14 @@ export class Movement {
     return found
   }
 
+  // The largest size of the torque of a spring; of what grows, at its largest.
+  largest(e) {
+    const { torque } = this.data, series = part => typeof part === "number" ? [part] : part
+    if (!this.growth) return Math.max(...series(torque[e]).map(Math.abs))
+    const re = series(torque.re[e]), im = series(torque.im[e])
+    return Math.max(...Array.from({ length: Math.max(re.length, im.length) }, (_, k) => Math.hypot(re[k] ?? re[0], im[k] ?? im[0])))
+  }
+
   torques(time) {
     const where = this.place(time), wave = this.envelope(time)
     const count = this.data.springs

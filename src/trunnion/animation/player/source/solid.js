@@ -383,11 +383,8 @@ export class Solid {
     this.renderer.setScissorTest(false)
     this.renderer.clear()
     this.renderer.setScissorTest(rows > 1)
-    shown.forEach(({ angles, torques, most }, row) => {
-      for (const body of this.bodies) {
-        const e = body.part.spring
-        body.show(angles, e >= 0 && torques && most ? torques[e] / most : null)
-      }
+    shown.forEach(({ angles, shares }, row) => {
+      this.bodies.forEach((body, i) => body.show(angles, shares[i]))
       this.place()
       this.look(this.width / tall)
       const bottom = this.height - (row + 1) * tall
