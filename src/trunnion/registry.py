@@ -429,6 +429,16 @@ ANALYSES = (
 """In the order in which help and tables list them."""
 PICTURES: Mapping[str, str] = {key: address for one in ANALYSES for key, address in one.pictures.items()}
 """What describes the picture of a result: ``Class.method`` → address."""
+LIVE: Mapping[str, str] = {
+    "Driveline": "trunnion.animation.notebook:of_line",
+    "Animation": "trunnion.animation.notebook:shown",
+    "NaturalFrequencies": "trunnion.animation.notebook:of_modes",
+    "PeriodicResponse": "trunnion.animation.notebook:of_motion",
+    "RunUp": "trunnion.animation.notebook:of_run",
+    "Transient": "trunnion.animation.notebook:of_transient",
+}
+"""What a notebook shows in motion of a class, beside its words; see ``trunnion.live``."""
+
 VIEWS: Mapping[str, str] = {
     "dashboard": "trunnion.app.views.dashboard:DashboardView",
     "driveline": "trunnion.app.views.driveline:DrivelineView",

@@ -16,7 +16,7 @@ from trunnion.registry import PICTURES
 ROOT = Path(trunnion.__file__).parent
 LAYERS = (
     {"errors", "arrays", "_version", "portable", "registry"},
-    {"reading", "waiting", "writing", "laws"},
+    {"reading", "waiting", "live", "writing", "laws"},
     {"numerics", "driveline"},
     {"numerics/continuation", "numerics/integration", "numerics/patches", "numerics/piecewise_linear"},
     {"numerics/chain", "systems"},

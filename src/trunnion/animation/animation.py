@@ -13,6 +13,7 @@ from typing import Any
 from trunnion.animation.page import as_data, page
 from trunnion.animation.scene import FORMAT, ShownMotion, choice
 from trunnion.errors import InputError
+from trunnion.live import in_notebook
 from trunnion.writing import written_whole
 
 ENDINGS = (".html", ".gif", ".json")
@@ -60,6 +61,9 @@ class Animation:
                 text = self.html if ending == ".html" else self.json
                 temporary.write_text(text, encoding="utf-8", newline="\n")
         return Path(path)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        return in_notebook(self)
 
     def _repr_html_(self) -> str:
         shown = f'srcdoc="{escape(self.html)}" title="{escape(self.title)} in motion"'

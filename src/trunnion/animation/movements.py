@@ -30,6 +30,8 @@ from trunnion.results.words import HERTZ, Words
 
 if TYPE_CHECKING:
     from trunnion.floquet.stability.stability import Stability
+    from trunnion.motion.orbits.periodic_response import PeriodicResponse
+    from trunnion.motion.passing.run_up import RunUp
     from trunnion.motion.simulation.simulation import LineSimulation
     from trunnion.motion.transients.result import Transient
 
@@ -143,6 +145,11 @@ def motion(line: Driveline | Assembly, speed: float | str | None = None) -> tupl
 
     found = periodic_response(line, speed, compare=False)
     assert isinstance(found, PeriodicResponse)
+    return periodic_movement(found)
+
+
+def periodic_movement(found: PeriodicResponse) -> tuple[Assembly, Movement]:
+    """A periodic motion that is computed already."""
     if not found.outcome.ok:
         raise ComputationError(f"no periodic motion is found there: {found.outcome.sentence}")
     assembly, turns = found.line.assembly, found.turns
@@ -269,10 +276,15 @@ def run_up(
     if ends is None or ends[0] == ends[1]:
         raise InputError("are not known", key="speeds", remedy="give the lowest and the highest speed")
     rate = acceleration if acceleration is not None else abs(ends[1] - ends[0]) / 10.0
-    found = passage(assembly, *ends, acceleration=rate, steady=0)
+    return passage_movement(passage(assembly, *ends, acceleration=rate, steady=0))
+
+
+def passage_movement(found: RunUp) -> tuple[Assembly, Movement]:
+    """A run-up that is computed already."""
     run: LineSimulation = found.simulation
     worst = int(np.abs(found.vibration).max(axis=1).argmax())
-    words = Words(found.unit)
+    words, rate = Words(found.unit), found.acceleration
+    ends = found.schedule.first, found.schedule.last
     said = (
         f"Run-up from {words.ends(*ends)} at {rate:.4g} rad/s²: the largest vibration stands at "
         f"{words.speed(float(found.speed[worst]))}. {found.outcome.sentence}"

@@ -30,6 +30,7 @@ from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance, Tolerances, tolerances_of
 from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError, InputRemark
+from trunnion.live import in_notebook
 
 
 class Driveline(ElementChain):
@@ -244,6 +245,9 @@ class Driveline(ElementChain):
             raise InputError("is made of no other elements", key=str(name), remedy=remedy)
         alone = [type(one)(**{**one.stated, "after": None}) for one in found[:1]]
         return Driveline([*alone, *(type(one)(**one.stated) for one in found[1:])], name=name)
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        return in_notebook(self)
 
     def __repr__(self) -> str:
         return summary(self)

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
+from trunnion.live import in_notebook
 from trunnion.portable import Portable
 from trunnion.results.fields import declared
 from trunnion.results.finding import Finding
@@ -103,6 +104,9 @@ class Result(Portable, ABC):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {str(self).strip().splitlines()[0].rstrip(':')}>"
+
+    def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
+        return in_notebook(self)
 
     def _repr_html_(self) -> str:
         return f"<pre>{escape(str(self))}</pre>{self.data._repr_html_()}"
