@@ -35,7 +35,11 @@ for (let k = 0; k < SIDES; k++) {
     points.push(x, y, z, 0, y, z)
   for (const x of [0, 1]) for (const [y, z] of [[0, 0], [a, b], [c, d]]) points.push(x, y, z, 2 * x - 1, 0, 0)
 }
-const made = (kind, text) => { const one = g.createShader(kind); g.shaderSource(one, text); g.compileShader(one); return one }
+function made(kind, text) {
+  const one = g.createShader(kind)
+  g.shaderSource(one, text); g.compileShader(one)
+  return one
+}
 const program = g.createProgram()
 g.attachShader(program, made(g.VERTEX_SHADER, `#version 300 es
 uniform vec2 at; uniform float angle; in vec3 p; in vec3 n; out vec3 shade;
@@ -83,7 +87,8 @@ def main() -> None:
             print(
                 f"{count} elements: {frames / taken:.1f} frames/s over {taken:.1f} s at load {os.getloadavg()[0]:.1f}, "
                 f"{1e3 * spent / frames:.1f} ms of processor time a frame, so {min(60.0, frames / spent):.0f} frames/s "
-                f"of one processor (asked {asked}); resolution × {quality:.2g}\n  {count} plain cylinders beside it: {plain_frames / plain_taken:.1f} frames/s, "
+                f"of one processor (asked {asked}); resolution × {quality:.2g}\n"
+                f"  {count} plain cylinders beside it: {plain_frames / plain_taken:.1f} frames/s, "
                 f"{1e3 * plain_spent / plain_frames:.1f} ms a frame",
                 flush=True,
             )

@@ -1,6 +1,6 @@
 """What a notebook shows of a line or a result beside its words: the line in motion, where ``anywidget`` is.
 
-What is shown of which stands in ``trunnion.registry.LIVE`` by class, so that lines and results know nothing of pictures.
+What is shown of which class stands in ``trunnion.registry.LIVE``: lines and results know nothing of pictures.
 """
 
 from __future__ import annotations
