@@ -151,3 +151,23 @@ def test_file_data_and_picture() -> None:
     assert "rad/s" in found.plot(schedule="pull").get_xlabel()
     with pytest.raises(tn.InputError, match="points = 1"):
         tn.envelope(one, points=1)
+
+
+def test_factors_on_a_machine_over_speed() -> None:
+    """A fan that is opened as it runs faster: torques of its shaft by hand; written and read again."""
+    opened = tn.Schedule(name="opening", speed=[50.0, 100.0], factors={"fan": [0.2, 1.0]})
+    shaft = tn.Shaft(stiffness=1e4, damping=5.0, name="shaft")
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), shaft, tn.Fan(inertia=0.5, quadratic_load=0.02, name="fan")],
+        operation=tn.Operation(speed=80.0, speed_range=(50.0, 100.0), schedules=[opened]),
+        limits=[tn.Limit(of="shaft", max_torque=150.0)],
+    )
+    assert tn.loads(tn.dumps(line)) == line
+    assert line.at_schedule("opening", 75.0).elements[-1].quadratic_load == pytest.approx(0.6 * 0.02)
+    found = tn.envelope(line, points=3)
+    (column,) = [k for k, check in enumerate(found.checks) if check.name == "max torque of shaft"]
+    margins = {place.value: found.margin[k, column] for k, place in enumerate(found.places) if place.over == "speed"}
+    assert set(margins) == {50.0, 75.0, 100.0}
+    for speed, margin in margins.items():
+        torque = (0.2 + 0.8 * (speed - 50) / 50) * 0.02 * speed**2
+        assert margin == pytest.approx(1 - torque / 150.0, rel=1e-9)

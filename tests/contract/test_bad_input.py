@@ -575,6 +575,16 @@ PYTHON = [
         "Engine.mean_indicated_pressure = '900 bar': has 900 bar, more than the",
         "give the peak_pressure",
     ),
+    (
+        lambda: tn.Schedule(name="open", speed=[50, 90], factors={"fan": [0.2, 0]}),
+        "schedule open.factors.fan = 0: must be positive",
+        "write 0.01",
+    ),
+    (
+        lambda: line(operation=tn.Operation(schedules=[tn.Schedule(name="a", speed=[5, 9], factors={"b": [1, 2]})])),
+        "schedule a.b = (1.0, 2.0): is not a Fan, Pump, Propeller or Generator of this driveline",
+        "leave factors out",
+    ),
     (lambda: engine(damping_rule="archer"), "Engine.damping_rule = 'archer': is not a rule", 'write "mendes"'),
     (
         lambda: engine(damping_rule="mendes", loss_factor=0.1),

@@ -142,7 +142,7 @@ def envelope(
     """
     points = whole_number(points, "points", 2)
     report_progress = progress or (lambda share: None)
-    stated = _stripped(line, line.operation, {})
+    stated = _stripped(line, line.operation, {}, {})
     first = assess(stated, speeds, unit=unit)
     words = Words(unit or speed_unit(line))
     places = [SchedulePoint("", "", nan, "as stated", stated)]
@@ -158,13 +158,15 @@ def envelope(
     return _together(line, places, judged, limits, parameter, words.of_speeds)
 
 
-def _stripped(line: Driveline, operation: Operation | None, changes: dict[str, dict[str, float]]) -> Driveline:
+def _stripped(
+    line: Driveline, operation: Operation | None, changes: dict[str, dict[str, float]], factors: dict[str, float]
+) -> Driveline:
     """The line with numbers changed and without its schedules; without load cases too where loads are changed."""
     if operation is None:
         return line
-    loaded = any("load_torque" in fields for fields in changes.values())
+    loaded = bool(factors) or any("load_torque" in fields for fields in changes.values())
     left = {"schedules": (), **({"load_cases": ()} if loaded else {})}
-    return line.replace_all(changes, operation=operation.model_copy(update=left))
+    return line.replace_all(changes, operation=operation.model_copy(update=left)).with_factors(factors)
 
 
 def _places(
@@ -173,18 +175,19 @@ def _places(
     at_speed = schedule.over == "speed"
     for value in schedule.between(points, *(span if at_speed else ())):
         shown = words.speed(value) if at_speed else f"{1e3 * value:.4g} mm"
-        changed = _stripped(line, line.operation, schedule.changes_at(value))
+        changed = _stripped(line, line.operation, schedule.changes_at(value), schedule.factors_at(value))
         yield SchedulePoint(schedule.name, schedule.over, value, f"at {schedule.name} {shown}", changed)
 
 
 def _whole(line: Driveline, schedule: Schedule, span: tuple[float, float], words: Words) -> Iterator[SchedulePoint]:
-    """All of a schedule over speed; not of a free–free line with joint angles, which is solved speed by speed."""
+    """All of a schedule over speed; not of a free–free line with joint angles, which is solved speed by speed, nor of
+    factors on machines, whose torque may be a curve."""
     low, high = max(schedule.points[0], span[0]), min(schedule.points[-1], span[1])
-    if schedule.over != "speed" or not low < high:
+    if schedule.over != "speed" or schedule.factors or not low < high:
         return
     # The line at the point where its joints are bent most: what is bent anywhere counts as bent.
     bend = [sum(abs(angles[k]) for angles in schedule.angles.values()) for k in range(len(schedule.points))]
-    changed = _stripped(line, line.operation, schedule.changes_at(schedule.points[int(np.argmax(bend))]))
+    changed = _stripped(line, line.operation, schedule.changes_at(schedule.points[int(np.argmax(bend))]), {})
     if not has_periodic_base(assemble(changed)):
         label = f"along {schedule.name}, {words.ends(low, high)}"
         yield SchedulePoint(schedule.name, "speed", nan, label, changed, (low, high))

@@ -163,10 +163,15 @@ class Driveline(ElementChain):
         factors = self.factors_of(case)
         line = self.replace(silent[0].owner, **{silent[1]: silent[0].number}) if silent else self
         elements = [e.but(load_torque=loads[n]) if n in loads else e for n, e in line.parts]
-        return line.but(
+        return line.but(elements=elements).with_factors(factors)
+
+    def with_factors(self, factors: Mapping[str, float]) -> Driveline:
+        """The same line with the torques of machines, by name, times a factor at every speed."""
+        if not factors:
+            return self
+        return self.but(
             elements=[
-                e.with_torque_times(factors[n]) if n in factors and isinstance(e, Machine) else e
-                for n, e in zip(line.names, elements, strict=True)
+                e.with_torque_times(factors[n]) if n in factors and isinstance(e, Machine) else e for n, e in self.parts
             ]
         )
 
@@ -206,8 +211,9 @@ class Driveline(ElementChain):
         return next((one for name, one in self._silent.items() if case == name or case.endswith(f", {name}")), None)
 
     def at_schedule(self, name: str, value: float) -> Driveline:
-        """The same line with the angles and loads of one of its schedules at a travel [m] or a speed [rad/s]."""
-        return self.replace_all((self.operation or Operation()).schedule(name).changes_at(value))
+        """The same line with what one of its schedules has at a travel [m] or a speed [rad/s]."""
+        schedule = (self.operation or Operation()).schedule(name)
+        return self.replace_all(schedule.changes_at(value)).with_factors(schedule.factors_at(value))
 
     def replace(self, name: str, **changes: Any) -> Driveline:
         """The same line with fields of the element called `name` changed; None takes a field away.
@@ -320,14 +326,22 @@ def _wrong_loads(line: Driveline) -> Iterator[InputError]:
                 if name in machines:
                     remedy = f'write factors = {{ "{name}" = 1.2 }}, say: times its torque over speed'
                 yield InputError(problem, element=where, key=name, value=torque, remedy=remedy)
-        for name, factor in case.factors.items():
-            if name not in machines:
-                problem = "is not a Fan, Pump, Propeller or Generator of this driveline"
-                remedy = nearest(name, machines) if machines else "leave factors out"
-                if name in disks:
-                    problem = "is a factor on a Disk, whose torque is stated by itself"
-                    remedy = f'write loads = {{ "{name}" = "250 N*m" }}, say'
-                yield InputError(problem, element=where, key=name, value=factor, remedy=remedy)
+        yield from _wrong_factors(where, case.factors, machines, disks)
+    for schedule in line.operation.schedules if line.operation else ():
+        yield from _wrong_factors(f"schedule {schedule.name}", schedule.factors, machines, disks)
+
+
+def _wrong_factors(
+    where: str, factors: Mapping[str, object], machines: list[str], disks: list[str]
+) -> Iterator[InputError]:
+    for name, factor in factors.items():
+        if name not in machines:
+            problem = "is not a Fan, Pump, Propeller or Generator of this driveline"
+            remedy = nearest(name, machines) if machines else "leave factors out"
+            if name in disks:
+                problem = "is a factor on a Disk, whose torque is stated by itself"
+                remedy = f'write loads = {{ "{name}" = "250 N*m" }}, say'
+            yield InputError(problem, element=where, key=name, value=factor, remedy=remedy)
 
 
 def _wrong_schedules(line: Driveline) -> Iterator[InputError]:

@@ -402,8 +402,8 @@ NOT_FEATURES = {
     "Operation.schedules": "line.at_schedule(name, value) puts a point's angles and torques into the line",
     "Schedule.name": "a label",
     **dict.fromkeys(
-        (f"Schedule.{key}" for key in ("travel", "speed", "angles", "loads")),
-        "line.at_schedule(name, value) puts them into angle and load_torque; envelope judges every point",
+        (f"Schedule.{key}" for key in ("travel", "speed", "angles", "loads", "factors")),
+        "line.at_schedule(name, value) puts them into angle, load_torque and torques; envelope judges every point",
     ),
     "LoadCase.name": "a label",
     "LoadCase.loads": "line.with_load(case) puts them into load_torque",

@@ -38,12 +38,12 @@ from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import read_pressure
-from trunnion.driveline.quantities import SPEED, QuantityKind, written
+from trunnion.driveline.quantities import RATIO, SPEED, QuantityKind, written
 from trunnion.driveline.record import Record, is_name
 from trunnion.driveline.refusals import about, nearest
 from trunnion.driveline.rules import SwitchedOff
 from trunnion.driveline.scenarios import Scenario
-from trunnion.driveline.schedules import FOLLOWING, OVER, Schedule
+from trunnion.driveline.schedules import FACTORS, FOLLOWING, OVER, Schedule
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
@@ -543,7 +543,7 @@ def _operation_blocks(operation: Operation) -> list[str]:
     for one in operation.schedules:
         points = _written(one.points, OVER[one.over], unit)
         blocks.append(_block("[[operation.schedule]]", {"name": one.name, one.over: points}))
-        for key, kind in FOLLOWING.items():
+        for key, kind in {**FOLLOWING, FACTORS: RATIO}.items():
             columns = {n: _written(numbers, kind) for n, numbers in getattr(one, key).items()}
             if columns:
                 blocks.append(_block(f"[operation.schedule.{key}]", columns))

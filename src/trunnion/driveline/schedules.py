@@ -11,6 +11,7 @@
     name = "full throttle"
     speed = ["800 rpm", "1400 rpm", "2400 rpm"]
     loads = { "vehicle" = ["5 kN*m", "6.2 kN*m", "4 kN*m"] }
+    factors = { "pump" = [0.2, 0.6, 1] }                    # times the torque of a machine
 
 Between the points stated, numbers follow straight lines; beyond them a schedule says nothing. A schedule changes no
 motion by itself; ``envelope`` goes by it, and ``Driveline.at_schedule`` gives the line at one of its points.
@@ -24,7 +25,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from trunnion.driveline.quantities import ANGLE, LENGTH, SPEED, TORQUE, QuantityKind, json_schema_of, parse
+from trunnion.driveline.quantities import ANGLE, LENGTH, RATIO, SPEED, TORQUE, QuantityKind, json_schema_of, parse
 from trunnion.driveline.record import Name, Named, by_name
 from trunnion.errors import InputError
 
@@ -32,6 +33,8 @@ OVER = {"travel": LENGTH, "speed": SPEED}
 FOLLOWING = {"angles": ANGLE, "loads": TORQUE}
 KEYS = {"angles": "angle", "loads": "load_torque"}
 """Which number of an element follows."""
+FACTORS = "factors"
+"""What follows beside these: factors on the torque of machines."""
 
 
 def _list_of(kind: QuantityKind, value: object) -> tuple[float, ...]:
@@ -65,6 +68,7 @@ _READ_TRAVEL, _TRAVEL = _rising(LENGTH)
 _READ_SPEED, _SPEED = _rising(SPEED)
 _READ_ANGLES, _ANGLES = _columns(ANGLE, "angles", "HookeJoint 1")
 _READ_LOADS, _LOADS = _columns(TORQUE, "loads", "Disk 2")
+_READ_FACTORS, _FACTORS = _columns(RATIO, FACTORS, "propeller")
 
 
 class Schedule(Named):
@@ -76,6 +80,7 @@ class Schedule(Named):
     travel, speed : the points, rising: travel [m] of a suspension, or input speed [rad/s]; one of the two.
     angles : joint angles [rad] at the points, by the name of the joint.
     loads : load torques [N m] at the points, by the name of the Disk; positive resists rotation.
+    factors : on the torque of a Fan, Pump, Propeller or Generator at the points, by its name, as of a ``LoadCase``.
 
     Raises
     ------
@@ -103,13 +108,21 @@ class Schedule(Named):
         default={}, description="load torques at the points, by the name of the Disk; positive resists rotation"
     )
 
+    factors: Annotated[dict[str, tuple[float, ...]], _READ_FACTORS, _FACTORS] = Field(
+        default={}, description="factors on the torque of machines at the points, by the name of the machine"
+    )
+
     @model_validator(mode="after")
     def _whole(self) -> Schedule:
         if (self.travel is None) == (self.speed is None):
             problem = "has travel and speed at once" if self.travel is not None else "has neither travel nor speed"
             raise InputError(problem, key="travel", remedy='write travel = ["-60 mm", "90 mm"], or speed')
-        if not self.angles and not self.loads:
-            raise InputError("lets nothing follow", key="angles", remedy="write angles or loads by element")
+        if not self.angles and not self.loads and not self.factors:
+            raise InputError("lets nothing follow", key="angles", remedy="write angles, loads or factors by element")
+        for name, numbers in self.factors.items():
+            if not min(numbers) > 0:
+                remedy = "write 0.01, say, for a machine that hardly takes any torque"
+                raise InputError("must be positive", key=f"{FACTORS}.{name}", value=min(numbers), remedy=remedy)
         if self.speed is not None and self.speed[0] <= 0:
             raise InputError("must be positive", key="speed", remedy="begin above standstill")
         wrong = [
@@ -118,7 +131,7 @@ class Schedule(Named):
                 key=f"{key}.{name}",
                 remedy="give one value for each point",
             )
-            for key in FOLLOWING
+            for key in (*FOLLOWING, FACTORS)
             for name, numbers in getattr(self, key).items()
             if len(numbers) != len(self.points)
         ]  # fmt: skip
@@ -148,6 +161,17 @@ class Schedule(Named):
         ------
         InputError : beyond the first or the last point.
         """
+        found: dict[str, dict[str, float]] = {}
+        for key in FOLLOWING:
+            for name, number in self._at(value, getattr(self, key)).items():
+                found.setdefault(name, {})[KEYS[key]] = number
+        return found
+
+    def factors_at(self, value: float) -> dict[str, float]:
+        """Factors on the torques of machines there, by name; refused as by ``changes_at``."""
+        return self._at(value, self.factors)
+
+    def _at(self, value: float, columns: dict[str, tuple[float, ...]]) -> dict[str, float]:
         import numpy as np  # a description alone loads without it
 
         first, last = self.points[0], self.points[-1]
@@ -156,11 +180,7 @@ class Schedule(Named):
             problem = f"lies beyond the schedule, which goes from {first:g} to {last:g} {unit}"
             remedy = f"stay between {first:g} and {last:g} {unit}"
             raise InputError(problem, element=f"schedule {self.name}", key=self.over, value=value, remedy=remedy)
-        found: dict[str, dict[str, float]] = {}
-        for key in FOLLOWING:
-            for name, numbers in getattr(self, key).items():
-                found.setdefault(name, {})[KEYS[key]] = float(np.interp(value, self.points, numbers))
-        return found
+        return {name: float(np.interp(value, self.points, numbers)) for name, numbers in columns.items()}
 
     def between(self, points: int, low: float = -inf, high: float = inf) -> tuple[float, ...]:
         """Of the part from ``low`` to ``high`` (travel [m] or speed [rad/s]): both ends, the points stated, and as many

@@ -195,6 +195,7 @@ def _schedule(place: int, table: Any, elements: Sequence[Mapping[str, Any]], lef
     for key, word, kind, there in (
         (ANGLES, "angle of", ANGLE, joints_of(elements)),
         (LOADS, "torque at", TORQUE, disks_of(elements)),
+        (FACTORS, "factor on", RATIO, ()),
     ):
         stated = table.get(key)
         values = stated if isinstance(stated, dict) else {}
@@ -229,7 +230,7 @@ def about(groups: Iterable[FieldGroup], place: int) -> tuple[FieldGroup, ...]:
 
 def kind_key(key: str) -> str:
     """The field of an element that a schedule's table ``key`` sets."""
-    return FOLLOWED[key]
+    return FOLLOWED.get(key, key)
 
 
 def _element(place: int, table: Mapping[str, Any], name: str, left: _OpenErrors) -> FieldGroup:
