@@ -118,7 +118,7 @@ class Schedule(Named):
             problem = "has travel and speed at once" if self.travel is not None else "has neither travel nor speed"
             raise InputError(problem, key="travel", remedy='write travel = ["-60 mm", "90 mm"], or speed')
         if not self.angles and not self.loads and not self.factors:
-            raise InputError("lets nothing follow", key="angles", remedy="write angles, loads or factors by element")
+            raise InputError("lets nothing follow", key="angles", remedy="write angles or loads by element, or factors")
         for name, numbers in self.factors.items():
             if not min(numbers) > 0:
                 remedy = "write 0.01, say, for a machine that hardly takes any torque"
