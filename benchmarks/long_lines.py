@@ -3,9 +3,9 @@
     PYTHONPATH=src OPENBLAS_NUM_THREADS=1 python benchmarks/long_lines.py [--repeats 5] [--most 300]
 
 Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds
-and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed;
-``stability_chart`` over speed and joint angles, once, as chosen and without grids of whole matrices where that takes
-no more than a minute. Medians on one thread.
+and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed,
+and whether it takes the cheaper of its two ways; ``stability_chart`` over speed and joint angles, once, as chosen and
+without grids of whole matrices where that takes no more than a minute. Medians on one thread.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from orders import open_torsion
 
 import trunnion as tn
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
+from trunnion.floquet.propagation import tree_modes
 from trunnion.steady.orders import spectrum
 
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
@@ -28,8 +29,8 @@ TARGETS = {50: 0.15, 100: 0.4, 300: 1.5}
 """Seconds of ``order_response`` with two angled joints."""
 
 
-def chain(inertias: int, joints: int = 2) -> tn.Driveline:
-    """A driven chain shaken by three orders at its middle; joints at 15° behind the first and the second third."""
+def chain(inertias: int, joints: int = 2, degrees: float = 15.0) -> tn.Driveline:
+    """A driven chain shaken by three orders at its middle; joints at ``degrees`` behind the first and second third."""
     rng, elements = np.random.default_rng(inertias), [tn.ConstantSpeed()]
     bends = {inertias // 3 * (j + 1) for j in range(joints)}
     for i in range(inertias):
@@ -38,7 +39,7 @@ def chain(inertias: int, joints: int = 2) -> tn.Driveline:
         shaken = [{"order": order, "amplitude": 50.0} for order in ORDERS] if i == inertias // 2 else []
         elements.append(tn.Disk(inertia=float(rng.uniform(0.05, 0.3)), excitation=shaken))
         if i + 1 in bends:
-            elements.append(tn.HookeJoint(angle=tn.deg(15.0)))
+            elements.append(tn.HookeJoint(angle=tn.deg(degrees)))
     return tn.Driveline(elements)
 
 
@@ -106,6 +107,14 @@ def main() -> None:
                 median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for line in (chain(n, 0), chain(n))
             )
             print(f"| {n} | {straight:.3f} | {bent:.3f} | {'0.02, 0.5' if n == 100 else ''} |", flush=True)
+    print("\n| inertias, angle | stability, as chosen [s] | by modes | states carried in time |\n|---|---|---|---|")
+    for n, angle in ((20, 15.0), (50, 15.0), (100, 15.0), (200, 15.0), (20, 45.0), (100, 45.0), (100, 60.0)):
+        if n <= asked.most:
+            line = chain(n, 2, angle)
+            chosen, modes, carried = (
+                median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for _ in ways_to_multipliers()
+            )
+            print(f"| {n}, {angle:.0f}° | {chosen:.3f} | {modes:.3f} | {carried:.3f} |", flush=True)
     print("\n| inertias, pixels of a chart | as chosen [s] | without whole matrices |\n|---|---|---|")
     for n, size, both in CHARTS:
         if n <= asked.most:
@@ -148,6 +157,15 @@ def ways() -> Iterator[None]:
         spectrum.tree_pays = pays  # type: ignore[assignment]
         yield
     spectrum.tree_pays = model
+
+
+def ways_to_multipliers() -> Iterator[None]:
+    """``stability`` as its cost model chooses, then always by modes first, then with all states carried in time."""
+    model = tree_modes._blocks_pay
+    for pays in (model, lambda line: True, lambda line: False):
+        tree_modes._blocks_pay = pays  # type: ignore[assignment]
+        yield
+    tree_modes._blocks_pay = model
 
 
 if __name__ == "__main__":
