@@ -9,10 +9,12 @@ import numpy as np
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.refusals import nearest
+from trunnion.equations.coefficients import assemble
 from trunnion.equations.line_regimes import staged_springs
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import RunUp
 from trunnion.motion.simulation.simulation import LineSimulation
+from trunnion.motion.transients.result import Transient
 from trunnion.numerics.turning_points import turning_points
 from trunnion.results.counts import counted
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
@@ -74,7 +76,7 @@ class TorqueAmplification(Result):
 
 
 def torque_amplification(
-    run: LineSimulation | RunUp, nominal: Mapping[str, float] | None = None
+    run: LineSimulation | RunUp | Transient, nominal: Mapping[str, float] | None = None
 ) -> TorqueAmplification:
     """Torque amplification factor of every shaft and mesh, and what its play does.
 
@@ -83,7 +85,7 @@ def torque_amplification(
 
     Parameters
     ----------
-    run : what ``simulate`` or ``run_up`` gives for a line.
+    run : what ``simulate``, ``run_up`` or ``transient`` gives for a line.
     nominal : torque [N m] by the name of the shaft that the factor refers to; of those not named, what the loads of the
         description ask for at the speed of the last turn.
 
@@ -100,8 +102,8 @@ def torque_amplification(
     1.859
     """
     motion = run.simulation if isinstance(run, RunUp) else run
-    if not isinstance(motion, LineSimulation):
-        remedy = "give what simulate or run_up returns for a driveline"
+    if not isinstance(motion, LineSimulation | Transient):
+        remedy = "give what simulate, run_up or transient returns for a driveline"
         raise InputError(f"is a {type(run).__name__}, not a motion of a line", key="run", remedy=remedy)
     shafts = motion.shafts
     given = _given(nominal or {}, shafts)
@@ -126,26 +128,34 @@ def _given(nominal: Mapping[str, float], shafts: tuple[str, ...]) -> Mapping[str
     return nominal
 
 
-def _of_loads(motion: LineSimulation) -> Array:
-    """Static torque (shaft,) [N m] at the speed of the last turn, or of the end where it made none."""
-    assembly = motion.line.assembly
+def _of_loads(motion: LineSimulation | Transient) -> Array:
+    """Static torque (shaft,) [N m] at the speed of the last turn, or of the end where it made none; of a transient by
+    the loads of its description, machines by their curves, and none where it stands still at the end."""
     speed = motion.whole.last_turn()[1]
-    speed = speed if np.isfinite(speed) and speed else float(motion.profile.at(motion.end))
+    if isinstance(motion, Transient):
+        if not (np.isfinite(speed) and speed > 0):
+            return np.full(len(motion.shafts), np.nan)
+        assembly = assemble(motion.description)
+    else:
+        assembly = motion.line.assembly
+        speed = speed if np.isfinite(speed) and speed else float(motion.profile.at(motion.end))
     return np.asarray(assembly.coefficients(assembly.table(1, speed), free_play=True).torque[0])
 
 
-def _landings(motion: LineSimulation) -> tuple[Integers, Array]:
+def _landings(motion: LineSimulation | Transient) -> tuple[Integers, Array]:
     """Landings (shaft,) of every spring with play, −1 of the others, and the largest torque at one [N m]."""
-    line, run = motion.line, motion.trajectory
+    line = motion.line
+    runs = [one.trajectory for one in motion.pieces] if isinstance(motion, Transient) else [motion.trajectory]
+    start, regime = (np.concatenate([getattr(one, key) for one in runs]) for key in ("start", "regime"))
     count, impact = np.full(len(motion.shafts), -1, dtype=np.int64), np.full(len(motion.shafts), np.nan)
-    row = line.assembly.table(1, motion.profile.speed[0])[0]
+    row = line.assembly.table(1, line.speed if isinstance(motion, Transient) else motion.profile.speed[0])[0]
     springs = {e: spring for e, spring in staged_springs(line.assembly, row).items() if spring.stages > 1}
     if not springs:
         return count, impact
     points = turning_points(motion.torque_at, motion.cuts)
     for e, spring in springs.items():
-        side = spring.side[run.regime // spring.stride % spring.stages]
-        landed = run.start[1:][(side[1:] != 0) & (side[:-1] == 0)]
+        side = spring.side[regime // spring.stride % spring.stages]
+        landed = start[1:][(side[1:] != 0) & (side[:-1] == 0)]
         count[e] = len(landed)
         if len(landed):
             behind = np.searchsorted(points[e].time, landed).clip(0, len(points[e].time) - 1)
