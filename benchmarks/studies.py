@@ -1,7 +1,7 @@
 """What a study costs beside its points: engine and store at tasks of a second, a second worker, points of the batch.
 
     python benchmarks/studies.py overhead [tasks] [seconds]
-    python benchmarks/studies.py workers [points]
+    python benchmarks/studies.py workers [tasks] [seconds]
     python benchmarks/studies.py batch [points]
     python benchmarks/studies.py memory [points] [points]
 
@@ -15,7 +15,7 @@ import sys
 import tempfile
 import threading
 from pathlib import Path
-from time import perf_counter, process_time, sleep, thread_time
+from time import perf_counter, process_time, sleep
 from typing import Any
 
 import trunnion as tn
@@ -43,59 +43,52 @@ def asked(store: Path, quantities: list[str], points: int, **more: Any) -> dict[
     return {**study, **more}
 
 
-def overhead(tasks: int = 60, seconds: float = 1.0) -> None:
-    """Blocks that take a second of processor time, and what client, scheduler and store take beside them."""
-    spent: list[float] = []
+def overhead(tasks: int = 60, seconds: int = 1) -> None:
+    """Tasks that sleep, so that other work on the machine takes nothing from them: what client and scheduler, in this
+    process, and worker and store, in another, take of the processor meanwhile, and how much later all is done."""
+    with tempfile.TemporaryDirectory() as folder, workers_here(1, dashboard=None) as client:
+        client.run(_sleeping, seconds)
+        tn.study(_sleepers(Path(folder) / "warm.zarr", 2), line=line(), client=client)  # whatever loads or compiles
+        before, mine, begun = sum(client.run(process_time).values()), process_time(), perf_counter()
+        tn.study(_sleepers(Path(folder) / "a.zarr", tasks), line=line(), client=client)
+        elapsed, mine = perf_counter() - begun, process_time() - mine
+        theirs = sum(client.run(process_time).values()) - before
+    asleep = tasks * seconds
+    print(f"{tasks} tasks of {seconds} s, asleep: {elapsed:.1f} s elapsed, {100 * (elapsed / asleep - 1):.1f} % more")
+    for who, used in (("client and scheduler", mine), ("worker and store", theirs)):
+        print(f"  {who}: {1e3 * used / tasks:.1f} ms of processor time a task, {100 * used / asleep:.2f} %")
 
-    def busy(self: StudyQuestion, paths: tuple[str, ...], values: Any) -> Any:
-        begun = thread_time()
-        while thread_time() - begun < seconds:
-            pass
+
+def _sleepers(store: Path, tasks: int) -> dict[str, Any]:
+    return asked(store, ["growth_rate", "liouville_defect"], tasks * 16, block=16)
+
+
+def _sleeping(seconds: float) -> None:
+    """From now on blocks of this process sleep."""
+
+    def evaluated(self: StudyQuestion, paths: tuple[str, ...], values: Any) -> Any:
+        sleep(seconds)
         room = self._room(len(values))
         room.status[:] = DONE
         for column in room.values.values():
             column[:] = 1.0
-        spent.append(thread_time() - begun)
         return room
 
-    import distributed
-
-    before, StudyQuestion.evaluated = StudyQuestion.evaluated, busy  # type: ignore[method-assign]
-    try:
-        with (
-            tempfile.TemporaryDirectory() as folder,
-            distributed.Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as client,
-        ):
-            begun, elapsed = process_time(), perf_counter()
-            study = asked(Path(folder) / "a.zarr", ["growth_rate", "liouville_defect"], tasks * 16, block=16)
-            tn.study(study, line=line(), client=client)
-            whole = process_time() - begun
-            elapsed = perf_counter() - elapsed
-    finally:
-        StudyQuestion.evaluated = before  # type: ignore[method-assign]
-    beside = whole - sum(spent)
-    print(f"{len(spent)} blocks of {sum(spent) / len(spent):.3f} s, {elapsed:.0f} s elapsed")
-    share = 100 * beside / sum(spent)
-    print(f"  client, scheduler, worker and store: {beside:.2f} s beside {sum(spent):.1f} s, {share:.2f} %")
+    StudyQuestion.evaluated = evaluated  # type: ignore[method-assign]
 
 
-def workers(points: int = 4000) -> None:
-    """Calls one by one, on one worker and on two; elapsed, and processor time of the points."""
-    for count in (1, 2, 2, 1):
+def workers(tasks: int = 60, seconds: int = 1) -> None:
+    """The same tasks on one worker and on two; elapsed."""
+    took = {}
+    for count in (1, 2):
         with tempfile.TemporaryDirectory() as folder, workers_here(count, dashboard=None) as client:
-            question = asked(Path(folder) / "warm.zarr", ["growth_rate", "liouville_defect"], 64, block=4)
-            tn.study(question, line=line(), client=client)  # whatever compiles or loads
-            client.run(_used)
-            before, begun = sum(client.run(_used).values()), perf_counter()
-            study = asked(Path(folder) / "a.zarr", ["growth_rate", "liouville_defect"], points, block=64)
-            tn.study(study, line=line(), client=client)
-            elapsed, used = perf_counter() - begun, sum(client.run(_used).values()) - before
-        each = f"{1e3 * used / points:.2f} ms of processor time a point on the workers"
-        print(f"{count} workers: {points / elapsed:.0f} points/s elapsed, {each}", flush=True)
-
-
-def _used() -> float:
-    return process_time()
+            client.run(_sleeping, seconds)
+            tn.study(_sleepers(Path(folder) / "warm.zarr", 2), line=line(), client=client)
+            begun = perf_counter()
+            tn.study(_sleepers(Path(folder) / "a.zarr", tasks), line=line(), client=client)
+            took[count] = perf_counter() - begun
+        print(f"{count} workers: {tasks} tasks of {seconds} s in {took[count]:.1f} s elapsed", flush=True)
+    print(f"two are {took[1] / took[2]:.2f} times one")
 
 
 def batch(points: int = 1_000_000) -> None:

@@ -169,6 +169,7 @@ from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
+from trunnion.studies.boundary import study_boundary as study_boundary
 from trunnion.studies.result import read_study as read_study
 from trunnion.studies.sensitivities import study_sensitivities as study_sensitivities
 from trunnion.studies.study import study as study

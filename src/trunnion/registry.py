@@ -415,6 +415,7 @@ ANALYSES = (
         pictures={
             "Study.plot": "trunnion.pictures.studies:study",
             "SobolIndices.plot": "trunnion.pictures.studies:shares",
+            "StudyBoundary.plot": "trunnion.pictures.boundaries:boundary",
         },
     ),
     Analysis(

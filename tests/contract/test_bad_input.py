@@ -248,6 +248,7 @@ def lasting(*curves, **operation):
 
 
 ANGLES = {"path": "HookeJoint 1.angle", "low": "2 deg", "high": "20 deg", "points": 4}
+STATED_ANGLES = {"path": "HookeJoint 1.angle", "values": [0.1, 0.2]}
 
 
 def studied(given=True, **changes):
@@ -1164,6 +1165,66 @@ PYTHON = [
         lambda: studied(tolerances=True),
         "study.tolerances = True: asks for tolerances, and the line states none",
         "[[tol",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rat"}),
+        "boundary.quantity = 'growth_rat': is none of the study's quantities",
+        'did you mean "growth_rate"?',
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "value": "unstable"}),
+        "boundary.value = 'unstable': belongs to words and verdicts, and growth_rate is a number",
+        "write level = 0.0",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "level": "3 mm"}),
+        "boundary.level = '3 mm'",
+        "1/s",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "noise": -1.0}),
+        "boundary.noise = -1.0: must not be negative",
+        "leave it out",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "halvings": 0}),
+        "boundary.halvings = 0: must be a whole number from 1 to 20",
+        "write halvings",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "halvings": 20}, parameter=[{**ANGLES, "points": 40}]),
+        "boundary.halvings = 20: make a grid too fine to count its points",
+        "take fewer",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "most": 1.5}),
+        "boundary.most = 1.5: must be a whole number",
+        "write most",
+    ),
+    (
+        lambda: studied(quantities=["verdict"], boundary={"quantity": "verdict"}),
+        "boundary.value: is missing",
+        'write value = "unstable"',
+    ),
+    (
+        lambda: studied(quantities=["verdict"], boundary={"quantity": "verdict", "value": "unstabel"}),
+        "boundary.value = 'unstabel': is nothing that verdict can be",
+        'did you mean "unstable"?',
+    ),
+    (
+        lambda: studied(quantities=["verdict"], boundary={"quantity": "verdict", "level": 0.0}),
+        "boundary.level = 0.0: belongs to a number, and verdict is none",
+        'write value = "unstable"',
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate"}, parameter=[STATED_ANGLES]),
+        "boundary.quantity = 'growth_rate': has no grid to refine",
+        "give a parameter low, high and 2 points or more",
+    ),
+    (
+        lambda: studied(boundary={"quantity": "growth_rate", "halving": 3}),
+        "boundary.halving = 3: unknown key",
+        'did you mean "halvings"?',
     ),
     (lambda: studied(block=0), "study.block = 0: must be a whole number from 1", "write block"),
     (lambda: studied(parametr=[]), "study.parametr = []: unknown key", 'did you mean "parameter"?'),

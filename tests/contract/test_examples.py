@@ -23,7 +23,7 @@ UNNAMED = (trunnion.ComputationError, trunnion.InputRemark, trunnion.Tolerance)
 """They take a text, or any number of an element by its own name."""
 SLOW = ("reproduce",)
 """Names whose examples take many seconds."""
-NEEDS = {"read_study": "zarr", "study_sensitivities": "zarr"}
+NEEDS = {"read_study": "zarr", "study_boundary": "zarr", "study_sensitivities": "zarr"}
 """Names whose examples need a package of an extra."""
 RUNNER = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE, verbose=False)
 FINDER = doctest.DocTestFinder(recurse=False)

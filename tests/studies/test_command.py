@@ -118,3 +118,50 @@ def test_a_line_of_the_catalogue(study, here: Path) -> None:
     assert wrong.exit_code == 2 and said in wrong.stderr
     (here / "study.toml").write_text(text.replace("line.toml", "gear-rattle"))
     assert "is not a driveline but equations of motion" in study("study.toml").stderr
+
+
+def test_a_boundary(study, here: Path) -> None:
+    """It is looked for, told along a parameter, drawn, and asked of a store that has none."""
+    asked = stated(Path("b.zarr"), ["verdict"], line="line.toml")
+    asked["parameter"] = [
+        {"path": "HookeJoint 1.angle", "low": "0 deg", "high": "40 deg", "points": 5},
+        {"path": "speed", "low": 1.2, "high": 2.0, "points": 17},
+    ]
+    (here / "edge.toml").write_text(
+        tomli_w.dumps({**asked, "boundary": {"quantity": "verdict", "value": "unstable", "halvings": 2}})
+    )
+    made = study("edge.toml", "--workers", "0")
+    assert made.exit_code == 0 and "boundary of verdict = unstable over HookeJoint 1.angle, speed" in made.stdout
+    assert "points; the same everywhere takes 1105" in study("boundary", "b.zarr").stdout
+    told = study("boundary", "b.zarr", "--along", "speed", "--at", "HookeJoint 1.angle=35 deg", "--json")
+    crossings = json.loads(told.stdout)["crossings"]
+    assert len(crossings) == 2 and all(one["low"] <= one["estimate"] <= one["high"] for one in crossings)
+    shown = study("boundary", "b.zarr", "--along", "speed", "--at", "HookeJoint 1.angle=35 deg").stdout.splitlines()
+    assert "2 crossings along speed" in shown[0] and f"{crossings[0]['low']:.6g} rad/s" in shown[1]
+    drawn = study("show", "b.zarr", "-o", "b.png", "--x", "speed", "--y", "HookeJoint 1.angle")
+    assert drawn.exit_code == 0 and (here / "b.png").stat().st_size > 5000
+    study("study.toml", "--workers", "0")
+    for ask, message in (
+        (("boundary", "s.zarr"), "looked for no boundary; write [boundary]"),
+        (("boundary", "b.zarr", "--at", "speed=1.5"), "--along: is missing"),
+        (("boundary", "b.zarr", "--along", "sped"), 'did you mean "speed"?'),
+        (("boundary", "b.zarr", "--along", "speed", "--at", "5 deg"), "is not PARAMETER=VALUE"),
+        (("boundary", "b.zarr", "--along", "speed", "--at", "HookeJoint 1.angle=5 mm"), "at"),
+        (("show", "b.zarr", "-o", "c.png", "--kind", "chart"), 'stand about a boundary; take "boundary"'),
+    ):
+        answer = study(*ask)
+        assert answer.exit_code == 2 and message in answer.stderr and answer.stderr.count("\n") == 1
+
+
+def test_where_another_parameter_stands_in_a_picture(study, here: Path) -> None:
+    """By its text with a unit: the title says at which point."""
+    study("study.toml", "--workers", "0")
+    at = ("--kind", "slices", "--x", "speed", "--at", "HookeJoint 1.angle=39 deg")
+    drawn = study("show", "s.zarr", "-o", "s.svg", *at)
+    assert drawn.exit_code == 2 and "is no parameter that stands still here" in drawn.stderr
+    asked = stated(Path("three.zarr"), ["growth_rate"], line="line.toml")
+    asked["parameter"].append({"path": "Shaft 1.damping", "values": [0.01, 0.02]})
+    (here / "three.toml").write_text(tomli_w.dumps(asked))
+    study("three.toml", "--workers", "0")
+    drawn = study("show", "three.zarr", "-o", "t.svg", "--at", "Shaft 1.damping=0.019 N*m*s/rad")
+    assert drawn.exit_code == 0 and "0.02" in (here / "t.svg").read_text(encoding="utf-8")

@@ -16,12 +16,13 @@ from trunnion.cli.readers import TABLES_ANYWHERE, read_time
 from trunnion.cli.typed import Json, Within
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import ComputationError, InputError
+from trunnion.results.counts import counted
 
 if TYPE_CHECKING:
     from trunnion.studies.result import Study
     from trunnion.studies.runner import StudyProgress
 
-OF_STORES = ("status", "resume", "show", "export")
+OF_STORES = ("status", "resume", "show", "boundary", "export")
 """What can be asked of a store that is there."""
 EVERY = 0.2
 """Seconds between two states of the line of progress on a terminal."""
@@ -30,7 +31,9 @@ EVERY = 0.2
 def study(
     what: Annotated[
         str,
-        typer.Argument(metavar="FILE|status|resume|show|export", help="Study file (TOML), or what to do with a STORE."),
+        typer.Argument(
+            metavar="FILE|status|resume|show|boundary|export", help="Study file (TOML), or what to do with a STORE."
+        ),
     ],
     store: Annotated[
         str | None, typer.Argument(metavar="STORE", help="The folder that a study wrote, truck.zarr say, or its file.")
@@ -50,7 +53,9 @@ def study(
     ] = None,
     kind: Annotated[
         str | None,
-        typer.Option("--kind", metavar="KIND", help="Kind of picture: chart, slices, histogram, parallel or shares."),
+        typer.Option(
+            "--kind", metavar="KIND", help="Kind of picture: chart, slices, histogram, parallel, boundary or shares."
+        ),
     ] = None,
     x: Annotated[
         str | None,
@@ -58,6 +63,17 @@ def study(
     ] = None,
     y: Annotated[
         str | None, typer.Option("--y", metavar="PARAMETER", help="Parameter along y of the chart, or of the slices.")
+    ] = None,
+    at: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--at",
+            metavar="PARAMETER=VALUE",
+            help='Where another parameter stands in a picture or on a boundary: "HookeJoint 1.angle=5 deg"; repeat it.',
+        ),
+    ] = None,
+    along: Annotated[
+        str | None, typer.Option("--along", metavar="PARAMETER", help="Of boundary: tell where it is crossed.")
     ] = None,
     workers: Annotated[
         int | None,
@@ -94,7 +110,11 @@ def study(
         if store is None:
             raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")
         given = {"workers": workers, "scheduler": scheduler, "memory": memory, "verify": verify}
-        shown = {"quantity": of or "", "kind": kind or "", "x": x or "", "y": y or ""}
+        stands = _stands(at or [])
+        if what == "boundary":
+            _boundary(_store_of(store), along or "", stands, as_json)
+            return
+        shown = {"quantity": of or "", "kind": kind or "", "x": x or "", "y": y or "", "at": stands}
         _of_store(what, _store_of(store), outputs or [], given, within, as_json, shown)
         return
     if store is not None:
@@ -132,7 +152,7 @@ def _of_store(
     given: dict[str, Any],
     within: str | None,
     as_json: bool,
-    shown: dict[str, str],
+    shown: dict[str, Any],
 ) -> None:
     if what == "status":
         _status(store, as_json)
@@ -164,7 +184,51 @@ def _of_store(
             _say_sensitivities(found)
 
 
-def _draw(found: Study, paths: list[Path], shown: dict[str, str]) -> None:
+def _stands(stated: list[str]) -> dict[str, str]:
+    """Where parameters stand, by path, as texts.
+
+    Raises
+    ------
+    InputError : one is not written as PARAMETER=VALUE.
+    """
+    found = {}
+    for one in stated:
+        path, sign, value = one.partition("=")
+        if not (path.strip() and sign and value.strip()):
+            raise InputError("is not PARAMETER=VALUE", key="--at", value=one,
+                             remedy='write --at "HookeJoint 1.angle=5 deg", say')  # fmt: skip
+        found[path.strip()] = value.strip()
+    return found
+
+
+def _boundary(store: str, along: str, at: dict[str, str], as_json: bool) -> None:
+    """The boundary of a store, and where a line along one parameter crosses it."""
+    from trunnion.results.words import Words
+    from trunnion.studies.boundary import study_boundary
+    from trunnion.studies.result import read
+
+    found = study_boundary(read(store))
+    if not along:
+        if at:
+            raise InputError("is missing", key="--along", remedy=f"write --along {found.parameter[0]!r}, say")
+        output.write_json("study", found.to_dict()) if as_json else output.say(str(found))
+        return
+    rows = found.crossings(along, at)
+    if as_json:
+        names = ("estimate", "low", "high")
+        crossings = [dict(zip(names, row, strict=True)) for row in rows.tolist()]
+        output.write_json("study", {"side": found.side, "along": along, "at": at, "crossings": crossings})
+        return
+    unit = found.unit_of[found.parameter.index(along)]
+    words = Words(found.study.unit).parameter(along, unit)
+    output.say(f"{found.side}: {counted(len(rows), 'crossing')} along {along}")
+    for estimate, low, high in rows.tolist():
+        between = f"between {words.number(low, 6)} and {words.number(high, 6)}"
+        known = f"{words.number(estimate, 6)}, " if estimate == estimate else "crossed twice, or not, "
+        output.say(f"  {known}{between}")
+
+
+def _draw(found: Study, paths: list[Path], shown: dict[str, Any]) -> None:
     """One picture, into every file."""
     from trunnion.pictures.draw_matplotlib import draw, save
     from trunnion.pictures.formats import check_format
@@ -176,7 +240,8 @@ def _draw(found: Study, paths: list[Path], shown: dict[str, str]) -> None:
     if shown["kind"] == "shares":
         picture = shares(study_sensitivities(found, shown["quantity"] or found.quantities[0].path))
     else:
-        picture = study(found, quantity=shown["quantity"], kind=shown["kind"], x=shown["x"], y=shown["y"])
+        at = found.values_at(shown["at"])
+        picture = study(found, quantity=shown["quantity"], kind=shown["kind"], x=shown["x"], y=shown["y"], at=at)
     figure = draw(picture).figure.figure
     for path in paths:
         save(figure, path)

@@ -13,6 +13,7 @@ from trunnion.arrays import Array, Flags
 from trunnion.driveline.parameters import SPEED
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import ComputationError, InputError
+from trunnion.pictures.boundaries import boundary
 from trunnion.pictures.design import CROWDED
 from trunnion.pictures.looks import LOOKS, curve
 from trunnion.pictures.picture import (
@@ -39,12 +40,13 @@ from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
 from trunnion.results.words import Words
+from trunnion.studies.boundary import study_boundary
 from trunnion.studies.design import StudyAxis
 from trunnion.studies.points import DONE, FAILED, MISSING
 from trunnion.studies.result import Study
 from trunnion.studies.sensitivities import SobolIndices
 
-KINDS = ("chart", "slices", "histogram", "parallel")
+KINDS = ("chart", "slices", "histogram", "parallel", "boundary")
 """Of the picture of a study."""
 CURVES = 6
 """Slices beside one another."""
@@ -75,7 +77,8 @@ def study(
     Parameters
     ----------
     kind : "chart" over two parameters, "slices" along one, "histogram", or "parallel" coordinates; by default a chart
-        or slices of what was put on a grid, and a histogram of what was sampled.
+        or slices of what was put on a grid, and a histogram of what was sampled. Of a study that looked for one, the
+        "boundary".
     quantity : by default the first.
     x, y : parameters of chart and slices; by default the speed, then the others in order.
     at : where the other parameters stand, SI units by path; by default what the line states, at the nearest point.
@@ -83,6 +86,11 @@ def study(
     chosen = kind or _usual(result)
     if chosen not in KINDS:
         raise InputError("is not a picture of a study", key="kind", value=kind, remedy=nearest(kind, KINDS))
+    if chosen == "boundary":
+        return _boundary(result, quantity, x, y, at)
+    if result.refinement is not None:
+        raise InputError("would show where points are many, not the study: they stand about a boundary", key="kind",
+                         value=chosen, remedy='take "boundary"')  # fmt: skip
     shown = _shown(result, quantity)
     if chosen == "chart":
         return _chart(result, shown, x, y, at or {})
@@ -93,6 +101,14 @@ def study(
             raise InputError(f"belongs to chart and slices, not to {chosen}", key=key, value=value,
                              remedy='leave it out, or give kind = "slices"')  # fmt: skip
     return _histogram(result, shown) if chosen == "histogram" else _parallel(result, shown)
+
+
+def _boundary(result: Study, quantity: str, x: str, y: str, at: Mapping[str, float] | None) -> Picture:
+    found = study_boundary(result)
+    if quantity and quantity != found.quantity:
+        raise InputError("is not what changes at the boundary", key="quantity", value=quantity,
+                         remedy=f'take "{found.quantity}"')  # fmt: skip
+    return boundary(found, x=x, y=y, at=at)
 
 
 def shares(result: SobolIndices) -> Picture:
@@ -122,6 +138,8 @@ def shares(result: SobolIndices) -> Picture:
 
 
 def _usual(result: Study) -> str:
+    if result.refinement is not None:
+        return "boundary"
     grids = len(_grids(result))
     return "chart" if grids > 1 else "slices" if grids else "histogram"
 

@@ -15,6 +15,7 @@ from trunnion.results.result import Result
 from trunnion.studies.description import StudyPlan
 from trunnion.studies.design import in_axes
 from trunnion.studies.quantities import LETTERS
+from trunnion.studies.refinement import Lattice
 from trunnion.studies.store import part_of
 
 ENOUGH = 0.5
@@ -23,6 +24,8 @@ MOST = 8
 """Points that are tried one by one."""
 OF_BATCH = 4096
 """Points of the batch that is timed."""
+POINTS_A_CORNER = 1.25
+"""New points of a cell that is halved, by its corners: 4 of 4 corners of a flat boundary, 10 of 8 were counted."""
 OVERHEAD = 0.03
 """Share of engine and store: an estimate for tasks of a second."""
 
@@ -41,12 +44,13 @@ class StudyCost(Result):
     batched: bool = attribute("whether the compiled batch answers")
     bytes: int = attribute("in the store at most, before compression")
     workers: int = attribute("that share it")
-    shape: tuple[int, ...] = internal("points of the sampling plan and along the axes")
+    at_boundary: int = attribute("further points, where the boundary crosses the grids once: an estimate", default=0)
+    shape: tuple[int, ...] = internal("points of the sampling plan and along the axes", default=())
 
     @property
     def seconds(self) -> float:
         """Processor time of all points [s]."""
-        return self.points * self.seconds_a_point
+        return (self.points + self.at_boundary) * self.seconds_a_point
 
     @property
     def elapsed(self) -> float:
@@ -56,6 +60,8 @@ class StudyCost(Result):
     def _lines(self) -> Iterator[str]:
         where = f"{counted(self.blocks, 'block')}, {counted(self.shards, 'shard')}"
         yield f"{counted(self.points, 'point')}{in_axes(self.shape)} in {where}"
+        if self.at_boundary:
+            yield f"  and about {self.at_boundary} at a boundary that crosses the grids once"
         how = (
             "by the compiled batch"
             if self.batched
@@ -92,8 +98,18 @@ def cost_of(plan: StudyPlan, workers: int) -> StudyCost:
                 break
         timed = len(taken)
     each = sum(LETTERS if q.kind == "word" else 8 for q in question.quantities) + 8 * len(design.paths) + 1
+    further = 0 if plan.refinement is None else at_boundary(Lattice(design, plan.refinement.halvings))
     return StudyCost(
         points=design.size, blocks=part.blocks, shards=part.shards, seconds_a_point=float(np.mean(taken)),
-        least=min(taken), most=max(taken), timed=timed, batched=question.batched, bytes=design.size * each,
-        workers=workers, shape=design.shape,
+        least=min(taken), most=max(taken), timed=timed, batched=question.batched,
+        bytes=(design.size + further) * each, workers=workers, at_boundary=further, shape=design.shape,
     )  # fmt: skip
+
+
+def at_boundary(lattice: Lattice) -> int:
+    """Points that a flat boundary asks for which crosses the grids once, the way on which it meets most cells."""
+    cells = lattice.cells(0).astype(float)
+    size = int(lattice.refined.sum())
+    crossed = np.prod(cells) / cells[lattice.refined].min()
+    halved = sum(crossed * 2.0 ** (level * (size - 1)) for level in range(lattice.depth))
+    return int(POINTS_A_CORNER * 2**size * halved)

@@ -28,6 +28,11 @@
     method = "sobol"                  # or "latin"; "saltelli" for Sobol indices
     points = 1024
 
+    [boundary]                        # further points only where the answer changes
+    quantity = "verdict"
+    value = "unstable"                # of a number instead: level = 0.0
+    halvings = 4                      # of the cells of the grids that the boundary passes
+
 ``tolerances = true`` samples every number that the line's own [[tolerance]] tables let scatter.
 """
 
@@ -56,7 +61,16 @@ from trunnion.errors import InputError
 from trunnion.floquet.tolerance.spread import read_tolerances
 from trunnion.studies.design import LARGEST, METHODS, MOST_LATIN, Sampling, Scattering, StudyAxis, StudyDesign
 from trunnion.studies.points import StudyQuestion, question_of, require_analysis
+from trunnion.studies.quantities import StudyQuantity
+from trunnion.studies.refinement import Lattice, Refinement
 
+MOST_HALVINGS = 20
+MOST_REFINED = 6
+"""Grids that a boundary is followed over."""
+MOST_ALONG = 1 << 20
+"""Points of the finest grid along an axis."""
+MOST_NUMBERED = 1 << 62
+"""Points of the finest grid, of which few are computed."""
 MOST_VALUES = 1 << 24
 """Values of one parameter."""
 MOST_POINTS = 1 << 40
@@ -143,6 +157,36 @@ class StudySampling(Record):
         return self
 
 
+class StudyBoundarySearch(Record):
+    """Where the points go beyond the first grid: to the boundary at which an answer changes.
+
+    Parameters
+    ----------
+    quantity : one of the study's, a number, a word or a verdict.
+    level : of a number: the boundary is where it rises above this; 0 by default.
+    noise : of a number: by how much it has to rise above the level, so that rounding about it is no boundary.
+    value : of a word or verdict: the boundary is between the points that have it and those that do not.
+    halvings : of each cell of the grids that the boundary passes.
+    most : points in all; the search ends before a halving that would need more.
+    """
+
+    what: ClassVar[str] = "boundary"
+    example: ClassVar[str] = 'quantity = "verdict", value = "unstable" and halvings = 4'
+
+    quantity: str
+    level: Any = None
+    noise: Any = None
+    value: Any = None
+    halvings: Any = 4
+    most: Any = 1_000_000
+
+    @model_validator(mode="after")
+    def _whole(self) -> StudyBoundarySearch:
+        _whole(self.halvings, "halvings", 1, MOST_HALVINGS, self.what)
+        _whole(self.most, "most", 1, LARGEST, self.what)
+        return self
+
+
 class StudyDescription(Record):
     """A study as its file states it; see the module."""
 
@@ -160,6 +204,7 @@ class StudyDescription(Record):
     sampling: StudySampling | None = None
     tolerances: bool = False
     block: Any = None
+    boundary: StudyBoundarySearch | None = None
 
     def __init__(self, **data: Any) -> None:
         if isinstance(data.get("quantities"), str):
@@ -168,18 +213,22 @@ class StudyDescription(Record):
             data["parameter"] = listed(StudyParameter, "parameter")(data["parameter"])
         if isinstance(data.get("sampling"), dict):
             data["sampling"] = StudySampling(**data["sampling"])
+        if isinstance(data.get("boundary"), dict):
+            data["boundary"] = StudyBoundarySearch(**data["boundary"])
         super().__init__(**data)
 
 
 @dataclass(frozen=True)
 class StudyPlan:
-    """A study that is read against its line: what is asked, at which points, in blocks of how many, and where kept."""
+    """A study that is read against its line: what is asked, at which points, in blocks of how many, and where kept;
+    and the boundary that further points look for."""
 
     question: StudyQuestion
     design: StudyDesign
     block: int
     store: Path
     source: str
+    refinement: Refinement | None = None
 
 
 def read_description(path: str | os.PathLike[str]) -> tuple[StudyDescription, Path]:
@@ -219,7 +268,8 @@ def plan_of(
     design = _design(stated, line, bare)
     question = question_of(line, stated.analysis, stated.arguments, stated.quantities, design.paths, _tried(design))
     _require_possible(question, design)
-    return StudyPlan(question, design, _block(stated, question), folder / stated.store, source)
+    refinement = _refinement(stated.boundary, question, design) if stated.boundary else None
+    return StudyPlan(question, design, _block(stated, question), folder / stated.store, source, refinement)
 
 
 def _line(stated: str, folder: Path, tables_anywhere: bool) -> Driveline:
@@ -380,6 +430,66 @@ def _require_possible(question: StudyQuestion, design: StudyDesign) -> None:
             except InputError as error:
                 problem = f"would reach {end:.6g}, which no line can have ({error.problems[0].problem})"
                 raise InputError(problem, element="parameter", key=axis.path, remedy="narrow its range") from None
+
+
+def _refinement(asked: StudyBoundarySearch, question: StudyQuestion, design: StudyDesign) -> Refinement:
+    """The boundary that is looked for."""
+    element, known = "boundary", [one.path for one in question.quantities]
+    if asked.quantity not in known:
+        raise InputError("is none of the study's quantities", element=element, key="quantity", value=asked.quantity,
+                         remedy=nearest(asked.quantity, known))  # fmt: skip
+    one = question.quantities[known.index(asked.quantity)]
+    _require_grids(asked, design)
+    if one.kind == "number":
+        return _of_number(asked, one)
+    for key in ("level", "noise"):
+        if getattr(asked, key) is not None:
+            raise InputError(f"belongs to a number, and {one.path} is none", element=element, key=key,
+                             value=getattr(asked, key), remedy='write value = "unstable", say')  # fmt: skip
+    words = [word for word in one.meanings if word]
+    value = asked.value if asked.value is not None else "yes" if words == ["no", "yes"] else None
+    if not isinstance(value, str):
+        remedy = f'write value = "{"unstable" if "unstable" in words or not words else words[-1]}"'
+        raise InputError("is missing" if value is None else "is no word", element=element, key="value", value=value,
+                         remedy=remedy)  # fmt: skip
+    if words and value not in words:
+        raise InputError(f"is nothing that {one.path} can be", element=element, key="value", value=value,
+                         remedy=nearest(value, words))  # fmt: skip
+    return Refinement(one.path, asked.halvings, asked.most, value=value)
+
+
+def _of_number(asked: StudyBoundarySearch, one: StudyQuantity) -> Refinement:
+    if asked.value is not None:
+        raise InputError(f"belongs to words and verdicts, and {one.path} is a number", element="boundary", key="value",
+                         value=asked.value, remedy="write level = 0.0, say")  # fmt: skip
+    found = []
+    for key in ("level", "noise"):
+        stated = getattr(asked, key)
+        try:
+            found.append(0.0 if stated is None else parse(stated, kind_of(one.unit) or RATIO))
+        except InputError as error:
+            raise error.but(element="boundary", key=key, value=stated) from None
+    level, noise = found
+    if noise < 0:
+        raise InputError("must not be negative", element="boundary", key="noise", value=asked.noise,
+                         remedy="leave it out")  # fmt: skip
+    return Refinement(one.path, asked.halvings, asked.most, level, noise)
+
+
+def _require_grids(asked: StudyBoundarySearch, design: StudyDesign) -> None:
+    """Refuse what has no cells to halve, or too many."""
+    lattice = Lattice(design, asked.halvings)
+    refined = int(lattice.refined.sum())
+    if not refined:
+        raise InputError("has no grid to refine", element="boundary", key="quantity", value=asked.quantity,
+                         remedy="give a parameter low, high and 2 points or more")  # fmt: skip
+    if refined > MOST_REFINED:
+        raise InputError(f"goes through {refined} grids, more than {MOST_REFINED}", element="boundary", key="quantity",
+                         value=asked.quantity, remedy="give values or 1 point of some")  # fmt: skip
+    counts = [int(count) for count in lattice.counts(asked.halvings)]
+    if max(counts) > MOST_ALONG or int(np.prod(counts, dtype=object)) > MOST_NUMBERED:
+        raise InputError("make a grid too fine to count its points", element="boundary", key="halvings",
+                         value=asked.halvings, remedy="take fewer")  # fmt: skip
 
 
 def _block(stated: StudyDescription, question: StudyQuestion) -> int:

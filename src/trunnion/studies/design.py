@@ -3,13 +3,15 @@
 Grids put i/(n − 1) of their range at place i, a fraction that a grid of 2n − 1 has too, to the last bit. Sobol points
 are those of one scrambled sequence, whose first ones stay when more are asked for; a Saltelli design takes them in
 rows (A, B, A with each column of B) one sequence point after another, so that it continues alike. A Latin hypercube
-of another size is another one.
+of another size is another one. A design may be some ``chosen`` ones of such points.
 """
 
 from __future__ import annotations
 
+import base64
 import json
 import warnings
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -194,10 +196,12 @@ def _latin(size: int, points: int, seed: int) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class StudyDesign:
-    """All points that a study asks for: of every row of the sampling plan (slowest) all that the axes make."""
+    """All points that a study asks for: of every row of the sampling plan (slowest) all that the axes make; or the
+    ``chosen`` of these, by rising numbers."""
 
     axes: tuple[StudyAxis, ...]
     sampling: Sampling | None = None
+    chosen: Places | None = None
 
     @cached_property
     def paths(self) -> tuple[str, ...]:
@@ -224,7 +228,9 @@ class StudyDesign:
 
     @cached_property
     def shape(self) -> tuple[int, ...]:
-        """Rows of the sampling plan where there is one, then points along each axis."""
+        """Rows of the sampling plan where there is one, then points along each axis; of chosen points how many."""
+        if self.chosen is not None:
+            return (len(self.chosen),)
         sampled = (self.sampling.rows,) if self.sampling else ()
         return (*sampled, *(len(axis.values) for axis in self.axes))
 
@@ -241,9 +247,10 @@ class StudyDesign:
     def content(self) -> dict[str, Any]:
         """As JSON keeps it."""
         sampling = self.sampling and self.sampling.content
-        return {"axes": [axis.content for axis in self.axes], "sampling": sampling}
+        some = {} if self.chosen is None else {"chosen": _packed(self.chosen)}
+        return {"axes": [axis.content for axis in self.axes], "sampling": sampling, **some}
 
-    @property
+    @cached_property
     def key(self) -> str:
         """A text that two designs share that are the same."""
         return json.dumps(self.content, sort_keys=True)
@@ -252,11 +259,17 @@ class StudyDesign:
     def of_content(cls, content: Mapping[str, Any]) -> StudyDesign:
         """What ``content`` says."""
         sampling = content["sampling"] and Sampling.of_content(content["sampling"])
-        return cls(tuple(map(StudyAxis.of_content, content["axes"])), sampling)
+        chosen = _unpacked(content["chosen"]) if "chosen" in content else None
+        return cls(tuple(map(StudyAxis.of_content, content["axes"])), sampling, chosen)
+
+    def _among_all(self, places: Places) -> Places:
+        """Numbers among all points of the axes and the sampling plan."""
+        return places if self.chosen is None else self.chosen[places]
 
     def values(self, places: Places) -> Array:
         """Values (points, parameters) of the points with these numbers, which rise."""
         columns = []
+        places = self._among_all(places)
         if self.sampling:
             row, places = np.divmod(places, self._of_axes)
             first, last = int(row[0]), int(row[-1]) + 1
@@ -277,6 +290,7 @@ class StudyDesign:
 
         What one design varies and the other does not is what the line states there.
         """
+        numbers = asked._among_all(numbers)
         found = np.zeros(len(numbers), dtype=np.intp)
         none = np.zeros(len(numbers), dtype=bool)
         if (self.sampling is None) != (asked.sampling is None):
@@ -301,7 +315,22 @@ class StudyDesign:
         for path, axis in theirs.items():
             if path not in own:
                 none |= (axis.values != axis.nominal)[along[path]]
-        return np.where(none, -1, found)
+        if self.chosen is None:
+            return np.where(none, -1, found)
+        if not len(self.chosen):
+            return np.full(len(numbers), -1, dtype=np.intp)
+        place = np.minimum(np.searchsorted(self.chosen, found), len(self.chosen) - 1)
+        return np.where(none | (self.chosen[place] != found), -1, place)
+
+
+def _packed(numbers: Places) -> str:
+    """Rising numbers as text, of a byte or two each."""
+    steps = np.diff(numbers, prepend=0).astype("<i8")
+    return base64.b64encode(zlib.compress(steps.tobytes(), 6)).decode("ascii")
+
+
+def _unpacked(text: str) -> Places:
+    return np.cumsum(np.frombuffer(zlib.decompress(base64.b64decode(text)), dtype="<i8")).astype(np.intp)
 
 
 def refuse_latin(old: Sequence[StudyDesign], new: StudyDesign) -> None:

@@ -15,6 +15,7 @@ from trunnion.studies.design import StudyDesign
 from trunnion.studies.extra import scale
 from trunnion.studies.parts import StudyPart
 from trunnion.studies.result import read
+from trunnion.studies.rounds import asked_of
 from trunnion.studies.shards import array_names
 from trunnion.studies.store import Store
 from trunnion.writing import written_whole
@@ -90,7 +91,7 @@ def _values(part: StudyPart, design: StudyDesign, first: int, last: int) -> tupl
 def _to_csv(store: Store, to: Path, missing: bool) -> None:
     with written_whole(to) as temporary, temporary.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
-        for k, columns in enumerate(rows(store, store.parts[-1].design, missing)):
+        for k, columns in enumerate(rows(store, asked_of(store)[0], missing)):
             if not k:
                 writer.writerow(columns)
             writer.writerows(zip(*(_plain(column) for column in columns.values()), strict=True))
@@ -105,7 +106,7 @@ def _plain(column: Any) -> list[Any]:
 
 def _to_parquet(store: Store, to: Path, missing: bool) -> None:
     arrow, parquet = scale("pyarrow"), scale("pyarrow.parquet")
-    design = store.parts[-1].design
+    design = asked_of(store)[0]
     with written_whole(to) as temporary:
         writer = None
         try:

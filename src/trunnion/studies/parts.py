@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Places
 from trunnion.studies.design import StudyDesign, missing_from
+from trunnion.studies.refinement import Refinement
 
 AT_ONCE = 1 << 18
 """Points of a design that are looked up together."""
@@ -25,6 +26,8 @@ class StudyPart:
     """Number ``number`` of a store: a design less what the ``earlier`` ones have, in blocks and shards of points.
 
     block : points of a block. shard : of a shard, a whole number of blocks.
+    refinement : the boundary that a part is there to find, and ``first`` the points that its first grid has along each
+        axis.
     """
 
     number: int
@@ -32,26 +35,31 @@ class StudyPart:
     earlier: tuple[StudyDesign, ...]
     block: int
     shard: int
+    refinement: Refinement | None = None
+    first: tuple[int, ...] = ()
 
     @property
     def content(self) -> dict[str, Any]:
         """As JSON keeps it; the earlier designs stand in their own parts."""
+        boundary = {"boundary": self.refinement.content, "first": list(self.first)} if self.refinement else {}
         return {
             "number": self.number, "design": self.design.content, "block": self.block, "shard": self.shard,
-            "points": self.points,
+            "points": self.points, **boundary,
         }  # fmt: skip
 
     @classmethod
     def of_content(cls, content: Mapping[str, Any], earlier: tuple[StudyDesign, ...]) -> StudyPart:
         """What ``content`` says."""
+        refinement = Refinement.of_content(content["boundary"]) if "boundary" in content else None
         return cls(
-            content["number"], StudyDesign.of_content(content["design"]), earlier, content["block"], content["shard"]
-        )
+            content["number"], StudyDesign.of_content(content["design"]), earlier, content["block"], content["shard"],
+            refinement, tuple(content.get("first", ())),
+        )  # fmt: skip
 
     @cached_property
     def _before(self) -> Array | None:
         """New points before each stretch of ``AT_ONCE`` of the design, and in all; None where all are new."""
-        if not self.earlier:
+        if not self.earlier or self.design.chosen is not None:  # these were chosen because nobody has them
             return None
         counts = [int(missing_from(self.design, self.earlier, some).sum()) for some in _stretches(self.design.size)]
         return np.concatenate([[0], np.cumsum(counts)]).astype(np.intp)

@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.quantities import RATIO, kind_of, parse
 from trunnion.errors import InputError
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
@@ -22,6 +23,8 @@ from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.studies.design import StudyAxis, StudyDesign, in_axes
 from trunnion.studies.points import DONE, FAILED, MISSING
 from trunnion.studies.quantities import StudyQuantity
+from trunnion.studies.refinement import Refinement
+from trunnion.studies.rounds import BoundarySearch, asked_of, known_points
 from trunnion.studies.shards import array_names
 from trunnion.studies.store import Store
 
@@ -48,6 +51,8 @@ class Study(Result):
     ended: str = internal("what ended the run before all was done, as a clause", default="")
     failures: Mapping[int, str] = internal("why points failed, by their number", default_factory=dict)
     unit: str = internal("of speeds in print", default="rad/s")
+    refinement: Refinement | None = internal("the boundary that was looked for", default=None)
+    first: StudyDesign | None = internal("its first grid", default=None)
 
     def plot(
         self, axes: Axes | None = None, *, kind: str = "", quantity: str = "", x: str = "", y: str = "",
@@ -64,6 +69,8 @@ class Study(Result):
     @property
     def outcome(self) -> Outcome:
         """Whether all points are done, or what ended it before."""
+        if not self.missing and self.ended:
+            return Outcome(False, "ended early", self.ended)
         if not self.missing:
             return Outcome(True, "whole", "every point was computed")
         why = f"{self.ended}: " if self.ended else ""
@@ -89,7 +96,14 @@ class Study(Result):
         return one.shown(self.values[path]) if one.kind == "word" else self.values[path]
 
     def grid(self, path: str) -> Any:
-        """The same in the shape of the design: (rows of the sampling plan,) parameters in order."""
+        """The same in the shape of the design: (rows of the sampling plan,) parameters in order.
+
+        Raises
+        ------
+        InputError : the points stand about a boundary, not on a grid.
+        """
+        if self.refinement is not None:
+            raise InputError("stands about a boundary, on no grid", key=path, remedy="take study_boundary(study)")
         return np.asarray(self.quantity(path)).reshape(self.design.shape)
 
     def axis(self, path: str) -> StudyAxis:
@@ -101,6 +115,23 @@ class Study(Result):
         """
         self._known(path, [one.path for one in self.design.axes], "parameter with a grid")
         return next(one for one in self.design.axes if one.path == path)
+
+    def values_at(self, stated: Mapping[str, float | str]) -> dict[str, float]:
+        """Values of parameters that are stated as numbers in SI units or as texts, in SI units.
+
+        Raises
+        ------
+        InputError : an unknown parameter, or a value that is none of its kind.
+        """
+        units = dict(zip(self.design.paths, self.design.units, strict=True))
+        found = {}
+        for path, value in stated.items():
+            self._known(path, self.design.paths, "parameter")
+            try:
+                found[path] = parse(value, kind_of(units[path]) or RATIO)
+            except InputError as error:
+                raise error.but(element=path, key="at", value=value) from None
+        return found
 
     def _known(self, path: str, known: Any, what: str) -> str:
         from trunnion.driveline.refusals import nearest
@@ -144,15 +175,21 @@ class Study(Result):
         return words.parameter(one.path, one.unit or "1")
 
     def _lines(self) -> Iterator[str]:
-        where = f"{counted(self.points, 'point')}{in_axes(self.design.shape)}"
+        shape = self.first.shape if self.first else self.design.shape
+        about = " and about a boundary" if self.refinement else ""
+        where = f"{counted(self.points, 'point')}{in_axes(shape)}{about}"
         yield f"{self.analysis} at {where}: {self.done} done, {self.failed} failed"
-        if self.missing:
+        if self.missing or self.ended:
             yield f"  {self.outcome}"
         for path, unit, low, high in self._ranges():
             words = self.words.parameter(path, unit)
             yield f"  over {path} from {words.number(low, 4)} to {words.number(high, 4)}"
         for one in self.quantities:
             yield f"  {one.path}: {self._summary(one)}"
+        if self.refinement and self.done:
+            from trunnion.studies.boundary import study_boundary
+
+            yield f"  {study_boundary(self)}".replace("\n", "\n  ")
         for sentence, count in self.reasons[:MOST_REASONS]:
             yield f"  failed at {count}: {sentence}"
         if len(self.reasons) > MOST_REASONS:
@@ -215,8 +252,11 @@ def read_study(store: str | os.PathLike[str]) -> Study:
     return read(store)
 
 
-def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = None, ended: str = "") -> Study:
-    """Read the points of a design, by default of the last part of a store.
+def read(
+    store: str | os.PathLike[str] | Store, design: StudyDesign | None = None, ended: str = "",
+    search: BoundarySearch | None = None,
+) -> Study:  # fmt: skip
+    """Read the points of a design, or of a ``search`` for a boundary; by default what the store was asked for last.
 
     Raises
     ------
@@ -224,7 +264,13 @@ def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = Non
     ComputationError : a file of it is damaged.
     """
     opened = store if isinstance(store, Store) else Store.open(Path(store))
-    asked = design or opened.parts[-1].design
+    refinement, grid = (search.refinement, search.first) if search else (None, None)
+    if search:
+        asked = known_points(opened, search.lattice)
+    elif design is not None:
+        asked = design
+    else:
+        asked, refinement, grid = asked_of(opened)
     quantities = opened.question.quantities
     status = np.zeros(asked.size, dtype=np.uint8)
     values = {one.path: one.empty(asked.size) for one in quantities}
@@ -251,5 +297,6 @@ def read(store: str | os.PathLike[str] | Store, design: StudyDesign | None = Non
         done=int((status == DONE).sum()), failed=int((status == FAILED).sum()),
         version=str(opened.about["computed_by"]["trunnion"]), design=asked, quantities=quantities, status=status,
         values=values, reasons=tuple(sorted(counts.items(), key=lambda one: -one[1])), ended=ended,
-        failures=dict(sorted(failures.items())), unit=speed_unit(opened.question.line),
+        failures=dict(sorted(failures.items())), unit=speed_unit(opened.question.line), refinement=refinement,
+        first=grid if refinement else None,
     )  # fmt: skip

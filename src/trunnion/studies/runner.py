@@ -48,6 +48,8 @@ ANSWER = 120.0
 """Seconds that the scheduler and the workers have to answer a question."""
 PATIENCE = 0.5
 """Seconds between looks at whether to stop."""
+ASKED_AFTER = 5.0
+"""Seconds between questions who is there, each of which costs milliseconds."""
 ATTEMPTS = 3
 """Times that a block is tried alone before its points are suspected one by one."""
 LOST = "the scheduler has gone; all blocks that were done are kept: run the study again to resume"
@@ -104,21 +106,24 @@ class StudyRun:
     own: bool = False
     last_seen: float = field(default_factory=monotonic)
     last_whole: float = field(default_factory=monotonic)
+    last_asked: float = 0.0
     replaced: int = 0
 
     def __post_init__(self) -> None:
-        self.states: dict[int, PartState] = {part.number: self.store.state(part) for part in self.store.parts}
-        points = sum(part.points for part in self.store.parts)
-        before = sum(
-            sum(
-                last - first
-                for block in range(part.blocks)
-                if self._has(part, block)
-                for first, last in [part.rows(block)]
-            )
-            for part in self.store.parts
-        )
-        self.progress = StudyProgress(points, before)
+        self.states: dict[int, PartState] = {}
+        self.progress = StudyProgress(0, 0)
+        self.follow(self.store)
+
+    def follow(self, store: Store) -> None:
+        """Go on with the store as it is now, which may have further parts."""
+        self.store = store
+        for part in store.parts:
+            if part.number in self.states:
+                continue
+            self.states[part.number] = store.state(part)
+            self.progress.points += part.points
+            there = (part.rows(block) for block in range(part.blocks) if self._has(part, block))
+            self.progress.before += sum(last - first for first, last in there)
 
     def _has(self, part: StudyPart, block: int) -> bool:
         return self.states[part.number].has(part, block)
@@ -334,6 +339,9 @@ class StudyRun:
         """
         if self.client.status not in ("running", "newly-created"):
             raise ComputationError(LOST)
+        if monotonic() - self.last_asked < ASKED_AFTER:
+            return
+        self.last_asked = monotonic()
         try:
             alive = answered(self.client.nthreads)
         except Exception as error:
@@ -448,6 +456,13 @@ def workers_here(processes: int, memory: str | float | None = None, dashboard: i
     settings = {
         "distributed.scheduler.allowed-failures": 1,
         "distributed.worker.daemon": True,
+        # What Dask does by the clock takes some 5 % of a processor by default, more than all else beside the points.
+        "distributed.worker.profile.enabled": False,
+        "distributed.admin.tick.interval": "1s",
+        "distributed.admin.tick.limit": "1h",
+        "distributed.admin.system-monitor.interval": "10s",
+        "distributed.worker.memory.monitor-interval": "250ms",
+        "distributed.scheduler.active-memory-manager.start": False,
         "distributed.scheduler.worker-saturation": 1.1,
         "distributed.nanny.pre-spawn-environ": {
             "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1",

@@ -98,6 +98,9 @@ def study_sensitivities(study: Study, quantity: str, *, confidence: float = 0.95
                          remedy='leave out points and values of its parameters; method = "saltelli"')  # fmt: skip
     if not 0 < one_number(confidence, "confidence", "0.95, say") < 1:
         raise InputError("must lie between 0 and 1", key="confidence", value=confidence, remedy="0.95, say")
+    if study.refinement is not None:
+        raise InputError("has its points about a boundary, not where they were sampled", key="study", value=study.store,
+                         remedy="leave out [boundary], in another store")  # fmt: skip
     values = study.quantity(quantity)
     if values.dtype.kind not in "fiu":
         raise InputError("is not a number", key="quantity", value=quantity, remedy="take another")

@@ -35,6 +35,7 @@ from trunnion.studies.design import StudyDesign, refuse_latin
 from trunnion.studies.extra import zarr
 from trunnion.studies.parts import StudyPart
 from trunnion.studies.points import FAILED, Evaluated, StudyQuestion
+from trunnion.studies.refinement import Refinement
 from trunnion.studies.shards import (
     DamagedShard,
     array_names,
@@ -75,7 +76,10 @@ class Store:
     parts: tuple[StudyPart, ...]
 
     @classmethod
-    def create(cls, path: Path, question: StudyQuestion, design: StudyDesign, block: int, came_from: str) -> Store:
+    def create(
+        cls, path: Path, question: StudyQuestion, design: StudyDesign, block: int, came_from: str,
+        refinement: Refinement | None = None,
+    ) -> Store:  # fmt: skip
         """Make the store, or open the one that somebody else made meanwhile.
 
         Raises
@@ -88,7 +92,7 @@ class Store:
             raise InputError("cannot be made, its folder does not exist", key="store", value=str(path),
                              remedy=f"create the folder {path.parent}")  # fmt: skip
         if not (path / "study.json").is_file():
-            part = part_of(0, design, (), block)
+            part = part_of(0, design, (), block, refinement, design.shape)
             if path.is_dir():
                 path.rmdir()  # empty: somebody made it for us
             with folder_made_durably(path) as made:
@@ -157,7 +161,9 @@ class Store:
                              key="store", value=str(self.path),
                              remedy="use the same versions, or give another store")  # fmt: skip
 
-    def extended(self, design: StudyDesign, block: int) -> Store:
+    def extended(
+        self, design: StudyDesign, block: int, refinement: Refinement | None = None, first: tuple[int, ...] = ()
+    ) -> Store:
         """The store with a part that has what ``design`` asks for and no part has yet; itself where there is nothing.
 
         Raises
@@ -169,7 +175,7 @@ class Store:
             if any(part.design.key == design.key for part in self.parts):
                 return self
             earlier = tuple(part.design for part in self.parts)
-            part = part_of(len(self.parts), design, earlier, block)
+            part = part_of(len(self.parts), design, earlier, block, refinement, first)
             if part.points == 0:
                 return self
             folder = self.folder(part)
@@ -373,9 +379,13 @@ class Counts:
         return self.points - self.done - self.failed
 
 
-def part_of(number: int, design: StudyDesign, earlier: tuple[StudyDesign, ...], block: int) -> StudyPart:
+def part_of(
+    number: int, design: StudyDesign, earlier: tuple[StudyDesign, ...], block: int,
+    refinement: Refinement | None = None, first: tuple[int, ...] = (),
+) -> StudyPart:  # fmt: skip
     """A part whose shards are whole blocks, of ``SHARD`` points or a block."""
-    return StudyPart(number, design, earlier, block, block * max(1, SHARD // block))
+    shard = block * max(1, SHARD // block)
+    return StudyPart(number, design, earlier, block, shard, refinement, first if refinement else ())
 
 
 def joined(found: list[Evaluated]) -> Evaluated:

@@ -14,6 +14,7 @@ from trunnion.errors import InputError
 from trunnion.studies.cost import StudyCost, cost_of
 from trunnion.studies.description import StudyPlan, as_description, plan_of, read_description
 from trunnion.studies.result import Study, read
+from trunnion.studies.rounds import BoundarySearch, asked_of
 from trunnion.studies.runner import StudyProgress, StudyRun, memory_of, require_workers, workers_here, workers_of
 from trunnion.studies.store import Store
 from trunnion.waiting import keeps_time
@@ -74,10 +75,11 @@ def study(
         whole_number(workers, "workers", 0)
     plan = _plan(stated, line, tables_anywhere)
     processes = (os.cpu_count() or 1) if workers is None else workers
-    store = Store.create(plan.store, plan.question, plan.design, plan.block, plan.source)
-    store = store.extended(plan.design, plan.block)
-    ended = completed(store, processes, scheduler, client, memory, verify, progress)
-    return read(store, plan.design, ended)
+    store = Store.create(plan.store, plan.question, plan.design, plan.block, plan.source, plan.refinement)
+    store = store.extended(plan.design, plan.block, plan.refinement, plan.design.shape)
+    search = BoundarySearch(plan.refinement, plan.design) if plan.refinement else None
+    ended = completed(store, processes, scheduler, client, memory, verify, progress, search)
+    return read(Store.open(store.path), None if search else plan.design, ended, search)
 
 
 def resumed(
@@ -93,14 +95,18 @@ def resumed(
     store = Store.open(Path(path))
     store.require_version()
     processes = (os.cpu_count() or 1) if workers is None else workers
-    return read(store, None, completed(store, processes, scheduler, None, memory, verify, progress))
+    _, refinement, first = asked_of(store)
+    search = BoundarySearch(refinement, first) if refinement else None
+    ended = completed(store, processes, scheduler, None, memory, verify, progress, search)
+    return read(Store.open(store.path), None, ended, search)
 
 
 def completed(
     store: Store, processes: int, scheduler: str | None, client: Any, memory: str | None, verify: bool,
-    progress: Callable[[StudyProgress], None] | None,
+    progress: Callable[[StudyProgress], None] | None, search: BoundarySearch | None = None,
 ) -> str:  # fmt: skip
-    """Compute what a store lacks; why it ended before all was done, or nothing."""
+    """Compute what a store lacks, and what a ``search`` for a boundary asks for then; why it ended before all was done,
+    or nothing."""
     store.path = store.path.absolute()
     if verify:
         store.verify()
@@ -109,7 +115,9 @@ def completed(
     run = StudyRun(store, None, report)
     run.compact_all()
     if run.progress.before == run.progress.points:
-        return ""
+        more, ended = _further(run, search)
+        if not more:
+            return ended
     ways: AbstractContextManager[Any]
     if client is not None:
         ways = nullcontext(client)
@@ -118,14 +126,34 @@ def completed(
     elif processes:
         ways = workers_here(processes, memory)
     else:
-        return run.all()
+        return _through(run, search)
     with ways as connected:
         run.client, run.own = connected, client is None and scheduler is None
         run.cores = require_workers(connected, store, scheduler or "here")
         run.progress.dashboard = connected.dashboard_link or ""
         run.progress.workers = run.cores
         run.progress.measure = lambda: memory_of(connected)
-        return run.all()
+        return _through(run, search)
+
+
+def _through(run: StudyRun, search: BoundarySearch | None) -> str:
+    """Compute what is missing, and what is asked for then, until there is nothing."""
+    while True:
+        if ended := run.all():
+            return ended
+        more, ended = _further(run, search)
+        if not more:
+            return ended
+
+
+def _further(run: StudyRun, search: BoundarySearch | None) -> tuple[bool, str]:
+    """Whether a search asks for more points, which the run then has; or why it ended early."""
+    if search is None:
+        return False, ""
+    store, ended = search.next_round(run.store)
+    more = store is not run.store
+    run.follow(store)
+    return more, ended
 
 
 def study_cost(
