@@ -65,6 +65,8 @@ from trunnion.studies.quantities import StudyQuantity
 from trunnion.studies.refinement import Lattice, Refinement
 
 MOST_HALVINGS = 20
+OF_RADIUS = 1e-8
+"""What the error of a spectral radius may be that the batch computes, and of a growth rate over the speed."""
 MOST_REFINED = 6
 """Grids that a boundary is followed over."""
 MOST_ALONG = 1 << 20
@@ -164,7 +166,8 @@ class StudyBoundarySearch(Record):
     ----------
     quantity : one of the study's, a number, a word or a verdict.
     level : of a number: the boundary is where it rises above this; 0 by default.
-    noise : of a number: by how much it has to rise above the level, so that rounding about it is no boundary.
+    noise : of a number: by how much it has to rise above the level, so that rounding about it is no boundary; by
+        default 1e-8 for the spectral radius of ``stability``, as much of the speed for its growth rate, else nothing.
     value : of a word or verdict: the boundary is between the points that have it and those that do not.
     halvings : of each cell of the grids that the boundary passes.
     most : points in all; the search ends before a halving that would need more.
@@ -441,7 +444,7 @@ def _refinement(asked: StudyBoundarySearch, question: StudyQuestion, design: Stu
     one = question.quantities[known.index(asked.quantity)]
     _require_grids(asked, design)
     if one.kind == "number":
-        return _of_number(asked, one)
+        return _of_number(asked, one, _rounding(one, question, design))
     for key in ("level", "noise"):
         if getattr(asked, key) is not None:
             raise InputError(f"belongs to a number, and {one.path} is none", element=element, key=key,
@@ -458,7 +461,18 @@ def _refinement(asked: StudyBoundarySearch, question: StudyQuestion, design: Stu
     return Refinement(one.path, asked.halvings, asked.most, value=value)
 
 
-def _of_number(asked: StudyBoundarySearch, one: StudyQuantity) -> Refinement:
+def _rounding(one: StudyQuantity, question: StudyQuestion, design: StudyDesign) -> float:
+    """By how much a number may be over its level by rounding alone, where that is known: the growth of lines without
+    damping is 0, and comes out as some 1e-12 of the speed."""
+    if question.analysis != "stability" or one.path not in ("growth_rate", "spectral_radius"):
+        return 0.0
+    if one.path == "spectral_radius":
+        return OF_RADIUS
+    speeds = [float(axis.values.max()) for axis in design.axes if axis.path == SPEED] or [question.speed]
+    return OF_RADIUS * speeds[0] if np.isfinite(speeds[0]) else 0.0
+
+
+def _of_number(asked: StudyBoundarySearch, one: StudyQuantity, rounding: float) -> Refinement:
     if asked.value is not None:
         raise InputError(f"belongs to words and verdicts, and {one.path} is a number", element="boundary", key="value",
                          value=asked.value, remedy="write level = 0.0, say")  # fmt: skip
@@ -466,7 +480,8 @@ def _of_number(asked: StudyBoundarySearch, one: StudyQuantity) -> Refinement:
     for key in ("level", "noise"):
         stated = getattr(asked, key)
         try:
-            found.append(0.0 if stated is None else parse(stated, kind_of(one.unit) or RATIO))
+            usual = {"level": 0.0, "noise": rounding}[key]
+            found.append(usual if stated is None else parse(stated, kind_of(one.unit) or RATIO))
         except InputError as error:
             raise error.but(element="boundary", key=key, value=stated) from None
     level, noise = found
