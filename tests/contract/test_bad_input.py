@@ -1168,7 +1168,7 @@ PYTHON = [
     ),
     (
         lambda: studied(boundary={"quantity": "growth_rat"}),
-        "boundary.quantity = 'growth_rat': is none of the study's quantities",
+        "boundary.quantity = 'growth_rat': is not a quantity of the study",
         'did you mean "growth_rate"?',
     ),
     (
@@ -1213,7 +1213,7 @@ PYTHON = [
     ),
     (
         lambda: studied(quantities=["verdict"], boundary={"quantity": "verdict", "level": 0.0}),
-        "boundary.level = 0.0: belongs to a number, and verdict is none",
+        "boundary.level = 0.0: belongs to a number, and verdict is not one",
         'write value = "unstable"',
     ),
     (

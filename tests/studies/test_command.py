@@ -158,7 +158,7 @@ def test_where_another_parameter_stands_in_a_picture(study, here: Path) -> None:
     study("study.toml", "--workers", "0")
     at = ("--kind", "slices", "--x", "speed", "--at", "HookeJoint 1.angle=39 deg")
     drawn = study("show", "s.zarr", "-o", "s.svg", *at)
-    assert drawn.exit_code == 2 and "is no parameter that stands still here" in drawn.stderr
+    assert drawn.exit_code == 2 and "is not a parameter that stands still here" in drawn.stderr
     asked = stated(Path("three.zarr"), ["growth_rate"], line="line.toml")
     asked["parameter"].append({"path": "Shaft 1.damping", "values": [0.01, 0.02]})
     (here / "three.toml").write_text(tomli_w.dumps(asked))

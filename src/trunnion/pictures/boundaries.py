@@ -49,7 +49,7 @@ def _chosen(grids: list[StudyAxis], x: str, y: str) -> list[StudyAxis]:
     by_name = {one.path: one for one in grids}
     for key, path in (("x", x), ("y", y)):
         if path and path not in by_name:
-            raise InputError("is no parameter that the boundary was followed over", key=key, value=path,
+            raise InputError("is not a parameter that the boundary was followed over", key=key, value=path,
                              remedy=nearest(path, by_name))  # fmt: skip
     if x and x == y:
         raise InputError("stands on both axes", key="y", value=y, remedy="give another parameter")
@@ -71,7 +71,7 @@ def _still(
     known = [axis.path for axis in axes if axis.path not in moving]
     for path in at:
         if path not in known:
-            raise InputError("is no parameter that stands still here", key="at", value=path,
+            raise InputError("is not a parameter that stands still here", key="at", value=path,
                              remedy=nearest(path, known) if known else "leave it out")  # fmt: skip
     place, said = [0] if sampled else [], []
     for axis in axes:

@@ -329,12 +329,12 @@ def _place(boundary: StudyBoundary, at: Mapping[str, float | str], row: int, alo
     lattice, axes = boundary.lattice, boundary.lattice.design(boundary.halvings).axes
     names = [axis.path for axis in axes]
     if along and along not in boundary.parameter:
-        raise InputError("is no parameter that the boundary was followed over", key="along", value=along,
+        raise InputError("is not a parameter that the boundary was followed over", key="along", value=along,
                          remedy=nearest(along, boundary.parameter))  # fmt: skip
     for path in at:
         if path not in names or path == along:
             rest = [name for name in names if name != along]
-            raise InputError("is no parameter that stands still here", key="at", value=path,
+            raise InputError("is not a parameter that stands still here", key="at", value=path,
                              remedy=nearest(path, rest) if rest else "leave it out")  # fmt: skip
     at = boundary.study.values_at(at)
     place, share = [], []
@@ -367,7 +367,7 @@ def _place(boundary: StudyBoundary, at: Mapping[str, float | str], row: int, alo
         nearby = int(np.argmin(np.abs(axis.values - value)))
         if axis.values[nearby] != value:
             known = ", ".join(figures(float(one)) for one in axis.values[:6])
-            raise InputError("is none of the values that were stated", key="at", value=f"{axis.path} = {value:.6g}",
+            raise InputError("is not one of the values that were stated", key="at", value=f"{axis.path} = {value:.6g}",
                              remedy=f"take one of {known}")  # fmt: skip
         place.append(nearby)
         share.append(0.0)

@@ -439,7 +439,7 @@ def _refinement(asked: StudyBoundarySearch, question: StudyQuestion, design: Stu
     """The boundary that is looked for."""
     element, known = "boundary", [one.path for one in question.quantities]
     if asked.quantity not in known:
-        raise InputError("is none of the study's quantities", element=element, key="quantity", value=asked.quantity,
+        raise InputError("is not a quantity of the study", element=element, key="quantity", value=asked.quantity,
                          remedy=nearest(asked.quantity, known))  # fmt: skip
     one = question.quantities[known.index(asked.quantity)]
     _require_grids(asked, design)
@@ -447,13 +447,13 @@ def _refinement(asked: StudyBoundarySearch, question: StudyQuestion, design: Stu
         return _of_number(asked, one, _rounding(one, question, design))
     for key in ("level", "noise"):
         if getattr(asked, key) is not None:
-            raise InputError(f"belongs to a number, and {one.path} is none", element=element, key=key,
+            raise InputError(f"belongs to a number, and {one.path} is not one", element=element, key=key,
                              value=getattr(asked, key), remedy='write value = "unstable", say')  # fmt: skip
     words = [word for word in one.meanings if word]
     value = asked.value if asked.value is not None else "yes" if words == ["no", "yes"] else None
     if not isinstance(value, str):
         remedy = f'write value = "{"unstable" if "unstable" in words or not words else words[-1]}"'
-        raise InputError("is missing" if value is None else "is no word", element=element, key="value", value=value,
+        raise InputError("is missing" if value is None else "is not a word", element=element, key="value", value=value,
                          remedy=remedy)  # fmt: skip
     if words and value not in words:
         raise InputError(f"is nothing that {one.path} can be", element=element, key="value", value=value,
