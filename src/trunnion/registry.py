@@ -450,6 +450,7 @@ VIEWS: Mapping[str, str] = {
     "joints": "trunnion.app.views.joints:JointsView",
     "limits": "trunnion.app.views.limits:LimitsView",
     "motion": "trunnion.app.views.motion:MotionView",
+    "studies": "trunnion.app.views.studies:StudiesView",
 }
 """The views of the application, in the order of its page."""
 

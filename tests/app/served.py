@@ -54,11 +54,12 @@ class Server:
         return self.address.removeprefix("http://").rstrip("/")
 
 
-def start_server(*arguments: str) -> Server:
-    """Start the command and wait for its address."""
+def start_server(*arguments: str, folder: Path | None = None) -> Server:
+    """Start the command, in a folder, and wait for its address."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src"), "PYTHONUNBUFFERED": "1"}
     command = [sys.executable, "-m", "trunnion", "app", "--no-browser", "--threads", "1", *arguments]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True, start_new_session=True)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, text=True, start_new_session=True,
+                               cwd=folder)  # fmt: skip
     assert process.stdout
     found = re.search(r"http://\S+", process.stdout.readline())
     assert found, "the command ended without an address"

@@ -1178,12 +1178,12 @@ PYTHON = [
     ),
     (
         lambda: studied(boundary={"quantity": "growth_rate", "level": "3 mm"}),
-        "boundary.level = '3 mm'",
-        "1/s",
+        "boundary.level = '3 mm': must have no unit",
+        "write a plain number",
     ),
     (
         lambda: studied(boundary={"quantity": "growth_rate", "noise": -1.0}),
-        "boundary.noise = -1.0: must not be negative",
+        "boundary.noise = -1: must not be negative",
         "leave it out",
     ),
     (
@@ -1213,7 +1213,7 @@ PYTHON = [
     ),
     (
         lambda: studied(quantities=["verdict"], boundary={"quantity": "verdict", "level": 0.0}),
-        "boundary.level = 0.0: belongs to a number, and verdict is not one",
+        "boundary.level = 0: belongs to a number, and verdict is not one",
         'write value = "unstable"',
     ),
     (

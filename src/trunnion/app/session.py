@@ -484,6 +484,11 @@ class Session:
         """Whether nothing is computed for the view."""
         return self.task is None or self.task.done()
 
+    def is_looked_at(self, view: View) -> bool:
+        """Whether a view is the one that the page shows, and the page is open."""
+        gone = self.doc.session_context is None or self.doc.session_context.destroyed
+        return self.view is view and not gone
+
     def line(self, side: str) -> Driveline:
         """The present line, or a kept one."""
         return self.document.line if side == NOW else loads(self._toml(side))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, replace
 from io import BytesIO
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from trunnion.errors import ComputationError
 from trunnion.pictures import design, kinetostatics, orders
 from trunnion.pictures.frequency_response import method_curve
 from trunnion.pictures.modes import growing, mode_shape, multipliers
@@ -23,6 +25,7 @@ from trunnion.results.drawing import described
 from trunnion.results.speeds import speed_factor
 from trunnion.results.words import Words
 from trunnion.results.written import write_numbers
+from trunnion.studies.boundary import study_boundary
 
 Plain = dict[str, Any]
 MOST_SAMPLES = 3000
@@ -58,6 +61,23 @@ def touchable(result: Any) -> Plain:
     from trunnion.pictures.driveline_sketch import draw, spots
 
     return {"svg": drawn(draw(result, LEAST)), "spots": [asdict(one) for one in spots(result, LEAST)]}
+
+
+def study(result: Any, **options: Any) -> Plain:
+    """How far a study is, its picture as soon as a point is there, and what else may be shown."""
+    some, said = result.done > 0, str(result)
+    if some and result.refinement is not None:
+        with suppress(ComputationError):  # its first grid is not whole yet
+            said += f"\n{study_boundary(result)}"
+    try:
+        picture = described(result, "plot")(result, **options) if some else None
+    except ComputationError:
+        picture = None
+    return {
+        "picture": picture, "text": said, "points": result.points, "done": result.done, "failed": result.failed,
+        "quantities": [one.path for one in result.quantities],
+        "grids": [axis.path for axis in result.design.axes if len(axis.values) > 1],
+    }  # fmt: skip
 
 
 campbell = tolerances = run_up = plotted

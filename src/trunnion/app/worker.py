@@ -19,6 +19,8 @@ from typing import IO, Any
 from trunnion.app.parts.jobs import CUT_OFF, Job, Request, WorkerMessage, receive, send
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
+GROWING = ("tn.read_study",)
+"""Functions that may give something else every time, so that nothing of them is kept."""
 MOST_KEPT = 4
 """Results of a function that stay: a coarse and a full chart of two variants."""
 
@@ -92,6 +94,8 @@ class WorkerLoop:
             kept.move_to_end(key)
             return kept[key]
         result = job.call.evaluate(loads(job.toml), {"progress": progress, "threads": self.threads})
+        if job.call.function in GROWING:
+            return result
         kept[key] = result
         while len(kept) > MOST_KEPT:
             kept.popitem(last=False)

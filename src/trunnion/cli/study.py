@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -287,6 +287,11 @@ def _say(found: Study, as_json: bool, *, whole: bool = True) -> None:
         output.write_json("study", {**content, "missing": found.missing, "reasons": dict(found.reasons)})
     else:
         output.say(str(found))
+        if found.refinement is not None:
+            from trunnion.studies.boundary import study_boundary
+
+            with suppress(ComputationError):  # its first grid is not whole yet
+                output.say(str(study_boundary(found)))
     if whole:
         output.finish(found.outcome, [Path(found.store)])
 

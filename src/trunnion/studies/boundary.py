@@ -191,8 +191,8 @@ def study_boundary(study: Study) -> StudyBoundary:
     >>> asked["parameter"] = [{"path": f"Shaft {k}.stiffness", **ends} for k in (1, 2)]
     >>> boundary = tn.study_boundary(tn.study(asked, workers=0))
     >>> estimate, low, high = boundary.crossings("Shaft 1.stiffness", {"Shaft 2.stiffness": 1.0})[0]
-    >>> bool(low <= estimate <= high) and round(high - low, 4)
-    0.0312
+    >>> bool(low <= estimate <= high), round(float(high - low), 4)
+    (True, 0.0312)
     """
     refinement, first = study.refinement, study.first
     if refinement is None or first is None:

@@ -186,10 +186,6 @@ class Study(Result):
             yield f"  over {path} from {words.number(low, 4)} to {words.number(high, 4)}"
         for one in self.quantities:
             yield f"  {one.path}: {self._summary(one)}"
-        if self.refinement and self.done:
-            from trunnion.studies.boundary import study_boundary
-
-            yield f"  {study_boundary(self)}".replace("\n", "\n  ")
         for sentence, count in self.reasons[:MOST_REASONS]:
             yield f"  failed at {count}: {sentence}"
         if len(self.reasons) > MOST_REASONS:

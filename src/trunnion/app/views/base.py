@@ -118,6 +118,9 @@ class Host(Protocol):
     def locked(self, action: Callable[[], Any]) -> None:
         """Change the page from such work."""
 
+    def is_looked_at(self, view: View) -> bool:
+        """Whether a view is the one that the page shows."""
+
 
 V = TypeVar("V", bound="View")
 
