@@ -115,14 +115,15 @@ def _write_new(target: Path, text: str, force: bool) -> None:
 
 def export(
     file: Annotated[str, typer.Argument(metavar="FILE", help="Driveline file, or a name of the catalogue.")],
-    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion, modelica or c.")],
+    to: Annotated[str, typer.Option("--to", metavar="TARGET", help="csv, matlab, opentorsion, modelica, c or fmu.")],
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py, .mo or .c file to write.")
+        Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py, .mo, .c or .fmu file to write.")
     ],
+    fmi: Annotated[int | None, typer.Option("--fmi", metavar="2|3", help="Version of FMI of an FMU; 2 by default.")] = None,
     as_json: Json = False,
 ) -> None:
-    """Write a line for other programs: a table, a state space, openTorsion, Modelica, or C."""
-    besides = tn.export_line(read_line(file), output, to)
+    """Write a line for other programs: a table, a state space, openTorsion, Modelica, C, or an FMU."""
+    besides = tn.export_line(read_line(file), output, to, fmi=fmi)
     if as_json:
         write_json("export", {"written": str(output), "not_written": list(besides)})
         return

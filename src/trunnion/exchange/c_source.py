@@ -27,8 +27,8 @@ PER_LINE = 3
 """Numbers of a row in a line of the file; each stands with all its digits."""
 
 
-def refuse_c(line: Driveline) -> None:
-    """Refuse at once everything that the C function does not hold.
+def refuse_c(line: Driveline, what: str = "C") -> None:
+    """Refuse at once everything that the C function does not hold; ``what`` names what is written of it.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def refuse_c(line: Driveline) -> None:
     for key, remedy in NOT_IN_C.items():
         for place in feature(key).places(line):
             element, _, field = place.rpartition(".")
-            wrong.append(InputError(f"is not written as C ({key})", element=element, key=field, remedy=remedy))
+            wrong.append(InputError(f"is not written as {what} ({key})", element=element, key=field, remedy=remedy))
     if wrong:
         raise InputError.together(wrong)
 
@@ -50,35 +50,51 @@ def c_source_of(line: Driveline) -> str:
     ------
     InputError : no operating speed; what ``refuse_c`` and ``line_system`` refuse.
     """
-    refuse_c(line)
+    made = system_in_c(line)
+    system = made.system
+    states = [f"   x[{i}]  {comment(s)} [{u}]" for i, (s, u) in enumerate(zip(system.states, system.units, strict=True))]
+    about = [
+        "   int line_rate(double t, const double *x, double *dx)",
+        "",
+        "   x' = f(t, x); t in s. States are deviations from uniform rotation:",
+        *states,
+    ]
+    return equations_in_c(made, about) + template("line_rate.c")
+
+
+def system_in_c(line: Driveline, what: str = "C") -> LineSystem:
+    """The line at its operating speed, where C holds it.
+
+    Raises
+    ------
+    InputError : no operating speed; what ``refuse_c`` and ``line_system`` refuse.
+    """
+    refuse_c(line, what)
     speed = line.operation.speed if line.operation else None
     if not speed:
         raise InputError(
             "is missing", element="operation", key="speed", remedy='write speed = "1500 rpm": the equations are of it'
         )
-    made = line_system(line, float(speed), leaves=True)
-    template = files("trunnion.exchange").joinpath("line_rate.c").read_text(encoding="utf-8")
-    return _head(made) + _tables(made) + template
+    return line_system(line, float(speed), leaves=True)
 
 
-def _head(made: LineSystem) -> str:
-    system, name = made.system, made.assembly.line.name or "driveline"
-    states = [
-        f"   x[{i}]  {_comment(s)} [{u}]" for i, (s, u) in enumerate(zip(system.states, system.units, strict=True))
-    ]
-    speed = f"{made.speed:.10g} rad/s"
+def template(name: str) -> str:
+    """A file of C that does not depend on the line."""
+    return files("trunnion.exchange").joinpath("c_templates", name).read_text(encoding="utf-8")
+
+
+def equations_in_c(made: LineSystem, about: Sequence[str]) -> str:
+    """A comment with the lines ``about``, the numbers of the line in tables, and the equations that read them."""
+    name = made.assembly.line.name or "driveline"
     lines = [
-        f"/* {_comment(name)}: equations of motion, written by Trunnion.",
+        f"/* {comment(name)}: equations of motion at the input speed of {made.speed:.10g} rad/s, written by Trunnion.",
         "",
-        "   int line_rate(double t, const double *x, double *dx)",
-        "",
-        f"   x' = f(t, x) at the input speed of {speed}; t in s. States are deviations from uniform rotation:",
-        *states,
+        *about,
         "*/",
         "#include <math.h>",
         "",
     ]
-    return "\n".join(lines)
+    return "\n".join(lines) + _tables(made) + template("line_equations.c")
 
 
 def _tables(made: LineSystem) -> str:
@@ -103,20 +119,21 @@ def _tables(made: LineSystem) -> str:
     places = [f"{name or 'flange'}" for name in _station_names(made)]
     parts = [
         f"enum {{ UNKNOWNS = {n}, STATIONS = {stations}, SPRINGS = {joined}, TORQUES = {harmonics} }};",
-        f"static const double INPUT[3] = {_row(p[[core.THETA, core.OMEGA, core.ALPHA]])}; /* angle, speed, its rate */",
-        _table("static const int STATION_PLACES", 4, _ints(station[:, whole]), places,
+        f"enum {{ SPRINGS_OR_ONE = {max(joined, 1)} }}; /* C has no array of none */",
+        f"static const double INPUT[3] = {row_of(p[[core.THETA, core.OMEGA, core.ALPHA]])}; /* angle, speed, its rate */",
+        table("static const int STATION_PLACES", 4, whole_rows(station[:, whole]), places,
                "before, link, coordinate, first of its group"),
-        _table("static const double STATION", len(real), map(_row, rows[:, real]), places,
+        table("static const double STATION", len(real), map(row_of, rows[:, real]), places,
                "mean ratio, phase, t, cos, 4t/(1+t)^2, 1/ratio, inertia, load, viscous, quadratic, share"),
-        _table("static const int SPRING_ENDS", 4, _ints(spring[:, ends]), made.shafts, "near, far, their coordinates"),
-        _table("static const double SPRING", 2, map(_row, spring[:, [core.STIFFNESS, core.DAMPING]]), made.shafts,
+        table("static const int SPRING_ENDS", 4, whole_rows(spring[:, ends]), made.shafts, "near, far, their coordinates"),
+        table("static const double SPRING", 2, map(row_of, spring[:, [core.STIFFNESS, core.DAMPING]]), made.shafts,
                "stiffness [N m/rad], damping [N m s/rad]"),
-        _table("static const int SPRING_LAW", 5, _ints(laws), made.shafts,
+        table("static const int SPRING_LAW", 5, whole_rows(laws), made.shafts,
                "first stage, stages, first harmonic of the mesh, of its error, of its stiffness"),
-        _table("static const double STAGE", core.PER_STAGE, map(_row, stages), (), "see springs with stages below"),
-        _table("static const double WAVE", 3, map(_row, waves), (), "amplitude, cycles per turn of the input, phase"),
-        _table("static const double RIPPLE", 3, map(_row, ripples), (), "order, amplitude, phase of a joint"),
-        _table("static const double TORQUE", 5, map(_row, torque), (),
+        table("static const double STAGE", core.PER_STAGE, map(row_of, stages), (), "see springs with stages below"),
+        table("static const double WAVE", 3, map(row_of, waves), (), "amplitude, cycles per turn of the input, phase"),
+        table("static const double RIPPLE", 3, map(row_of, ripples), (), "order, amplitude, phase of a joint"),
+        table("static const double TORQUE", 5, map(row_of, torque), (),
                "station, amplitude [N m], order, frequency [rad/s], phase"),
         "",
     ]  # fmt: skip
@@ -163,26 +180,26 @@ def _laws(p: Array, spring: Array) -> tuple[Array, Array, Array]:
     )
 
 
-def _table(head: str, columns: int, rows: Iterable[str], names: Sequence[str], what: str) -> str:
+def table(head: str, columns: int, rows: Iterable[str], names: Sequence[str], what: str) -> str:
     """A table of C; one row of zeros where there is none, which C asks for and nothing reads."""
     every = list(rows) or ["{" + ", ".join(["0"] * columns) + "}"]
-    labels = [f" /* {_comment(name)} */" for name in names] + [""] * (len(every) - len(names))
+    labels = [f" /* {comment(name)} */" for name in names] + [""] * (len(every) - len(names))
     body = ",\n".join(f"  {row}{label}" for row, label in zip(every, labels, strict=True))
     return f"/* {what} */\n{head}[{len(every)}][{columns}] = {{\n{body}\n}};"
 
 
-def _row(values: Array) -> str:
+def row_of(values: Array) -> str:
     words = [f"{float(value):.17g}" for value in values]
     words = [word.replace("inf", "HUGE_VAL") for word in words]
     lines = [", ".join(words[i : i + PER_LINE]) for i in range(0, len(words), PER_LINE)]
     return "{" + ",\n   ".join(lines) + "}"
 
 
-def _ints(values: Array) -> list[str]:
+def whole_rows(values: Array) -> list[str]:
     return ["{" + ", ".join(str(int(one)) for one in row) + "}" for row in values]
 
 
-def _comment(text: str) -> str:
+def comment(text: str) -> str:
     """A name as it may stand in a comment of ANSI C."""
     plain = "".join(c if c.isascii() and c.isprintable() else "?" for c in text)
     return plain.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").rstrip("\\")

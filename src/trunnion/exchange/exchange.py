@@ -11,6 +11,7 @@ from trunnion.driveline.refusals import nearest
 from trunnion.driveline.toml_file import LARGEST_FILE
 from trunnion.errors import InputError
 from trunnion.exchange.c_source import c_source_of
+from trunnion.exchange.fmu import VERSIONS, write_fmu
 from trunnion.exchange.held import not_written, refuse_unheld
 from trunnion.exchange.matlab import write_state_space
 from trunnion.exchange.modelica import model_of
@@ -22,26 +23,32 @@ from trunnion.exchange.tables import read_table, table_of
 from trunnion.reading import regular_bytes
 from trunnion.writing import written_whole
 
-ENDINGS: Mapping[str, str] = {"csv": ".csv", "matlab": ".mat", "opentorsion": ".py", "modelica": ".mo", "c": ".c"}
+ENDINGS: Mapping[str, str] = {"csv": ".csv", "matlab": ".mat", "opentorsion": ".py", "modelica": ".mo", "c": ".c", "fmu": ".fmu"}
 """Targets, and what their files end in."""
 _TEXTS: Mapping[str, Callable[[Network], str]] = {"csv": table_of, "opentorsion": script_of, "modelica": model_of}
 _READERS: Mapping[str, Callable[[str, str], Network]] = {".csv": read_table, ".py": read_script, ".mo": read_model}
 
 
-def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple[str, ...]:
+def export_line(
+    line: Driveline, path: str | os.PathLike[str], to: str, *, fmi: int | None = None
+) -> tuple[str, ...]:
     """Write a line to a file of another program; it appears whole or stays as it was.
 
     Parameters
     ----------
     line : any driveline of inertias, springs with one stiffness, rigid gears, and constant and viscous loads, its
-        joints straight; for "c" any whose nonlinear equations have no friction that sticks.
-    path : of the file, ending in .csv, .mat, .py, .mo or .c; one that is there is replaced.
+        joints straight; for "c" and "fmu" any whose nonlinear equations have no friction that sticks.
+    path : of the file, ending in .csv, .mat, .py, .mo, .c or .fmu; one that is there is replaced.
     to : the kind of file. "csv": a table with a row for each part, in SI units. "matlab": a state space A, B, C, D
         with the names of its states, inputs and outputs. "opentorsion": a script that builds the assembly.
         "modelica": a model of Modelica.Mechanics.Rotational. "c": the equations of motion x' = f(t, x) at the
-        operating speed in ANSI C, with joints, excitations, meshes and stages.
+        operating speed in ANSI C, with joints, excitations, meshes and stages. "fmu": an FMU for model exchange and
+        co-simulation, these equations in C with contacts as event indicators, and a binary by the machine's C compiler
+        (cc, gcc, clang or that of CC).
+    fmi : version of FMI of an FMU, 2 (by default) or 3.
 
-    Returns what the description says besides and the file does not: limits, scenarios and the like.
+    Returns what the description says besides and the file does not: limits, scenarios and the like; and a binary, where
+    an FMU is written and no compiler is found.
 
     Raises
     ------
@@ -64,6 +71,14 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str) -> tuple
         raise InputError(
             f"does not end in {ENDINGS[to]}", key="output", value=str(path), remedy=f"a file for {to} does"
         )
+    if fmi is not None and to != "fmu":
+        raise InputError("belongs to an FMU", key="fmi", value=fmi, remedy=f"leave it out of an export to {to}")
+    if to == "fmu":
+        if fmi not in (None, *VERSIONS):
+            raise InputError("is no version of FMI that is written", key="fmi", value=fmi, remedy="write 2 or 3")
+        with written_whole(path) as temporary:
+            lacks = write_fmu(line, temporary, fmi or VERSIONS[0])
+        return (*not_written(line), *lacks)
     if to == "c":
         _write(c_source_of(line), path)
         return not_written(line)
@@ -112,6 +127,8 @@ def import_line(path: str | os.PathLike[str]) -> Driveline:
         remedy = "name a file that ends in .csv, .py or .mo"
         if place.suffix.lower() == ".c":
             remedy = "a function in C does not say what it is made of; export the line to csv"
+        if place.suffix.lower() == ".fmu":
+            remedy = "an FMU does not say what it is made of; export the line to csv"
         if place.suffix.lower() == ".mat":
             remedy = "a state space does not say what it is made of; export the line to csv"
         raise InputError("cannot be imported", key=str(path), remedy=remedy)

@@ -88,7 +88,8 @@ def schedules_refused(line: Driveline) -> list[InputError]:
     return [
         InputError(
             "cannot be written to such a file", element="schedule", key=schedule.name,
-            remedy=f"write one point of it: tn.export_line(line.at_schedule({schedule.name!r}, …), …)",
+            remedy=f"write the angles of one travel at the joints and leave the schedule out of the file; in Python "
+            f"line.at_schedule({schedule.name!r}, …) is such a line",
         )
         for schedule in (line.operation.schedules if line.operation else ())
     ]  # fmt: skip

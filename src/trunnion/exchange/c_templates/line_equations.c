@@ -19,9 +19,9 @@ static void mesh(int first, int count, double angle, double *value, double *slop
 
 /* Springs with stages. A row of STAGE is: damping, slope and offset of the torque; three guards of four numbers
    a, e, h, d: the stage ends where a q + e q' - h crosses zero in the direction d (0: no such guard); and damping that
-   goes with the depth of contact, by the twist and at twist 0. The stage is the one whose guards are all on the side
-   where it lasts, or nearest to it. */
-static const double *stage_of(int spring, double twist, double rate)
+   goes with the depth of contact, by the twist and at twist 0. The stage of a twist and its rate is the one whose guards are
+   all on the side where it lasts, or nearest to it. */
+static int stage_of(int spring, double twist, double rate)
 {
   int first = SPRING_LAW[spring][FIRST_STAGE], best = first, i, g;
   double depth = -HUGE_VAL;
@@ -39,13 +39,22 @@ static const double *stage_of(int spring, double twist, double rate)
       depth = least;
     }
   }
-  return STAGE[best];
+  return best;
 }
 
-/* Rates dx of the states x at the time t [s]; returns 0. */
-int line_rate(double t, const double *x, double *dx)
+/* Deviation [rad] and speed [rad/s] of every station; of every spring its twist [rad], between its teeth where it is a
+   mesh, how fast that grows, and the torque it carries [N m]. */
+typedef struct {
+  double deviation[STATIONS], speed[STATIONS];
+  double twist[SPRINGS_OR_ONE], rate[SPRINGS_OR_ONE], torque[SPRINGS_OR_ONE];
+} Motion;
+
+/* Rates dx of the states x at the time t [s]; of every spring its row of STAGE, or 0 for those that twist and rate
+   tell; torques on the stations from outside [N m], or 0 for none; and the motion besides. */
+static void line_equations(double t, const double *x, const int *stages, const double *applied, double *dx,
+                           Motion *motion)
 {
-  double d[STATIONS], v[STATIONS], r[STATIONS], r1[STATIONS];
+  double *d = motion->deviation, *v = motion->speed, r[STATIONS], r1[STATIONS];
   double inertia[UNKNOWNS], slope[UNKNOWNS], torque[UNKNOWNS];
   double theta = (INPUT[1] + 0.5 * INPUT[2] * t) * t + INPUT[0], omega = INPUT[1] + INPUT[2] * t;
   double turned = theta, turning = omega;
@@ -115,6 +124,8 @@ int line_rate(double t, const double *x, double *dx)
       inertia[i] += p[INERTIA] * r[s] * r[s];
       slope[i] += p[INERTIA] * r[s] * r1[s];
       torque[i] -= r[s] * (p[LOAD] + (p[VISCOUS] + p[QUADRATIC] * fabs(v[s])) * v[s]);
+      if (applied)
+        torque[i] += r[s] * applied[s];
     }
   }
   for (h = 0; h < TORQUES; h++) {
@@ -138,9 +149,12 @@ int line_rate(double t, const double *x, double *dx)
       twist += error;
       rate += grows * turning;
       mesh(first + errors, SPRING_LAW[e][SWELLS], turned, &wave, &grows);
-      stage = stage_of(e, twist, rate);
+      stage = stages ? STAGE[stages[e]] : STAGE[stage_of(e, twist, rate)];
       carried = (1.0 + wave) * (stage[1] * twist + stage[2]) + (stage[0] + stage[15] * twist + stage[16]) * rate;
     }
+    motion->twist[e] = twist;
+    motion->rate[e] = rate;
+    motion->torque[e] = carried;
     i = SPRING_ENDS[e][3];
     if (i >= 0)
       torque[i] -= carried;
@@ -155,5 +169,4 @@ int line_rate(double t, const double *x, double *dx)
       dx[UNKNOWNS + i] = (torque[i] - slope[i] * v[s] * v[s]) / inertia[i] - STATION[s][MEAN] * INPUT[2];
     }
   }
-  return 0;
 }
