@@ -406,6 +406,8 @@ NOT_ANALYSES = {
     "least_drive": "passing over factors of the torque, which counts, refuses and says the same",
     "misfire": "order_response of the line with each cylinder out of work",
     "remedies": "judges changed lines as assess does",
+    "track_orders": "takes the speed ratios of a line, and nothing of what moves it",
+    "identifiability": "identify without a fit, which counts, refuses and says the same",
     "study": "asks an analysis of the registry at many points, which counts, refuses and says the same",
     "study_cost": "asks an analysis of the registry at a few points, and multiplies",
     "report": "shows the analyses above, with what each of them says",

@@ -387,6 +387,7 @@ ANALYSES = (
     Analysis(
         "measure",
         "The signals that pickups and gauges on a test bench would record of a line, with what spoils them.",
+        features="linear motion",
     ),
     Analysis(
         "track_orders",
@@ -400,12 +401,18 @@ ANALYSES = (
     Analysis(
         "compare_measured",
         "Measured orders over what the line predicts, with a sentence on what differs.",
-        pictures={"MeasuredComparison.plot": "trunnion.pictures.measured:comparison"},
+        features="linear motion",
+        pictures={
+            "MeasuredComparison.plot": "trunnion.pictures.measured:comparison",
+            "MeasuredComparison.plot_campbell": "trunnion.pictures.measured:on_campbell",
+            "MeasuredComparison.plot_run_up": "trunnion.pictures.measured:on_run_up",
+        },
         command="trunnion.cli.measured:compare_measured",
     ),
     Analysis(
         "identify",
         "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
+        features="linear motion",
         pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
         command="trunnion.cli.measured:identify",
     ),

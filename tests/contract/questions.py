@@ -107,6 +107,14 @@ def in_rpm_for_life() -> tn.Driveline:
 
 
 @cache
+def measured_orders(of_line_in_rpm: bool) -> tn.MeasuredOrders:
+    """Of a bench with a line that has no feature."""
+    line, gauge = (in_rpm(), "tube") if of_line_in_rpm else (feature_lines.bent(), "rear")
+    run = tn.measure(line, (LOW, HIGH) if of_line_in_rpm else (80.0, 110.0), 3.0, {"load": 30}, gauges=[gauge])
+    return tn.track_orders(run, [1, 2], line=line)
+
+
+@cache
 def geared_in_rpm() -> tn.Driveline:
     elements = [
         tn.ConstantSpeed(),
@@ -173,6 +181,21 @@ QUESTIONS = {
     "order_response": Question(
         lambda line: tn.order_response(line, [90.0, 100.0]),
         lambda: tn.order_response(in_rpm(), GRID),
+    ),
+    "measure": Question(
+        lambda line: tn.measure(line, 95.0, 0.5, {"load": 30}, gauges=["front", "rear"], accelerometers=["load"]),
+        lambda: tn.measure(in_rpm(), MIDDLE, 0.5, {"load": 30}, gauges=["tube"]),
+        quick=("load torque", "excitation by order", "dry friction", "backlash"),
+    ),
+    "compare_measured": Question(
+        lambda line: tn.compare_measured(line, measured_orders(False)),
+        lambda: tn.compare_measured(in_rpm(), measured_orders(True)),
+        quick=("load torque", "excitation by order", "dry friction", "backlash"),
+    ),
+    "identify": Question(
+        lambda line: tn.identify(line, measured_orders(False), {"joint 2.angle": (0.1, 0.2)}),
+        lambda: tn.identify(in_rpm(), measured_orders(True), {"tube.stiffness": (5e3, 2e4)}),
+        quick=("load torque", "dry friction"),
     ),
     "coupling_temperatures": Question(
         lambda line: tn.coupling_temperatures(heated(line), [90.0, 100.0]),

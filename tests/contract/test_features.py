@@ -122,7 +122,19 @@ def test_cell(analysis: str, key: str) -> None:
         assert words and words[0] in after.text, f"not said: {words}"
 
 
-ROOMS = ("equations", "modes", "steady", "floquet", "response", "motion", "design", "reporting", "pictures", "studies")
+ROOMS = (
+    "equations",
+    "modes",
+    "steady",
+    "floquet",
+    "response",
+    "motion",
+    "design",
+    "reporting",
+    "pictures",
+    "studies",
+    "measured",
+)
 """Where what takes a driveline to answer something stands."""
 
 

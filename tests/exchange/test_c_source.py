@@ -163,5 +163,8 @@ def test_a_schedule_is_no_single_line(tmp_path: Path) -> None:
     """Its angles move with the travel: the numbers as they stand would be written without a word."""
     schedule = tn.Schedule(name="travel", travel=[0.0, 0.1], angles={"joint 2": [0.1, 0.4]})
     line = feature_lines.bent().but(operation=tn.Operation(speed=SPEED, schedules=[schedule]))
-    with pytest.raises(InputError, match="schedule.travel: cannot be written to such a file; write the angles of one travel at the joints"):
+    with pytest.raises(
+        InputError,
+        match="schedule.travel: cannot be written to such a file; write the angles of one travel at the joints",
+    ):
         tn.export_line(line, tmp_path / "line.c", "c")

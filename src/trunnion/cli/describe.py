@@ -119,7 +119,9 @@ def export(
     output: Annotated[
         Path, typer.Option("--output", "-o", metavar="PATH", help=".csv, .mat, .py, .mo, .c or .fmu file to write.")
     ],
-    fmi: Annotated[int | None, typer.Option("--fmi", metavar="2|3", help="Version of FMI of an FMU; 2 by default.")] = None,
+    fmi: Annotated[
+        int | None, typer.Option("--fmi", metavar="2|3", help="Version of FMI of an FMU; 2 by default.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Write a line for other programs: a table, a state space, openTorsion, Modelica, C, or an FMU."""

@@ -26,6 +26,13 @@ def check_report(path: Path) -> None:
     check_folder(path)
 
 
+def check_report_file(path: Path) -> None:
+    """Refuse what is no file for a report, NAME.html, or cannot be written."""
+    if path.suffix.lower() not in REPORTS:
+        _refuse(path, "does not end in .html", f"write {path.with_suffix('.html')}")
+    check_file(path, "report.html")
+
+
 def check_folder(folder: Path) -> None:
     """Refuse a folder that cannot be made or written to; makes nothing yet."""
     there = folder

@@ -11,10 +11,12 @@ import typer
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, CommandSubject, InputAttribute, NumberBounds, OptionReader, Texts
+from trunnion.cli.files import check_report_file
 from trunnion.cli.options import Progress, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import file_of_line, read_line
 from trunnion.cli.typed import Command
+from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.results.speeds import speed_factor
 
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from trunnion.measured.signals.measurement import Measurement
 
 DATA = typer.Argument(metavar="DATA", help="Measured signals: .csv, .mat, .h5, .wav, .mf4, .tdms, .uff.")
+OVER = {"response": "plot", "campbell": "plot_campbell", "run-up": "plot_run_up"}
+"""Pictures of a comparison, by what they lay measured orders over."""
 Channels = Annotated[
     str | None,
     typer.Option(
@@ -126,6 +130,10 @@ def compare_measured(
     between: Annotated[tuple[float, float] | None, OptionReader(_between)],
     window: Annotated[int, NumberBounds(1, 1000)] = 8,
     channel: str = "",
+    over: str = "response",
+    report: Path | None = None,
+    asked: Annotated[CommandInput, InputAttribute("itself")],
+    progress: Progress,
     unit: SpeedUnit,
 ) -> CommandOutput:
     """Example: trunnion compare-measured run-up.wav --line truck.toml --orders 1,2,4 -o overlay.png
@@ -137,7 +145,13 @@ def compare_measured(
     --between FIRST:LAST  Part of the recording, times in seconds; default: the longest run-up or run-down.
     --window  Turns of one window.
     --channel  Channel that is drawn; default: the first that moves.
+    --over  What the picture lays the orders over: "response" (default), "campbell" or "run-up".
+    --report FILE  Writes the report on the line, NAME.html, with a section on what was measured.
     """
+    if over not in OVER:
+        raise InputError("is no picture", key="--over", value=over, remedy=nearest(over, list(OVER)))
+    if report is not None:
+        check_report_file(report)
     data = tn.track_orders(
         measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
         unit=unit,
@@ -145,8 +159,13 @@ def compare_measured(
     found = tn.compare_measured(line, data)
     if channel:
         data.column(channel)
+    written = []
+    if report is not None:
+        page = tn.report(line, unit=unit, source=asked.texts["line"], measured=data, progress=progress)
+        written.append(page.save(report))
     return CommandOutput(
-        found, draw=partial(found.plot, channel=channel), more=lambda: output.table(found.table(), "Differences"),
+        found, draw=partial(getattr(found, OVER[over]), channel=channel), written=written,
+        more=lambda: output.table(found.table(), "Differences"),
         content=lambda: found.to_dict() | {"findings": output.findings_json(found.findings)},
     )  # fmt: skip
 

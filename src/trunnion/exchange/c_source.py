@@ -52,7 +52,9 @@ def c_source_of(line: Driveline) -> str:
     """
     made = system_in_c(line)
     system = made.system
-    states = [f"   x[{i}]  {comment(s)} [{u}]" for i, (s, u) in enumerate(zip(system.states, system.units, strict=True))]
+    states = [
+        f"   x[{i}]  {comment(s)} [{u}]" for i, (s, u) in enumerate(zip(system.states, system.units, strict=True))
+    ]
     about = [
         "   int line_rate(double t, const double *x, double *dx)",
         "",
@@ -115,17 +117,18 @@ def _tables(made: LineSystem) -> str:
         core.QUADRATIC, core.SHARE,
     ]  # fmt: skip
     ends = [core.NEAR, core.FAR, core.NEAR_COORDINATE, core.FAR_COORDINATE]
-    topo = made.assembly.topology
+    topo, turning = made.assembly.topology, p[[core.THETA, core.OMEGA, core.ALPHA]]
     places = [f"{name or 'flange'}" for name in _station_names(made)]
     parts = [
         f"enum {{ UNKNOWNS = {n}, STATIONS = {stations}, SPRINGS = {joined}, TORQUES = {harmonics} }};",
         f"enum {{ SPRINGS_OR_ONE = {max(joined, 1)} }}; /* C has no array of none */",
-        f"static const double INPUT[3] = {row_of(p[[core.THETA, core.OMEGA, core.ALPHA]])}; /* angle, speed, its rate */",
+        f"static const double INPUT[3] = {row_of(turning)}; /* angle, speed, its rate */",
         table("static const int STATION_PLACES", 4, whole_rows(station[:, whole]), places,
                "before, link, coordinate, first of its group"),
         table("static const double STATION", len(real), map(row_of, rows[:, real]), places,
                "mean ratio, phase, t, cos, 4t/(1+t)^2, 1/ratio, inertia, load, viscous, quadratic, share"),
-        table("static const int SPRING_ENDS", 4, whole_rows(spring[:, ends]), made.shafts, "near, far, their coordinates"),
+        table("static const int SPRING_ENDS", 4, whole_rows(spring[:, ends]), made.shafts,
+               "near, far, their coordinates"),
         table("static const double SPRING", 2, map(row_of, spring[:, [core.STIFFNESS, core.DAMPING]]), made.shafts,
                "stiffness [N m/rad], damping [N m s/rad]"),
         table("static const int SPRING_LAW", 5, whole_rows(laws), made.shafts,

@@ -23,15 +23,20 @@ from trunnion.exchange.tables import read_table, table_of
 from trunnion.reading import regular_bytes
 from trunnion.writing import written_whole
 
-ENDINGS: Mapping[str, str] = {"csv": ".csv", "matlab": ".mat", "opentorsion": ".py", "modelica": ".mo", "c": ".c", "fmu": ".fmu"}
+ENDINGS: Mapping[str, str] = {
+    "csv": ".csv",
+    "matlab": ".mat",
+    "opentorsion": ".py",
+    "modelica": ".mo",
+    "c": ".c",
+    "fmu": ".fmu",
+}
 """Targets, and what their files end in."""
 _TEXTS: Mapping[str, Callable[[Network], str]] = {"csv": table_of, "opentorsion": script_of, "modelica": model_of}
 _READERS: Mapping[str, Callable[[str, str], Network]] = {".csv": read_table, ".py": read_script, ".mo": read_model}
 
 
-def export_line(
-    line: Driveline, path: str | os.PathLike[str], to: str, *, fmi: int | None = None
-) -> tuple[str, ...]:
+def export_line(line: Driveline, path: str | os.PathLike[str], to: str, *, fmi: int | None = None) -> tuple[str, ...]:
     """Write a line to a file of another program; it appears whole or stays as it was.
 
     Parameters

@@ -75,7 +75,9 @@ def _source(made: LineSystem, described: Description, fmi: int) -> str:
         f"   An FMU of FMI {fmi}.0 for model exchange and co-simulation. Springs with stages keep the one they are in;",
         "   event indicators tell where it ends.",
     ]
-    return equations_in_c(made, about) + _model_tables(made, described) + template("fmu_model.c") + template(f"fmi{fmi}.c")
+    return (
+        equations_in_c(made, about) + _model_tables(made, described) + template("fmu_model.c") + template(f"fmi{fmi}.c")
+    )
 
 
 def _model_tables(made: LineSystem, described: Description) -> str:
@@ -152,8 +154,8 @@ def _binary(texts: dict[str, str], identifier: str, fmi: int) -> bytes | None:
         if done.returncode:
             said = next((one for one in done.stderr.splitlines() if "error" in one), "it says nothing")
             raise ComputationError(
-                f"{Path(compiler).name} does not compile the sources of the FMU ({said.strip()}); name another compiler "
-                f"in CC"
+                f"{Path(compiler).name} does not compile the sources of the FMU ({said.strip()}); "
+                f"name another compiler in CC"
             )
         return (Path(folder) / library).read_bytes()
 

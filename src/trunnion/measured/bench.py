@@ -74,6 +74,15 @@ class _OrderMotion:
         turned = 1j * (self.order + np.multiply.outer(1.0 / speed, self.frequency))
         return np.asarray(waves.real.sum(axis=1)), np.asarray((turned * waves).real.sum(axis=1))
 
+    def accelerating(self, time: Array, angle: Array, speed: Array) -> Array:
+        """Its second derivative by the time (m,), amplitude and speed as they stand at each instant."""
+        amplitude = self.steady[None, :] if self.spline is None else self.spline(speed)
+        waves = amplitude * np.exp(
+            1j * (np.multiply.outer(angle, self.order) + np.multiply.outer(time, self.frequency))
+        )
+        rates = np.multiply.outer(speed, self.order) + self.frequency
+        return np.asarray(-(rates**2 * waves).real.sum(axis=1))
+
 
 def measure(
     line: Driveline | Assembly,
@@ -82,6 +91,7 @@ def measure(
     pickups: Mapping[str, int],
     *,
     gauges: Sequence[str] = (),
+    accelerometers: Sequence[str] = (),
     jitter: float = 0.0,
     pitch_error: float = 0.0,
     wheels: int = 0,
@@ -89,12 +99,14 @@ def measure(
     double: float = 0.0,
     clock_drift: Mapping[str, float] | None = None,
     gauge_noise: float = 0.0,
+    accelerometer_noise: float = 0.0,
     gauge_rate: float = 5000.0,
     start_angle: float = 0.0,
     load_case: str | None = None,
     seed: int = 0,
 ) -> Measurement:
-    """Signals of a synthetic test bench: pulses of wheels on the disks of a line, torques of its springs.
+    """Signals of a synthetic test bench: pulses of wheels on the disks of a line, torques of its springs,
+    angular accelerations of its disks.
 
     Parameters
     ----------
@@ -103,6 +115,7 @@ def measure(
     duration : of the recording [s].
     pickups : pulses per turn of the wheel at each disk named.
     gauges : springs whose torque is recorded.
+    accelerometers : disks whose angular acceleration is recorded.
     jitter : standard deviation of the time of an edge [s], white.
     pitch_error : standard deviation of the position of a tooth as a share of the pitch [-].
     wheels : seed of the pitch errors: runs with the same wheels have the same.
@@ -110,7 +123,8 @@ def measure(
     clock_drift : by pickup, the relative error of the clock that its times are taken by, which is another recorder's
         then.
     gauge_noise : standard deviation of a torque sample [N m], white.
-    gauge_rate : samples per second [Hz].
+    accelerometer_noise : standard deviation of an acceleration sample [rad/s²], white.
+    gauge_rate : samples per second of gauges and accelerometers [Hz].
     start_angle : rotation of the input when the recording begins [rad].
     load_case : as of ``order_response``.
     seed : of noise and of pulses lost.
@@ -133,7 +147,8 @@ def measure(
     """
     assembly = assemble(line, load_case)
     course = _course(speeds, duration)
-    for key, value in {"jitter": jitter, "pitch_error": pitch_error, "gauge_noise": gauge_noise}.items():
+    spoilt = {"jitter": jitter, "pitch_error": pitch_error, "gauge_noise": gauge_noise}
+    for key, value in (spoilt | {"accelerometer_noise": accelerometer_noise}).items():
         if not (one_number(value, key) >= 0 and np.isfinite(value)):
             raise InputError("must not be negative", key=key, value=value, remedy="0 for none")
     for key, value in {"missing": missing, "double": double}.items():
@@ -142,11 +157,12 @@ def measure(
     response = _responses(assembly, course)
     teeth = {name: whole_number(count, f"pickups.{name}", 2) for name, count in pickups.items()}
     ratios, even = speed_ratios(assembly), even_places(assembly)
-    known = {"pickups": (*even, *response[0].inertias), "gauges": response[0].springs}
-    for key, names in {"pickups": teeth, "gauges": gauges}.items():
+    disks = (*even, *response[0].inertias)
+    known = {"pickups": disks, "gauges": response[0].springs, "accelerometers": disks}
+    for key, names in {"pickups": teeth, "gauges": gauges, "accelerometers": accelerometers}.items():
         for name in names:
             if name not in known[key]:
-                what = "is not a disk of the line" if key == "pickups" else "is not a spring of the line"
+                what = "is not a spring of the line" if key == "gauges" else "is not a disk of the line"
                 raise InputError(what, key=key, value=name, remedy=nearest(name, known[key]))
     channels: list[Channel] = []
     drifts = dict(clock_drift or {})
@@ -169,6 +185,13 @@ def measure(
         values = torque + gauge_noise * noise.normal(size=len(time))
         label = f"torque of {name}" if name in teeth else name
         channels.append(SampledSignal(values, gauge_rate, label, "torque", name))
+    for place, name in enumerate(accelerometers):
+        noise = np.random.default_rng([seed, len(teeth) + len(gauges) + place])
+        time = np.arange(int(duration * gauge_rate)) / gauge_rate
+        motion = _motion(response, course, name, "rotation")
+        swing = motion.accelerating(time, start_angle + course.angle(time), course.speed(time))
+        values = abs(ratios[name]) * course.acceleration + swing + accelerometer_noise * noise.normal(size=len(time))
+        channels.append(SampledSignal(values, gauge_rate, f"acceleration of {name}", "acceleration", name))
     return Measurement(channels, "synthetic bench", _remarks(assembly, course, response))
 
 

@@ -11,11 +11,14 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.measured.peaks import PredictedPeaks, predicted_peaks
 from trunnion.measured.predicted import best_angle, predicted_channels, turned, usable
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
+from trunnion.motion.passing.run_up import RunUp, run_up
 from trunnion.numerics.curves import parabola
+from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -28,6 +31,9 @@ SAME_PEAK = 0.005
 """Relative difference of the speeds of two peaks that is said."""
 FLAT_TOP = 0.5
 """Share by which the neighbours of a measured top may lie below it for a parabola through them to tell where it is."""
+CAMPBELL_SPEEDS = 201
+STILL = 0.02
+"""Share by which the speed of a run-up changes at least."""
 WRONG_WAY = 0.25
 """Share of the squares that a reversed or exchanged pickup has to leave, to be asked about."""
 
@@ -52,10 +58,67 @@ class MeasuredComparison(Result):
     findings: tuple[Finding, ...] = internal("what to read first")
     unit: str = internal("that speeds are printed in")
     curve: PredictedPeaks = internal("what is predicted between the tracked speeds, too")
+    extreme: Array = variable("window channel", "", "largest size of a sampled signal, its mean counted")
+    acceleration: float = attribute("of the input", "rad/s^2")
+    places: tuple[str, ...] = internal("of the line that channels show")
+    assembly: Assembly = internal("the line")
 
     def plot(self, axes: Axes | None = None, *, channel: str = "") -> Axes:
         """Measured marks over predicted curves; see ``pictures.measured.comparison``."""
         return drawing(self, "plot")(self, axes, channel=channel)
+
+    def plot_campbell(self, axes: Axes | None = None, *, channel: str = "") -> Axes:
+        """Measured orders on the Campbell diagram of the line; see ``pictures.measured.on_campbell``."""
+        return drawing(self, "plot_campbell")(self, axes, channel=channel)
+
+    def plot_run_up(self, axes: Axes | None = None, *, channel: str = "") -> Axes:
+        """Largest measured torques on the run-up of the line; see ``pictures.measured.on_run_up``."""
+        return drawing(self, "plot_run_up")(self, axes, channel=channel)
+
+    def campbell(self) -> CampbellDiagram:
+        """Modes and excitations of the line over the speeds that were tracked.
+
+        Raises
+        ------
+        InputError : as of ``campbell_diagram``.
+        """
+        low, high = float(self.speed.min()), float(self.speed.max())
+        low, high = (0.95 * low, 1.05 * high) if high - low < 0.05 * high else (low, high)
+        return campbell_diagram(self.assembly, np.linspace(low, high, CAMPBELL_SPEEDS))
+
+    def run_up(self) -> RunUp:
+        """The line's own motion through the speeds that were tracked, in the direction and at the rate of the input.
+
+        Raises
+        ------
+        InputError : the input kept its speed; as of ``run_up``.
+        """
+        first, last = float(self.speed[0]), float(self.speed[-1])
+        if abs(last - first) < STILL * max(first, last):
+            raise InputError(
+                "is of a steady speed, which no run-up compares with", key="data",
+                remedy="record a run-up, or look at plot()",
+            )  # fmt: skip
+        first, last = (float(f"{one:.4g}") for one in (first, last))
+        return run_up(self.assembly, first, last, acceleration=abs(self.acceleration), steady=0)
+
+    def torque_channel(self, channel: str) -> int:
+        """The channel of this name, or the first ("") that measures a torque.
+
+        Raises
+        ------
+        InputError : there is none, or it measures something else.
+        """
+        torques = [name for name, kind in zip(self.channels, self.kinds, strict=True) if kind == "torque"]
+        if channel not in ("", *torques):
+            remedy = f"there are {', '.join(torques)}" if torques else "record the torque of a shaft"
+            raise InputError("measures no torque", key="channel", value=channel, remedy=remedy)
+        if not torques:
+            raise InputError(
+                "has no torque channel, and a run-up is told by torques", key="data",
+                remedy="record the torque of a shaft, or look at plot()",
+            )  # fmt: skip
+        return self.channels.index(channel or torques[0])
 
     def measured_peak(self, order: int, channel: int) -> tuple[int, float, float]:
         """Window at which an order of a channel, by their places, is largest; the speed [rad/s] of its top, by a
@@ -181,12 +244,13 @@ def compare_measured(line: Driveline | Assembly, data: MeasuredOrders) -> Measur
         speed=data.speed, order=data.order, channels=tuple(data.channels[c] for c in columns),
         kinds=tuple(data.kinds[c] for c in columns), measured=measured, predicted=predicted, half_width=half,
         peak=peaks.value, peak_speed=peaks.at, peak_error=peaks.error, begin=angle, off=off, outside=outside,
-        findings=(), unit=data.unit or speed_unit(assembly.line), curve=peaks,
+        findings=(), unit=data.unit or speed_unit(assembly.line), curve=peaks, extreme=data.extreme[:, columns],
+        acceleration=data.acceleration, places=tuple(data.places[c] for c in columns), assembly=assembly,
     )  # fmt: skip
     moves = [k for k, even in enumerate(channels.even) if not even]
     unsearched = f"Predicted peaks are read at the tracked speeds alone: {peaks.why}"
     read = [Finding(Gravity.NOTE, f"{unsearched.rstrip('.')}.")] if peaks.why else []
-    own = (*data.findings, *read, *wrong_way(made, bare, weight, moves), *left_out("order_response", assembly.line))
+    own = (*data.findings, *read, *wrong_way(made, bare, weight, moves), *left_out("compare_measured", assembly.line))
     return replace(made, findings=by_gravity(own))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -18,6 +18,8 @@ from trunnion.response.ranges.largest import Largest, SearchedQuantity, first_sp
 
 TOLERANCE = 1e-4
 """Share of a peak that may still be missing."""
+STEADY = 1e-4
+"""Share within which speeds are one: far less than any resonance is wide that a bench shows."""
 KNOWN = 0.01
 """Share that may be missing of a peak that counts as found."""
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
@@ -47,6 +49,8 @@ def predicted_peaks(channels: PredictedChannels, bare: Complex) -> PredictedPeak
     """
     tracked = channels.data.speed
     low, high = float(tracked.min()), float(tracked.max())
+    if high - low <= STEADY * high:  # one speed, at which there is nothing to search
+        return replace(_read(tracked, bare, ""), error=np.zeros(bare.shape[1:]))
     try:
         found = _searched(channels, low, high)
     except (InputError, ComputationError) as error:

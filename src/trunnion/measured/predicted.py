@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.refusals import nearest
-from trunnion.equations.coefficients import Assembly
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.measured.tracking.places import even_places
@@ -17,6 +17,7 @@ from trunnion.response.orders.response import steady_states_of
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.steady.orders.spectrum import order_spectrum
+from trunnion.waiting import keep_time
 
 NEAR_ENOUGH = 1e-6
 """Orders that are the same."""
@@ -37,11 +38,19 @@ class PredictedChannels:
 
     def at(self, table: Array) -> Complex:
         """Amplitudes (case, order, channel) of rows of packed numbers (case, column), each at its own speed."""
-        if has_periodic_base(self.assembly):
-            found = order_spectrum(self.assembly, table[:, 0], motions=steady_states_of(self.assembly))
-        else:
-            found = order_spectrum(self.assembly, table[:, 0], table=table)
-        return self.of(found)
+        if not has_periodic_base(self.assembly):
+            return self.of(order_spectrum(self.assembly, table[:, 0], table=table))
+        # Each line moves about a periodic motion of its own, which is found at all its speeds.
+        made = np.zeros((len(table), len(self.data.order), len(self.columns)), dtype=complex)
+        lines, of_line = np.unique(table[:, 1:], axis=0, return_inverse=True)
+        for number, row in enumerate(lines):
+            keep_time()
+            own = np.flatnonzero(of_line.ravel() == number)
+            assembly = assemble(self.assembly.packed.line_at(np.concatenate([table[own[:1], 0], row])))
+            speeds, back = np.unique(table[own, 0], return_inverse=True)
+            found = order_spectrum(assembly, speeds, motions=steady_states_of(assembly))
+            made[own] = self.of(found)[back.ravel()]
+        return made
 
     def of(self, found: OrderSpectrum) -> Complex:
         """Amplitudes (case, order, channel) that a spectrum holds."""

@@ -134,6 +134,8 @@ LOOKS: dict[str, Look] = {
     "excitation": Look(VERMILION, 1.2),
     "excitation name": Look(VERMILION, face=WHITE, layer=6.0),
     "crossing": _mark("circle", VERMILION, 6.0, WHITE, 1.5),
+    "measured": replace(_mark("circle", ACCENT, 5.0), opacity=0.55),
+    "measured peak": _mark("x", INK, 8.0, width=1.8),
     "limit of stability": Look(BAD, 1.6),
     "growing": _area(BAD, opacity=0.6),
     "named speed": Look(ACCENT, 0.8, CROSSED, layer=0.0),

@@ -2,24 +2,44 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from trunnion.equations.coefficients import assemble
 from trunnion.measured.identification.result import Identification
 from trunnion.measured.overlay import MeasuredComparison
 from trunnion.measured.peaks import PredictedPeaks
 from trunnion.measured.tracking.by_angle import MeasuredOrderMap
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
+from trunnion.pictures.campbell_diagram import campbell_diagram
 from trunnion.pictures.looks import curve
-from trunnion.pictures.picture import Axis, Band, ColouredGrid, Colours, Item, Line, Picture, Points, single
+from trunnion.pictures.motion import run_up
+from trunnion.pictures.picture import (
+    Axis,
+    Band,
+    ColouredGrid,
+    Colours,
+    Item,
+    Key,
+    Line,
+    Picture,
+    Points,
+    points_at,
+    single,
+)
 from trunnion.pictures.shared import over_speed, place_of
+from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import speed_factor
-from trunnion.results.units import order_words
+from trunnion.results.units import figures, order_words
 
 MOST_ORDERS = 6
 """Curves drawn, the largest of them."""
 DECADES = 3.0
 """Orders whose peak is farther below the largest are not drawn."""
 MAP_DECADES = 3.0
+MARK, LEAST_MARK = 13.0, 0.01
+"""Size [pt] of the mark of the largest amplitude on a Campbell diagram, and the share of it from which one is drawn."""
 WORDS = {
     "rotation": "rotation",
     "torque": "torque",
@@ -64,6 +84,58 @@ def comparison(found: MeasuredComparison, *, channel: str = "") -> Picture:
     return _over(found, channel)
 
 
+def on_campbell(found: MeasuredComparison, *, channel: str = "") -> Picture:
+    """The Campbell diagram of the line, with the measured orders of one channel (the first that moves) where they are:
+    the area of a mark grows with the amplitude, up to the largest; a ring stands at the peak of each order.
+
+    Raises
+    ------
+    InputError : no such channel.
+    """
+    column = _moving(found, channel)
+    diagram = found.campbell()
+    frequency = reading_of_frequencies(found.unit)
+    base = campbell_diagram(diagram, unit=found.unit, frequency_unit=frequency)
+    x, y = speed_factor(found.unit), speed_factor(frequency)
+    sizes = np.abs(found.measured[:, :, column])
+    known = np.isfinite(sizes) & (sizes > found.half_width[:, :, column])
+    top = float(np.max(sizes[known], initial=0.0))
+    if not top:
+        return base
+    symbol, unit_size = unit_of(found.kinds[column], top)
+    window, order = np.nonzero(known & (sizes > LEAST_MARK * top))
+    at = np.column_stack([found.speed[window] * x, found.speed[window] * found.order[order] * y])
+    share = sizes[window, order] / top
+    items: list[Item] = []
+    for k in np.unique(order).tolist():
+        if found.measured_peak(k, column)[0] not in window[order == k]:
+            continue
+        row, speed, _ = found.measured_peak(k, column)
+        name = f"peak of {order_words(float(found.order[k]))}: {figures(float(sizes[row, k]) / unit_size, 3)} {symbol}"
+        items.append(Points([speed * x], [speed * found.order[k] * y], "measured peak", "", says=[name.rstrip()]))
+    if items:
+        items.append(Key("measured peak", "peak of an order", "mark"))
+    words = f"measured at {found.channels[column]}, up to {figures(top / unit_size, 3)} {symbol}".rstrip()
+    marks = points_at(at, "measured", words, MARK * np.sqrt(share))
+    up = base.panel.y
+    reach = max(float(up.high or 0.0), 1.05 * float(at[:, 1].max()))
+    return base.with_panel(items=(*base.panel.items, marks, *items), y=replace(up, high=reach))
+
+
+def on_run_up(found: MeasuredComparison, *, channel: str = "") -> Picture:
+    """The largest torque that one channel (the first that measures one) shows in each window, on the line's own run-up.
+
+    Raises
+    ------
+    InputError : no channel that measures a torque; the input kept its speed; as of ``run_up``.
+    """
+    column = found.torque_channel(channel)
+    base = run_up(found.run_up(), shaft=found.places[column], unit=found.unit)
+    x = found.speed * speed_factor(found.unit)
+    marks = Points(x, found.extreme[:, column], "measured", f"largest measured at {found.channels[column]}")
+    return base.with_panel(items=(*base.panel.items, marks))
+
+
 def identification(found: Identification, *, channel: str = "") -> Picture:
     """The same over the line that was found.
 
@@ -83,15 +155,26 @@ def identification(found: Identification, *, channel: str = "") -> Picture:
         measured=measured, predicted=found.predicted, half_width=half, peak=none, peak_speed=none, peak_error=none,
         begin=found.begin, off=found.residual.T, outside=found.residual.T, findings=(), unit=found.unit,
         curve=PredictedPeaks(speed[rank], found.predicted[rank], none, none, none),
+        places=tuple(data.places[c] for c in columns), extreme=data.extreme[rows][:, columns],
+        acceleration=data.acceleration, assembly=assemble(found.line),
     )  # fmt: skip
     return comparison(shown, channel=channel)
 
 
-def _over(found: MeasuredComparison, channel: str) -> Picture:
-    curves = np.abs(found.curve.amplitude)
-    moves = int(np.argmax(curves.max(axis=(0, 1)) > 0))
+def _moving(found: MeasuredComparison, channel: str) -> int:
+    """The channel of a name, or the first that moves.
+
+    Raises
+    ------
+    InputError : no such channel.
+    """
+    moves = int(np.argmax(np.abs(found.curve.amplitude).max(axis=(0, 1)) > 0))
     known = f"there are {', '.join(found.channels)}"
-    column = place_of(channel, found.channels, moves, "channel", "not a channel", known)
+    return place_of(channel, found.channels, moves, "channel", "not a channel", known)
+
+
+def _over(found: MeasuredComparison, channel: str) -> Picture:
+    curves, column = np.abs(found.curve.amplitude), _moving(found, channel)
     size_of, factor = np.abs(found.measured[:, :, column]), speed_factor(found.unit)
     symbol, size = unit_of(found.kinds[column], float(np.nanmax(size_of, initial=0.0)))
     rank = np.argsort(found.speed)

@@ -17,6 +17,8 @@ from trunnion.design.remedies.result import Remedies
 from trunnion.driveline.driveline import hooke_joints
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
+from trunnion.measured.overlay import MeasuredComparison, compare_measured
+from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.modes.bending import BendingSpeed, bending_speeds
 from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.reporting.overview import Overview
@@ -48,12 +50,14 @@ class Contents:
     campbell: CampbellDiagram | None
     helped: Remedies | None
     life: FatigueLife | None
+    measured: MeasuredComparison | None
     findings: tuple[Finding, ...]
     left_out: tuple[str, ...]
 
 
-def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> Contents:
-    """What an overview does not hold yet: what would help, modes and torques over speed, irregularity, bending."""
+def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
+    """What an overview does not hold yet: what would help, modes and torques over speed, irregularity, bending; and
+    ``measured`` orders over what the line predicts."""
     assembly = seen.assembly
     low, high = _speeds(seen)
     left_out: list[str] = []
@@ -73,7 +77,7 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
         sweep = unless_refused(
             "Torque over speed",
-            lambda: speed_sweep(assembly, sweep_speeds(assembly, low, high), progress=progress),
+            lambda: speed_sweep(assembly, sweep_speeds(assembly, low, high)),
         )
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
     bending = bending_speeds(assembly)
@@ -96,6 +100,9 @@ def gather(seen: Overview, progress: Callable[[float], None] | None = None) -> C
         campbell=campbell,
         helped=helped,
         life=_life(seen, left_out),
+        measured=None
+        if measured is None
+        else unless_refused("Measured orders", lambda: compare_measured(assembly, measured)),
         findings=by_gravity([*seen.findings, *more]),
         left_out=tuple(left_out),
     )

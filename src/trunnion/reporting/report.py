@@ -15,6 +15,9 @@ from trunnion.design.limits.result import LimitKind
 from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.features import feature
+from trunnion.errors import ComputationError, InputError
+from trunnion.measured.overlay import MeasuredComparison
+from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
@@ -57,6 +60,7 @@ def report(
     unit: str | None = None,
     points: tuple[int, int] | None = None,
     source: str | os.PathLike[str] | None = None,
+    measured: MeasuredOrders | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Report:
     """Everything about ``line`` on one page.
@@ -69,6 +73,7 @@ def report(
     unit : of speeds: "rpm", "Hz" or "rad/s"; default the description's.
     points : speeds × angles of the chart; default as many as its picture needs.
     source : the file the line was read from, for its name and hash.
+    measured : orders that were tracked on a bench; a section lays them over what the line predicts.
     progress : called as progress(share done) while the chart is computed.
 
     Raises
@@ -87,7 +92,7 @@ def report(
     seen = (
         line if isinstance(line, Overview) else overview(line, speed=speed, unit=unit, points=points, progress=progress)
     )
-    contents = gather(seen)
+    contents = gather(seen, measured)
     path = None if source is None else Path(source)
     with to_the_end():  # what there is is drawn
         shown = pictures(contents)
@@ -128,6 +133,8 @@ def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path |
         "load_cases": bool(seen.line.operation and seen.line.operation.load_cases),
         "under_load": tables.under_load(contents),
         "contacts": tables.contacts(contents),
+        "measured": tables.measured(contents),
+        "measured_says": tables.measured_sentences(contents),
         "bending": tables.bending(contents, unit),
         "stability": _verdict(seen),
         "at_speed": Words(unit).speed(seen.stability.speed) if seen.stability else "",
@@ -182,7 +189,42 @@ def pictures(contents: Contents) -> dict[str, ReportPicture]:
         period, orders = motions.period(motion.response, unit=unit), motions.orders(motion.response)
         shown["loaded"] = picture(draw(period), f"Torque over one period, {motion.case}")
         shown["orders"] = picture(draw(orders), f"Orders of the torque, {motion.case}")
-    return shown | chart_pictures(contents)
+    return shown | measured_pictures(contents) | chart_pictures(contents)
+
+
+def measured_pictures(contents: Contents) -> dict[str, ReportPicture]:
+    """Measured orders over the response of every kind of channel, on the Campbell diagram, and on the run-up."""
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.measured import comparison, on_campbell, on_run_up
+
+    found, shown = contents.measured, {}
+    if found is None:
+        return {}
+    for name in compared_channels(found):
+        key = f"measured {name}"
+        shown[key] = picture(
+            draw(comparison(found, channel=name)),
+            f"Orders measured at {name} over predicted ones",
+            f"Measured at {name}, with intervals of 95 %, over what the line predicts.",
+        )
+    try:
+        shown["measured on Campbell"] = picture(draw(on_campbell(found)), "Measured orders on the Campbell diagram")
+    except (InputError, ComputationError):  # the section on the Campbell diagram says why
+        pass
+    try:
+        shown["measured on run-up"] = picture(draw(on_run_up(found)), "Measured torques on the run-up of the line")
+    except (InputError, ComputationError):  # no torque was measured, or no run-up
+        pass
+    return shown
+
+
+def compared_channels(found: MeasuredComparison) -> list[str]:
+    """The first channel of each kind at a place that moves."""
+    first: dict[str, str] = {}
+    for name, kind, peak in zip(found.channels, found.kinds, found.peak.max(axis=0), strict=True):
+        if peak > 0:
+            first.setdefault(kind, name)
+    return list(first.values())
 
 
 def chart_pictures(contents: Contents) -> dict[str, ReportPicture]:

@@ -53,6 +53,25 @@ class Table:
         return tuple(any(column) and all(map(_is_number, column)) for column in columns)
 
 
+def measured(contents: Contents) -> Table | None:
+    """How far measured orders are from predicted ones; None where nothing was measured."""
+    found = contents.measured
+    if found is None:
+        return None
+    moves = {name for name, peak in zip(found.channels, found.peak.max(axis=0), strict=True) if peak > 0}
+    return Table.of(row for row in found.table() if row["channel"] in moves)
+
+
+def measured_sentences(contents: Contents) -> list[str]:
+    """What differs, one sentence an order of a channel, and what to read first."""
+    found = contents.measured
+    if found is None:
+        return []
+    places = [(k, c) for c in range(len(found.channels)) for k in range(len(found.order)) if found.peak[k, c] > 0]
+    said = [f"{found.sentence(k, c)}." for k, c in places]
+    return [*(one.sentence for one in found.findings), *(one[0].upper() + one[1:] for one in said)]
+
+
 def _is_number(text: str) -> bool:
     try:
         float(text.replace("−", "-").replace("–", "0") or "0")

@@ -40,6 +40,8 @@ from trunnion.results.units import figures
 
 MOST_WINDOWS = 120
 """Windows that are fitted; of more, as many spread evenly."""
+FEWER_WINDOWS = 16
+"""The same of a free–free line with joint angles, whose own motion is found for each."""
 ANEW = 6
 """Times that a better fit found on the way may begin anew."""
 UNLIKELY = 1e-3
@@ -77,8 +79,7 @@ def identify(
 
     Raises
     ------
-    InputError : a parameter or bound that cannot be; places that the line does not have; a free–free line with joint
-        angles.
+    InputError : a parameter or bound that cannot be; places that the line does not have.
 
     Examples
     --------
@@ -93,15 +94,11 @@ def identify(
     (True, 12)
     """
     assembly = assemble(line)
-    if has_periodic_base(assembly):
-        raise InputError(
-            "is free–free and has joint angles: its orders are not solved for many lines together", element="driveline",
-            remedy="drive its input at a constant speed, as the reference pickup saw it",
-        )  # fmt: skip
     whole_number(seed, "seed", 0)
     advance = progress or (lambda share: None)
     space = Space(assembly, free)
-    misfit = misfit_of(assembly, data, space.free, begin, _windows(data))
+    most = FEWER_WINDOWS if has_periodic_base(assembly) else MOST_WINDOWS
+    misfit = misfit_of(assembly, data, space.free, begin, _windows(data, most))
     freedom = misfit.count - len(space.free) - (begin is None)
     if freedom < 1:
         raise InputError(
@@ -165,9 +162,9 @@ def identify(
     return replace(made, findings=by_gravity(_findings(made, misfit)))
 
 
-def _windows(data: MeasuredOrders) -> Places:
+def _windows(data: MeasuredOrders, most: int) -> Places:
     count = len(data.speed)
-    return np.unique(np.linspace(0, count - 1, min(count, MOST_WINDOWS)).astype(np.intp))
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
 
 
 def _profiled(
@@ -216,7 +213,7 @@ def _by_channel(misfit: Misfit, residual: Array) -> Array:
 
 def _held_out(assembly: Assembly, data: MeasuredOrders, fitted: Misfit, best: FitPoint) -> float:
     """χ² over its number of a run that was not fitted, which begins at an angle of its own."""
-    other = misfit_of(assembly, data, fitted.free, fitted.begin, _windows(data))
+    other = misfit_of(assembly, data, fitted.free, fitted.begin, _windows(data, max(len(fitted.rows), 1)))
     predicted = other.predicted(values_at(fitted, best.share)[None])[0]
     return other.chi_square(predicted) / max(other.count - (fitted.begin is None), 1)
 
@@ -279,4 +276,4 @@ def _findings(found: Identification, misfit: Misfit) -> Iterator[Finding]:
             "sign, symmetry or chance: the data do not tell them apart.",
         )
     yield from (one for one in compare_measured(found.line, found.measured).findings if one.sentence.endswith("?"))
-    yield from left_out("order_response", found.line)
+    yield from left_out("identify", found.line)

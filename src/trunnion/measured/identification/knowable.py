@@ -158,6 +158,7 @@ def _next_pickups(misfit: Misfit, share: Array, scale: Array) -> tuple[tuple[str
             hidden=np.concatenate([data.hidden, data.hidden[:, [model]]], axis=1),
             floor=np.concatenate([data.floor, data.floor[:, [model]]], axis=1),
             residual=np.concatenate([data.residual, data.residual[:, [model]]], axis=1),
+            extreme=np.concatenate([data.extreme, data.extreme[:, [model]]], axis=1),
         )
         wider = misfit_of(assembly, more, misfit.free, misfit.begin, misfit.rows)
         # Only slopes are asked for: what the pickup would show does not matter.

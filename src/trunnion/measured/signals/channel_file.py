@@ -26,6 +26,14 @@
     scale = 0.25                      # value = scale * column + offset
     offset = 0.0
     at = "front tube"
+
+    [[channel]]
+    column = "CH4"
+    kind = "acceleration"
+    unit = "m/s^2"                    # or "g", of a tangential accelerometer; "rad/s^2" where no radius is given
+    radius = "80 mm"                  # that it sits at
+    gravity = false                   # two opposite each other, summed, or an upright shaft; default true
+    at = "hub"
 """
 
 from __future__ import annotations
@@ -36,7 +44,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from trunnion.driveline.quantities import ACCELERATION, FREQUENCY, RATIO, SPEED, TORQUE, QuantityKind, parse
+from trunnion.driveline.quantities import ACCELERATION, FREQUENCY, LENGTH, RATIO, SPEED, TORQUE, QuantityKind, parse
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import SAMPLED, USUAL_PITCH_ERROR
@@ -46,11 +54,14 @@ TURN = 6.283185307179586
 LARGEST = 1_000_000
 """Bytes of a description of channels."""
 KINDS = ("pulses", "edges", *SAMPLED)
+GRAVITY = 9.80665
+"""Of the earth [m/s²] (ISO 80000-3)."""
+TANGENTIAL = QuantityKind("acceleration", "m/s^2", "30 m/s^2")
 UNITS: Mapping[str, QuantityKind] = {"torque": TORQUE, "acceleration": ACCELERATION, "speed": SPEED}
 TYPES: Mapping[str, tuple[type, ...]] = {
     "column": (str, int), "name": (str,), "kind": (str,), "at": (str,), "unit": (str,), "edge": (str,),
     "clock": (str,), "scale": (int, float), "offset": (int, float), "level": (int, float), "reversed": (bool,),
-    "pulses_per_turn": (int,), "pitch_error": (int, float, str),
+    "pulses_per_turn": (int,), "pitch_error": (int, float, str), "radius": (int, float, str), "gravity": (bool,),
 }  # fmt: skip
 
 
@@ -71,6 +82,8 @@ class ColumnDescription:
     pitch_error: float = USUAL_PITCH_ERROR
     reversed: bool = False
     clock: str = ""
+    radius: float = 0.0
+    gravity: bool = True
 
     @property
     def label(self) -> str:
@@ -79,8 +92,17 @@ class ColumnDescription:
 
     @property
     def unit_size(self) -> float:
-        """Its unit in SI."""
+        """Its unit in SI, of a tangential acceleration over the radius."""
+        if self.radius and self.unit == "g":  # of an accelerometer, not grams
+            return GRAVITY / self.radius
+        if self.radius:
+            return float(parse(f"1 {self.unit}", TANGENTIAL)) / self.radius
         return parse(f"1 {self.unit}", UNITS[self.kind]) if self.unit and self.kind in UNITS else 1.0
+
+    @property
+    def once_a_turn(self) -> float:
+        """What gravity adds to it once a turn of its shaft [rad/s²]."""
+        return GRAVITY / self.radius if self.radius and self.gravity else 0.0
 
 
 @dataclass(frozen=True)
@@ -147,9 +169,22 @@ def _column(given: Mapping[str, Any], where: str) -> ColumnDescription:
     if "column" not in given:
         raise InputError("is missing", element=where, key="column", remedy='write column = "CH1"')
     found = dict(given)
-    if "pitch_error" in found:
-        found["pitch_error"] = parse(found["pitch_error"], RATIO)
+    for key, kind in (("pitch_error", RATIO), ("radius", LENGTH)):
+        if key in found:
+            try:
+                found[key] = parse(found[key], kind)
+            except InputError as error:
+                raise error.but(element=where, key=key) from None
+    if "radius" in found:
+        if not found["radius"] > 0:
+            raise InputError(
+                "must be positive", element=where, key="radius", value=given["radius"], remedy='write "80 mm", say'
+            )
     made = ColumnDescription(**found)
+    if made.kind != "acceleration":
+        for key in ("radius", "gravity"):
+            if key in given:
+                raise InputError('belongs to kind = "acceleration"', element=where, key=key, value=given[key])
     for key, value, known in (("kind", made.kind, KINDS), ("edge", made.edge, ("rising", "falling"))):
         if value not in known:
             raise InputError("is not known", element=where, key=key, value=value, remedy=nearest(value, known))
@@ -160,7 +195,7 @@ def _column(given: Mapping[str, Any], where: str) -> ColumnDescription:
                 value=given.get("pulses_per_turn"), remedy="count the teeth of the wheel",
             )  # fmt: skip
     elif made.kind in UNITS and not made.unit:
-        example = UNITS[made.kind].unit
+        example = TANGENTIAL.unit if made.radius else UNITS[made.kind].unit
         raise InputError("is missing", element=where, key="unit", remedy=f'write unit = "{example}"')
     try:
         _ = made.unit_size  # a unit of another quantity is refused here

@@ -135,6 +135,8 @@ class SampledSignal(Portable):
     at : the spring or disk of the line.
     start : time of the first sample [s].
     clock : as of ``PulseTrain``.
+    gravity : what gravity adds once a turn of its shaft [rad/s²], g over the radius of a single tangential
+        accelerometer on a horizontal shaft; 0 for a pair that stands opposite each other.
 
     Raises
     ------
@@ -155,6 +157,7 @@ class SampledSignal(Portable):
     at: str = ""
     start: float = 0.0
     clock: str = ""
+    gravity: float = 0.0
 
     def __post_init__(self) -> None:
         if not one_number(self.rate, f"{self.name}.rate") > 0:

@@ -107,7 +107,9 @@ def _channel(
         edges = rising_edges(source.chunks(column), rate, one.level, one.label, falling=one.edge == "falling")
         return _train(edges + start, one)
     values = (_whole(source.chunks(column), one) * one.scale + one.offset) * one.unit_size
-    return SampledSignal(values, rate, one.label, one.kind, one.at, start, one.clock)
+    return SampledSignal(
+        values, rate, one.label, one.kind, one.at, start=start, clock=one.clock, gravity=one.once_a_turn
+    )
 
 
 def _train(edges: Array, one: ColumnDescription) -> PulseTrain:

@@ -149,6 +149,7 @@ class _Tracked:
     amplitude: Complex
     deviation: Array
     residual: Array
+    extreme: Array
 
 
 class _Tracking:
@@ -258,8 +259,9 @@ class _Tracking:
                 floor.append(np.where(own, size if self.calibration is None else left, 0.0))
             else:
                 found[channel.name] = self._sampled(channel, windows, orders, trend)
-                hidden.append(np.zeros(len(orders), dtype=bool))
-                floor.append(np.zeros(len(orders)))
+                falls = np.abs(orders - self._channel_ratio(channel)) < SAME_RATIO * orders
+                hidden.append(falls & (channel.gravity > 0))
+                floor.append(np.where(falls, channel.gravity, 0.0))
             if progress:
                 progress(share * (place + 1))
         names, bend = tuple(found), bent if trend else lambda amplitude: np.zeros(amplitude.shape)
@@ -280,6 +282,7 @@ class _Tracking:
             ratios=tuple(self._channel_ratio(one) for one in self.measurement.channels),
             amplitude=amplitude,
             deviation=np.stack([np.hypot(one.deviation, bend(one.amplitude)) for one in found.values()], axis=2),
+            extreme=np.stack([one.extreme for one in found.values()], axis=1),
             hidden=np.stack(hidden, axis=1),
             floor=np.stack(floor, axis=1),
             residual=np.stack([one.residual for one in found.values()], axis=1),
@@ -340,7 +343,7 @@ class _Tracking:
         deviation = np.array([nothing if fit is None else fit.deviation for fit in fits])
         residual = np.array([np.nan if f is None else np.sqrt(f.residual @ f.residual / f.freedom) for f in fits])
         sign = -1.0 if train.reversed else 1.0
-        return _Tracked(sign * amplitude, deviation, residual)
+        return _Tracked(sign * amplitude, deviation, residual, np.full(len(fits), np.nan))
 
     def _beside(
         self, train: PulseTrain, ratio: float, windows: tuple[RotationWindow, ...], orders: Array, trend: int
@@ -385,17 +388,18 @@ class _Tracking:
         kept = thinned(signal, OVERSAMPLED * fastest)
         times = kept.times
         nothing = np.full(len(orders), np.nan)
-        amplitude, deviation, residual = [], [], []
+        amplitude, deviation, residual, extreme = [], [], [], []
         for one in windows:
             keep_time()
             first, last = np.searchsorted(times, (one.middle - one.half, one.middle + one.half))
             phase = one.angle(times[first:last])
             y = kept.values[first:last]
+            extreme.append(np.abs(y).max(initial=np.nan if not len(y) else 0.0))
             fit = fitted(y, one.local(times[first:last]), phase, orders, SMOOTH_BESIDE, trend) if len(y) else None
             amplitude.append(nothing + 0j if fit is None else fit.amplitude)
             deviation.append(nothing if fit is None else fit.deviation)
             residual.append(np.nan if fit is None else np.sqrt(fit.residual @ fit.residual / fit.freedom))
-        return _Tracked(np.array(amplitude), np.array(deviation), np.array(residual))
+        return _Tracked(np.array(amplitude), np.array(deviation), np.array(residual), np.array(extreme))
 
     def _refuse_high(self, train: PulseTrain, orders: Array, ratio: float) -> None:
         limit = train.pulses_per_turn * ratio / 2
@@ -441,7 +445,18 @@ class _Tracking:
     def _say_hidden(
         self, names: tuple[str, ...], orders: Array, amplitude: Complex, hidden: Flags, floor: Array
     ) -> None:
-        for column, name in enumerate(names):
+        for column, (name, channel) in enumerate(zip(names, self.measurement.channels, strict=True)):
+            if isinstance(channel, SampledSignal):
+                if hidden[:, column].any():
+                    order, size = orders[hidden[:, column]][0], figures(channel.gravity, 3)
+                    self.findings.append(
+                        Finding(
+                            Gravity.CAUTION,
+                            f"{name}: order {order:g} holds gravity, {size} rad/s² at a single accelerometer of a "
+                            "horizontal shaft; sum two that stand opposite each other (gravity = false).",
+                        )
+                    )
+                continue
             sizes = np.nanmax(np.abs(amplitude[:, :, column]), axis=0, initial=0.0)
             weak = [
                 f"{orders[k]:g}" for k in range(len(orders)) if hidden[k, column] and sizes[k] < 4 * floor[k, column]
