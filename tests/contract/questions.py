@@ -61,6 +61,12 @@ def heated(line: tn.Driveline) -> tn.Driveline:
     return line.but(elements=[*line.elements, rubber.but(after="load"), shaken])
 
 
+def shaken(line: tn.Driveline) -> tn.Driveline:
+    """With a disk at the far end that is shaken twice a turn, so that straight lines show orders too."""
+    end = tn.Disk(inertia=0.05, excitation=[{"order": 2, "amplitude": 4.0}], name="shaken")
+    return line.but(elements=[*line.elements, tn.Shaft(stiffness=2e4, after="load", name="to the end"), end])
+
+
 def with_duty(line: tn.Driveline) -> tn.Driveline:
     """With an S–N curve of all shafts, which counts means, and a duty."""
     curve = tn.SNCurve(of="Shaft *", torque_amplitude=50.0, cycles=1e6, slope=5, ultimate_torque=1e4)
@@ -109,7 +115,7 @@ def in_rpm_for_life() -> tn.Driveline:
 @cache
 def measured_orders(of_line_in_rpm: bool) -> tn.MeasuredOrders:
     """Of a bench with a line that has no feature."""
-    line, gauge = (in_rpm(), "tube") if of_line_in_rpm else (feature_lines.bent(), "rear")
+    line, gauge = (in_rpm(), "tube") if of_line_in_rpm else (shaken(feature_lines.bent()), "rear")
     run = tn.measure(line, (LOW, HIGH) if of_line_in_rpm else (80.0, 110.0), 3.0, {"load": 30}, gauges=[gauge])
     return tn.track_orders(run, [1, 2], line=line)
 
@@ -183,17 +189,19 @@ QUESTIONS = {
         lambda: tn.order_response(in_rpm(), GRID),
     ),
     "measure": Question(
-        lambda line: tn.measure(line, 95.0, 0.5, {"load": 30}, gauges=["front", "rear"], accelerometers=["load"]),
+        lambda line: tn.measure(
+            shaken(line), 95.0, 0.5, {"load": 30}, gauges=["front", "rear"], accelerometers=["load"]
+        ),
         lambda: tn.measure(in_rpm(), MIDDLE, 0.5, {"load": 30}, gauges=["tube"]),
         quick=("load torque", "excitation by order", "dry friction", "backlash"),
     ),
     "compare_measured": Question(
-        lambda line: tn.compare_measured(line, measured_orders(False)),
+        lambda line: tn.compare_measured(shaken(line), measured_orders(False)),
         lambda: tn.compare_measured(in_rpm(), measured_orders(True)),
         quick=("load torque", "excitation by order", "dry friction", "backlash"),
     ),
     "identify": Question(
-        lambda line: tn.identify(line, measured_orders(False), {"joint 2.angle": (0.1, 0.2)}),
+        lambda line: tn.identify(shaken(line), measured_orders(False), {"joint 2.angle": (0.1, 0.2)}),
         lambda: tn.identify(in_rpm(), measured_orders(True), {"tube.stiffness": (5e3, 2e4)}),
         quick=("load torque", "dry friction"),
     ),

@@ -161,7 +161,7 @@ def compare_measured(
         data.column(channel)
     written = []
     if report is not None:
-        page = tn.report(line, unit=unit, source=asked.texts["line"], measured=data, progress=progress)
+        page = tn.report(line, unit=unit or None, source=asked.texts["line"], measured=data, progress=progress)
         written.append(page.save(report))
     return CommandOutput(
         found, draw=partial(getattr(found, OVER[over]), channel=channel), written=written,

@@ -19,7 +19,7 @@ from trunnion.equations.line_regimes import staged_springs
 from trunnion.equations.line_system import LineSystem
 from trunnion.errors import ComputationError
 from trunnion.exchange.c_source import equations_in_c, row_of, system_in_c, table, template, whole_rows
-from trunnion.exchange.fmu_description import Description, build_description, description_of, model_description
+from trunnion.exchange.fmu_description import FmuDescription, build_description, description_of, model_description
 from trunnion.laws.stages import GUARDS
 
 VERSIONS = (2, 3)
@@ -69,7 +69,7 @@ def write_fmu(line: Driveline, path: Path, fmi: int) -> tuple[str, ...]:
     return () if binary is not None else (NO_COMPILER,)
 
 
-def _source(made: LineSystem, described: Description, fmi: int) -> str:
+def _source(made: LineSystem, described: FmuDescription, fmi: int) -> str:
     """Everything in one file, so that any build is one call of a compiler."""
     about = [
         f"   An FMU of FMI {fmi}.0 for model exchange and co-simulation. Springs with stages keep the one they are in;",
@@ -80,7 +80,7 @@ def _source(made: LineSystem, described: Description, fmi: int) -> str:
     )
 
 
-def _model_tables(made: LineSystem, described: Description) -> str:
+def _model_tables(made: LineSystem, described: FmuDescription) -> str:
     """What an instance needs beside the equations: its start, what it takes and gives, and the ways between stages."""
     row = made.assembly.table(1)[0]
     springs = staged_springs(made.assembly, row)

@@ -29,7 +29,7 @@ _LONGEST_NAME = 60
 
 
 @dataclass(frozen=True)
-class Variable:
+class FmuVariable:
     """One of them: ``place`` is the station or spring it belongs to, ``kind`` what an output tells."""
 
     name: str
@@ -42,36 +42,36 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Description:
+class FmuDescription:
     """All of them, by what they are; ``duration`` and ``step`` [s] of an experiment."""
 
     name: str
     identifier: str
-    states: tuple[Variable, ...]
-    derivatives: tuple[Variable, ...]
-    inputs: tuple[Variable, ...]
-    outputs: tuple[Variable, ...]
-    indicators: tuple[Variable, ...]
+    states: tuple[FmuVariable, ...]
+    derivatives: tuple[FmuVariable, ...]
+    inputs: tuple[FmuVariable, ...]
+    outputs: tuple[FmuVariable, ...]
+    indicators: tuple[FmuVariable, ...]
     duration: float
     step: float
 
     @property
-    def calculated(self) -> tuple[Variable, ...]:
+    def calculated(self) -> tuple[FmuVariable, ...]:
         """What an importer may ask for before a simulation begins."""
         return (*self.derivatives, *self.outputs)
 
 
-def description_of(made: LineSystem) -> Description:
+def description_of(made: LineSystem) -> FmuDescription:
     """The variables of a line: states are deviations from uniform rotation; torques act on whatever has an inertia."""
     system, topology = made.system, made.assembly.topology
     line = made.assembly.line
     taken: set[str] = set()
     count = 0
 
-    def add(name: str, unit: str, description: str, **more: object) -> Variable:
+    def add(name: str, unit: str, description: str, **more: object) -> FmuVariable:
         nonlocal count
         count += 1
-        return Variable(_free(name, taken), count, unit, description, **more)  # type: ignore[arg-type]
+        return FmuVariable(_free(name, taken), count, unit, description, **more)  # type: ignore[arg-type]
 
     size = topology.size
     start = made.rest()
@@ -111,7 +111,7 @@ def description_of(made: LineSystem) -> Description:
     )
     turn = 2 * np.pi / abs(made.speed)
     name = _plain(line.name or "driveline")
-    return Description(
+    return FmuDescription(
         name, _identifier(name), states, derivatives, inputs, outputs, indicators, TURNS * turn, turn / _POINTS_A_TURN
     )
 
@@ -137,7 +137,7 @@ def _identifier(name: str) -> str:
     return f"line_{found}" if not found or found[0].isdigit() else found
 
 
-def model_description(described: Description, fmi: int, token: str, sources: Sequence[str]) -> str:
+def model_description(described: FmuDescription, fmi: int, token: str, sources: Sequence[str]) -> str:
     """The text of modelDescription.xml."""
     root = Element("fmiModelDescription", fmiVersion=f"{fmi}.0", modelName=described.name)
     root.set("guid" if fmi == 2 else "instantiationToken", token)
@@ -159,7 +159,7 @@ def model_description(described: Description, fmi: int, token: str, sources: Seq
                 SubElement(held, "File", name=name)
     units = SubElement(root, "UnitDefinitions")
     for name, base in UNITS.items():
-        SubElement(SubElement(units, "Unit", name=name), "BaseUnit", **base)
+        SubElement(SubElement(units, "Unit", name=name), "BaseUnit", base)
     log = SubElement(root, "LogCategories")
     SubElement(log, "Category", name="logStatusError")
     SubElement(
@@ -170,7 +170,7 @@ def model_description(described: Description, fmi: int, token: str, sources: Seq
     return _text(root)
 
 
-def _rows(described: Description) -> Iterable[tuple[str, Variable]]:
+def _rows(described: FmuDescription) -> Iterable[tuple[str, FmuVariable]]:
     """Every variable and its causality, in the order of their references."""
     for one in (*described.states, *described.derivatives):
         yield "local", one
@@ -182,7 +182,7 @@ def _rows(described: Description) -> Iterable[tuple[str, Variable]]:
         yield "local", one
 
 
-def _variables_of_2(root: Element, described: Description) -> None:
+def _variables_of_2(root: Element, described: FmuDescription) -> None:
     """Reference k is number k: there is no variable before it but the time, which FMI 2.0 does not want."""
     held = SubElement(root, "ModelVariables")
     for causality, one in _rows(described):
@@ -210,7 +210,7 @@ def _variables_of_2(root: Element, described: Description) -> None:
             SubElement(group, "Unknown", index=str(one.reference))
 
 
-def _variables_of_3(root: Element, described: Description) -> None:
+def _variables_of_3(root: Element, described: FmuDescription) -> None:
     held = SubElement(root, "ModelVariables")
     SubElement(
         held, "Float64", name="time", valueReference="0", causality="independent", variability="continuous", unit="s"
@@ -238,7 +238,7 @@ def _variables_of_3(root: Element, described: Description) -> None:
             SubElement(structure, part, valueReference=str(one.reference))
 
 
-def build_description(described: Description, source: str, language: str) -> str:
+def build_description(described: FmuDescription, source: str, language: str) -> str:
     """The text of sources/buildDescription.xml of FMI 3.0."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     build = SubElement(root, "BuildConfiguration", modelIdentifier=described.identifier)

@@ -18,6 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
+from trunnion.features import left_out
 from trunnion.measured.signals.measurement import TURN, Channel, Measurement, PulseTrain, SampledSignal
 from trunnion.measured.tracking.places import even_places, speed_ratios
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -291,7 +292,8 @@ def _spoiled(times: Array, noise: np.random.Generator, jitter: float, missing: f
 
 
 def _remarks(assembly: Assembly, course: _Course, response: tuple[OrderResponse, float]) -> tuple[str, ...]:
-    found = [f"{one.sentence}" for one in response[0].remarks]
+    left = [one.sentence for one in left_out("measure", assembly.line)]
+    found = list(dict.fromkeys([*left, *(one.sentence for one in response[0].remarks)]))
     if course.acceleration:
         found += _too_fast(assembly, course, response[0])
     return tuple(found)
