@@ -62,9 +62,9 @@ def heated(line: tn.Driveline) -> tn.Driveline:
 
 
 def shaken(line: tn.Driveline) -> tn.Driveline:
-    """With a disk at the far end that is shaken twice a turn, so that straight lines show orders too."""
+    """With a disk beside the hub that is shaken twice a turn, so that straight lines show orders too."""
     end = tn.Disk(inertia=0.05, excitation=[{"order": 2, "amplitude": 4.0}], name="shaken")
-    return line.but(elements=[*line.elements, tn.Shaft(stiffness=2e4, after="load", name="to the end"), end])
+    return line.but(elements=[*line.elements, tn.Shaft(stiffness=2e4, after="hub", name="to the end"), end])
 
 
 def with_duty(line: tn.Driveline) -> tn.Driveline:
@@ -189,9 +189,7 @@ QUESTIONS = {
         lambda: tn.order_response(in_rpm(), GRID),
     ),
     "measure": Question(
-        lambda line: tn.measure(
-            shaken(line), 95.0, 0.5, {"load": 30}, gauges=["front", "rear"], accelerometers=["load"]
-        ),
+        lambda line: tn.measure(shaken(line), 95.0, 0.5, {"load": 30}, gauges=["rear"], accelerometers=["load"]),
         lambda: tn.measure(in_rpm(), MIDDLE, 0.5, {"load": 30}, gauges=["tube"]),
         quick=("load torque", "excitation by order", "dry friction", "backlash"),
     ),
