@@ -288,7 +288,7 @@ def friction() -> tn.Driveline:
 REFUSED = [
     (friction, {}, r"disc.*is not written as an FMU \(dry friction"),
     (feature_lines.bent, {}, "operation.speed: is missing"),
-    (rattling, {"fmi": 1}, "fmi = 1: is no version of FMI that is written; write 2 or 3"),
+    (rattling, {"fmi": 1}, "fmi = 1: is not a version of FMI that is written; write 2 or 3"),
     (
         lambda: rattling().but(
             operation=tn.Operation(

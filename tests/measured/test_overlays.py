@@ -177,7 +177,7 @@ def test_a_radius_belongs_to_an_acceleration(tmp_path: Path) -> None:
 
 
 def test_places_of_accelerometers_are_checked() -> None:
-    with pytest.raises(InputError, match="accelerometers = 'tube': is no disk of the line"):
+    with pytest.raises(InputError, match="accelerometers = 'tube': is not a disk of the line"):
         tn.measure(line(), 180.0, 1.0, {"hub": 36}, accelerometers=["tube"])
     with pytest.raises(InputError, match="accelerometer_noise = -1: must not be negative"):
         tn.measure(line(), 180.0, 1.0, {"hub": 36}, accelerometer_noise=-1.0)
@@ -209,7 +209,7 @@ def test_the_command_writes_the_picture_asked_for(tmp_path: Path) -> None:
     tn.dump(line(), file)
     asked = ["compare-measured", str(path), "--line", str(file), "--orders", "1,3"]
     run = CliRunner().invoke(app, [*asked, "--over", "chart"])
-    assert run.exit_code == 2 and "--over = 'chart': is no picture" in run.output
+    assert run.exit_code == 2 and "--over = 'chart': is not a picture" in run.output
     run = CliRunner().invoke(app, [*asked, "--report", str(tmp_path / "page.pdf")])
     assert run.exit_code == 2 and "does not end in .html" in run.output
     picture = tmp_path / "campbell.svg"

@@ -149,7 +149,7 @@ def compare_measured(
     --report FILE  Writes the report on the line, NAME.html, with a section on what was measured.
     """
     if over not in OVER:
-        raise InputError("is no picture", key="--over", value=over, remedy=nearest(over, list(OVER)))
+        raise InputError("is not a picture", key="--over", value=over, remedy=nearest(over, list(OVER)))
     if report is not None:
         check_report_file(report)
     data = tn.track_orders(

@@ -80,7 +80,7 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str, *, fmi: 
         raise InputError("belongs to an FMU", key="fmi", value=fmi, remedy=f"leave it out of an export to {to}")
     if to == "fmu":
         if fmi not in (None, *VERSIONS):
-            raise InputError("is no version of FMI that is written", key="fmi", value=fmi, remedy="write 2 or 3")
+            raise InputError("is not a version of FMI that is written", key="fmi", value=fmi, remedy="write 2 or 3")
         with written_whole(path) as temporary:
             lacks = write_fmu(line, temporary, fmi or VERSIONS[0])
         return (*not_written(line), *lacks)
