@@ -209,7 +209,10 @@ def test_the_distance_from_instability() -> None:
 REFUSED = (
     ({"tube.stiffnes": (1.0, 2.0)}, "tube.stiffnes: is not a parameter of this driveline"),
     ({"tube.stiffness": (2e4, 1e4)}, "tube.stiffness = (20000.0, 10000.0): must be rising bounds"),
-    ({}, "free: must name one parameter or more"),
+    ({"tube.stiffness": ()}, 'tube.stiffness = (): must be a low and a high bound; write free={"tube.stiffness": ('),
+    ({"tube.stiffness": ("", "")}, "tube.stiffness = '': does not start with a number; write a stiffness"),
+    ({"": (1.0, 2.0)}, "free: has an empty name of a parameter; parameters are: speed, "),
+    ({}, 'free: must name one parameter or more; write free={"tube.stiffness": ('),
 )
 
 

@@ -21,7 +21,6 @@ from trunnion.floquet.tolerance.parameter_intervals import (
     table_at,
 )
 
-EXAMPLE = 'free={"Shaft 2.fork_offset": ("0 deg", "180 deg")}'
 WIDE = 10.0
 """Ratio of the bounds from which a positive number is searched by its logarithm."""
 
@@ -55,7 +54,13 @@ class Space:
 
     def __init__(self, assembly: Assembly, free: Mapping[str, Sequence[object]]) -> None:
         if not isinstance(free, Mapping) or not free:
-            raise InputError("must name one parameter or more", key="free", remedy=EXAMPLE)
+            label = next(
+                (one for one in assembly.packed.labels if one.endswith(".stiffness")), assembly.packed.labels[0]
+            )
+            raise InputError("must name one parameter or more", key="free", remedy=_example(assembly, label))
+        if any(not isinstance(path, str) or not path.strip() for path in free):
+            known = ", ".join(assembly.packed.labels)
+            raise InputError("has an empty name of a parameter", key="free", remedy=f"parameters are: {known}")
         self.assembly = assembly
         self.free = tuple(_free(assembly, path, ends) for path, ends in each_named(assembly, free).items())
         require_possible(assembly, self.free, once="let each number be free once", within="move the bound")
@@ -77,19 +82,27 @@ class Space:
 def _free(assembly: Assembly, path: str, ends: Sequence[object]) -> FreeVariable:
     columns = columns_of(assembly, path)
     if isinstance(ends, str) or not isinstance(ends, Sequence) or len(ends) != 2:
-        raise InputError("must be a low and a high bound", key=path, value=ends, remedy=EXAMPLE)
-    low, high = (_bound(path, end, columns.unit) for end in ends)
+        raise InputError("must be a low and a high bound", key=path, value=ends, remedy=_example(assembly, path))
+    low, high = (_bound(assembly, path, end, columns.unit) for end in ends)
     if not low < high:
-        raise InputError("must be rising bounds", key=path, value=tuple(ends), remedy=EXAMPLE)
+        raise InputError("must be rising bounds", key=path, value=tuple(ends), remedy=_example(assembly, path))
     return FreeVariable(path, columns.unit, columns, assembly.packed.value(path), low, high)
 
 
-def _bound(path: str, end: object, unit: str) -> float:
+def _example(assembly: Assembly, path: str) -> str:
+    """Bounds about the value that a parameter has, as they may be written."""
+    value = float(assembly.packed.value(path))
+    ends = sorted((0.8 * value, 1.25 * value)) if value else (0.0, 0.1)
+    return f'write free={{"{path}": ({ends[0]:.4g}, {ends[1]:.4g})}}, say'
+
+
+def _bound(assembly: Assembly, path: str, end: object, unit: str) -> float:
     if isinstance(end, str) and (kind := kind_of(unit)):
         try:
             return parse(end, kind)
         except InputError as error:
             raise error.but(key=path, value=end) from None
     if isinstance(end, bool) or not isinstance(end, int | float | np.number) or not isfinite(end):
-        raise InputError("must be finite numbers or texts with a unit", key=path, value=end, remedy=EXAMPLE)
+        remedy = _example(assembly, path)
+        raise InputError("must be finite numbers or texts with a unit", key=path, value=end, remedy=remedy)
     return float(end)
