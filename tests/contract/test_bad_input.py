@@ -89,12 +89,6 @@ def identified(free, **more):
     return tn.identify(*tracked(), free, **more)
 
 
-def free_and_bent():
-    """A free–free line with a joint."""
-    joint, hub = HookeJoint(angle=0.2), Disk(inertia=0.5, name="hub")
-    return Driveline([Disk(inertia=2.0), Shaft(stiffness=2e4, damping=9.0), Disk(inertia=0.3), joint, tube(), hub])
-
-
 def tube():
     return Shaft(stiffness=2e4, damping=9.0, name="tube")
 
@@ -987,11 +981,6 @@ PYTHON = [
     (lambda: identified({"tube.stiffness": (4e4, 1e4)}), "tube.stiffness = (40000.0, 10000.0): must be", "free={"),
     (lambda: identified({}), "free: must name one parameter or more", "free={"),
     (lambda: identified({"tube.stiffness": (1e4, 4e4)}, seed=-1), "seed = -1: must be a whole number", "0 or more"),
-    (
-        lambda: tn.identify(free_and_bent(), tracked()[1], {"tube.stiffness": (1e4, 4e4)}),
-        "driveline: is free–free and has joint angles",
-        "drive its input at a constant speed",
-    ),
     (lambda: tn.pitch_errors(tn.Measurement([gauge()])), "reference: has no pulse train", "wheels"),
     (lambda: rotated().cut(3, "wheel"), "order = 3: was not tracked", "there are 1"),
     (lambda: rotated().cut(1, "weel"), "channel = 'weel': is not a channel", '"wheel"'),

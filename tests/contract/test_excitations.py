@@ -331,8 +331,9 @@ DRIVEN = (
 """Those of driven lines alone."""
 CONSTANT = (run_up, transient, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep)
 """Those of driven lines and constant amplitudes."""
-ELSEWHERE = {"coupling_temperatures"}
-"""Of lines with a coupling alone: compared with equations written out in ``known_answers/test_coupling_tables.py``."""
+ELSEWHERE = {"coupling_temperatures", "measure", "compare_measured", "identify"}
+"""Of lines with a coupling alone: compared with equations written out in ``known_answers/test_coupling_tables.py``.
+What a bench shows, and what is laid over it, are amplitudes of ``order_response``: compared in ``tests/measured``."""
 CLOSE = {exact_motion: 1e-9, piecewise_orbit: 1e-9, piecewise_branch: 1e-9, sweep: 1e-9} | dict.fromkeys(LINEAR, 1e-8)
 CLOSE |= {assess: 1e-6, sensitivity: 1e-6, simulate: 1e-4, transient: 1e-4, run_up: 1e-3}
 """Share of the largest of a quantity that it may be off by; the others, and ``simulate``, count the swing of the disk

@@ -112,8 +112,9 @@ def description_of(made: LineSystem) -> FmuDescription:
     turn = 2 * np.pi / abs(made.speed)
     name = _plain(line.name or "driveline")
     return FmuDescription(
-        name, _identifier(name), states, derivatives, inputs, outputs, indicators, TURNS * turn, turn / _POINTS_A_TURN
-    )
+        name=name, identifier=_identifier(name), states=states, derivatives=derivatives, inputs=inputs,
+        outputs=outputs, indicators=indicators, duration=TURNS * turn, step=turn / _POINTS_A_TURN,
+    )  # fmt: skip
 
 
 def _plain(text: str) -> str:

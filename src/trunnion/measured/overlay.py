@@ -16,9 +16,7 @@ from trunnion.features import left_out
 from trunnion.measured.peaks import PredictedPeaks, predicted_peaks
 from trunnion.measured.predicted import best_angle, predicted_channels, turned, usable
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
-from trunnion.motion.passing.run_up import RunUp, run_up
 from trunnion.numerics.curves import parabola
-from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
@@ -31,9 +29,6 @@ SAME_PEAK = 0.005
 """Relative difference of the speeds of two peaks that is said."""
 FLAT_TOP = 0.5
 """Share by which the neighbours of a measured top may lie below it for a parabola through them to tell where it is."""
-CAMPBELL_SPEEDS = 201
-STILL = 0.02
-"""Share by which the speed of a run-up changes at least."""
 WRONG_WAY = 0.25
 """Share of the squares that a reversed or exchanged pickup has to leave, to be asked about."""
 
@@ -74,33 +69,6 @@ class MeasuredComparison(Result):
     def plot_run_up(self, axes: Axes | None = None, *, channel: str = "") -> Axes:
         """Largest measured torques on the run-up of the line; see ``pictures.measured.on_run_up``."""
         return drawing(self, "plot_run_up")(self, axes, channel=channel)
-
-    def campbell(self) -> CampbellDiagram:
-        """Modes and excitations of the line over the speeds that were tracked.
-
-        Raises
-        ------
-        InputError : as of ``campbell_diagram``.
-        """
-        low, high = float(self.speed.min()), float(self.speed.max())
-        low, high = (0.95 * low, 1.05 * high) if high - low < 0.05 * high else (low, high)
-        return campbell_diagram(self.assembly, np.linspace(low, high, CAMPBELL_SPEEDS))
-
-    def run_up(self) -> RunUp:
-        """The line's own motion through the speeds that were tracked, in the direction and at the rate of the input.
-
-        Raises
-        ------
-        InputError : the input kept its speed; as of ``run_up``.
-        """
-        first, last = float(self.speed[0]), float(self.speed[-1])
-        if abs(last - first) < STILL * max(first, last):
-            raise InputError(
-                "is of a steady speed, which no run-up compares with", key="data",
-                remedy="record a run-up, or look at plot()",
-            )  # fmt: skip
-        first, last = (float(f"{one:.4g}") for one in (first, last))
-        return run_up(self.assembly, first, last, acceleration=abs(self.acceleration), steady=0)
 
     def torque_channel(self, channel: str) -> int:
         """The channel of this name, or the first ("") that measures a torque.

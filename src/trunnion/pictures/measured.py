@@ -7,14 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.equations.coefficients import assemble
+from trunnion.errors import InputError
 from trunnion.measured.identification.result import Identification
 from trunnion.measured.overlay import MeasuredComparison
 from trunnion.measured.peaks import PredictedPeaks
 from trunnion.measured.tracking.by_angle import MeasuredOrderMap
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
-from trunnion.pictures.campbell_diagram import campbell_diagram
+from trunnion.motion.passing.run_up import RunUp, run_up
+from trunnion.pictures.campbell_diagram import campbell_diagram as picture_of_campbell
 from trunnion.pictures.looks import curve
-from trunnion.pictures.motion import run_up
+from trunnion.pictures.motion import run_up as picture_of_run_up
 from trunnion.pictures.picture import (
     Axis,
     Band,
@@ -29,6 +31,7 @@ from trunnion.pictures.picture import (
     single,
 )
 from trunnion.pictures.shared import over_speed, place_of
+from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import speed_factor
 from trunnion.results.units import figures, order_words
@@ -38,6 +41,9 @@ MOST_ORDERS = 6
 DECADES = 3.0
 """Orders whose peak is farther below the largest are not drawn."""
 MAP_DECADES = 3.0
+CAMPBELL_SPEEDS = 201
+STILL = 0.02
+"""Share by which the speed of a run-up changes at least."""
 MARK, LEAST_MARK = 13.0, 0.01
 """Size [pt] of the mark of the largest amplitude on a Campbell diagram, and the share of it from which one is drawn."""
 WORDS = {
@@ -84,6 +90,34 @@ def comparison(found: MeasuredComparison, *, channel: str = "") -> Picture:
     return _over(found, channel)
 
 
+def line_campbell(found: MeasuredComparison) -> CampbellDiagram:
+    """Modes and excitations of the line over the speeds that were tracked.
+
+    Raises
+    ------
+    InputError : as of ``campbell_diagram``.
+    """
+    low, high = float(found.speed.min()), float(found.speed.max())
+    low, high = (0.95 * low, 1.05 * high) if high - low < 0.05 * high else (low, high)
+    return campbell_diagram(found.assembly, np.linspace(low, high, CAMPBELL_SPEEDS))
+
+
+def line_run_up(found: MeasuredComparison) -> RunUp:
+    """The line's own motion through the speeds that were tracked, in the direction and at the rate of the input.
+
+    Raises
+    ------
+    InputError : the input kept its speed; as of ``run_up``.
+    """
+    first, last = (float(f"{one:.4g}") for one in found.speed[[0, -1]])
+    if abs(last - first) < STILL * max(first, last):
+        raise InputError(
+            "is of a steady speed, which no run-up compares with", key="data",
+            remedy="record a run-up, or look at plot()",
+        )  # fmt: skip
+    return run_up(found.assembly, first, last, acceleration=abs(found.acceleration), steady=0)
+
+
 def on_campbell(found: MeasuredComparison, *, channel: str = "") -> Picture:
     """The Campbell diagram of the line, with the measured orders of one channel (the first that moves) where they are:
     the area of a mark grows with the amplitude, up to the largest; a ring stands at the peak of each order.
@@ -93,9 +127,9 @@ def on_campbell(found: MeasuredComparison, *, channel: str = "") -> Picture:
     InputError : no such channel.
     """
     column = _moving(found, channel)
-    diagram = found.campbell()
+    diagram = line_campbell(found)
     frequency = reading_of_frequencies(found.unit)
-    base = campbell_diagram(diagram, unit=found.unit, frequency_unit=frequency)
+    base = picture_of_campbell(diagram, unit=found.unit, frequency_unit=frequency)
     x, y = speed_factor(found.unit), speed_factor(frequency)
     sizes = np.abs(found.measured[:, :, column])
     known = np.isfinite(sizes) & (sizes > found.half_width[:, :, column])
@@ -130,7 +164,7 @@ def on_run_up(found: MeasuredComparison, *, channel: str = "") -> Picture:
     InputError : no channel that measures a torque; the input kept its speed; as of ``run_up``.
     """
     column = found.torque_channel(channel)
-    base = run_up(found.run_up(), shaft=found.places[column], unit=found.unit)
+    base = picture_of_run_up(line_run_up(found), shaft=found.places[column], unit=found.unit)
     x = found.speed * speed_factor(found.unit)
     marks = Points(x, found.extreme[:, column], "measured", f"largest measured at {found.channels[column]}")
     return base.with_panel(items=(*base.panel.items, marks))
