@@ -288,3 +288,26 @@ def test_what_can_be_known_is_of_the_line_as_it_stands() -> None:
     bound = 1 / np.sqrt(np.nansum(np.abs(slope / deviation) ** 2))
     assert known.deviation[0] == pytest.approx(bound, rel=0.02)
     assert float(known.share[0]) < 0.7 * bound / (8 * damping - damping / 8)
+
+
+@pytest.mark.slow
+def test_a_free_line_with_a_joint_angle() -> None:
+    """Each line moves about a periodic motion of its own; the stiffness is found again."""
+
+    def line(stiffness: float) -> tn.Driveline:
+        return tn.Driveline(
+            [
+                tn.Disk(inertia=2.0, name="motor", drive_share=1.0, excitation=[{"order": 1, "amplitude": 20.0}]),
+                tn.Shaft(stiffness=3e4, damping=20.0),
+                tn.Disk(inertia=0.3),
+                tn.HookeJoint(angle="12 deg"),
+                tn.Shaft(stiffness=stiffness, damping=15.0, name="tube"),
+                tn.Disk(inertia=0.5, name="hub", load_torque=20.0),
+            ],
+            operation=tn.Operation(speed=100.0),
+        )
+
+    run = tn.measure(line(2e4), (60.0, 200.0), 8.0, {"motor": 36, "hub": 36}, jitter=1e-6, pitch_error=0.0)
+    data = tn.track_orders(run, [1, 2], line=line(2e4), reference="motor")
+    found = tn.identify(line(1.7e4), data, {"tube.stiffness": (1.2e4, 3e4)})
+    assert found.low[0] < 2e4 < found.high[0] and abs(found.value[0] / 2e4 - 1) < 0.003
