@@ -17,6 +17,7 @@ from trunnion.driveline import Brake as Brake
 from trunnion.driveline import CentrifugalPendulum as CentrifugalPendulum
 from trunnion.driveline import Clutch as Clutch
 from trunnion.driveline import ConstantSpeed as ConstantSpeed
+from trunnion.driveline import ConverterPoint as ConverterPoint
 from trunnion.driveline import Coupling as Coupling
 from trunnion.driveline import Differential as Differential
 from trunnion.driveline import Disk as Disk
@@ -59,6 +60,7 @@ from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
 from trunnion.driveline import TorqueFunction as TorqueFunction
+from trunnion.driveline import TorqueConverter as TorqueConverter
 from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint

@@ -43,6 +43,7 @@ from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.driveline.torque_file import read_torque
+from trunnion.driveline.torque_converters import ConverterPoint, TorqueConverter
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [
@@ -96,6 +97,8 @@ __all__ = [
     "Clutch",
     "Slider",
     "SlipClutch",
+    "TorqueConverter",
+    "ConverterPoint",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

@@ -48,6 +48,7 @@ from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
 from trunnion.driveline.toml_file import read_text, toml_of
+from trunnion.driveline.torque_converters import read_converter
 from trunnion.driveline.torque_file import with_torque_files
 from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
 from trunnion.reading import below
@@ -394,6 +395,7 @@ TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
     "pressure": read_pressure,
     "compression": read_pressure,
     "curve": read_curve,
+    "curves": read_converter,
 }
 """What reads the table that a key of an element may name."""
 

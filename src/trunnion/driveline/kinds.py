@@ -20,6 +20,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 KINDS: dict[str, type[Element]] = {
@@ -31,6 +32,7 @@ KINDS: dict[str, type[Element]] = {
         PiecewiseShaft,
         Clutch,
         SlipClutch,
+        TorqueConverter,
         DualMassFlywheel,
         Disk,
         Engine,

@@ -7,13 +7,11 @@ disk or a motor has a ``drive_share`` its controller keeps any speed, and no bal
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
-from fractions import Fraction
-
 from trunnion.driveline.chain import ElementChain
+from trunnion.driveline.converter_balance import converter_balances, open_converter
 from trunnion.driveline.elements import ConstantSpeed, Rotor
-from trunnion.driveline.parts import Dragged, Geared, Jointed, Loose, Part, Prescribed, Sprung, Tied
 from trunnion.driveline.quantities import DAMPING, SPEED, shown
+from trunnion.driveline.speed_ratios import speed_ratios
 from trunnion.errors import InputError, InputRemark
 from trunnion.laws.balance import TorqueBalance, balances
 from trunnion.laws.torque_curve import TorqueCurve
@@ -23,35 +21,6 @@ LOWEST, HIGHEST = 0.01, 1e5
 AS_PRINTED, SAME = 1e-4, 1e-9
 """Relative differences of a speed from a balance: up to which it is that balance, rounded in print, and up to which
 that is not worth a remark."""
-
-
-def speed_ratios(line: ElementChain) -> list[Fraction]:
-    """Mean speed over the input's of the shaft in front of every element."""
-    found: list[list[Fraction]] = []
-    for i, element in enumerate(line.elements):
-        parent = line.parents[i]
-        own = [Fraction(1) if parent is None else found[parent][line.hangs_on[i]]]
-        for part in element.parts():
-            if (turned := _turned(part, own)) is not None:
-                own.append(turned)
-        found.append(own)
-    return [own[0] for own in found]
-
-
-def _turned(part: Part, own: Sequence[Fraction]) -> Fraction | None:
-    """Speed of the new shaft that a part makes; None where it makes none."""
-    match part:
-        case Geared(ratio, to):
-            return own[to] / ratio
-        case Loose(to, speed):
-            return own[to] * speed
-        case Tied(of):
-            return sum((share * own[to] for to, share in of), Fraction(0))
-        case Sprung(to) | Dragged(to) | Jointed(_, to):
-            return own[to]
-        case Prescribed():
-            return None
-    return None
 
 
 def is_left_free(line: ElementChain) -> bool:
@@ -90,6 +59,9 @@ def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:
     600.0 rpm unstable
     1400.0 rpm stable
     """
+    place = open_converter(line)
+    if place is not None:
+        return converter_balances(line, place, LOWEST, HIGHEST)
     return balances(geared_curves(line), LOWEST, HIGHEST)
 
 

@@ -64,10 +64,12 @@ class Sprung:
 @dataclass(frozen=True)
 class Dragged:
     """A new shaft that a damper without a spring joins to coordinate ``to``, oil or the slip of a tyre, so that nothing
-    holds its rotation where it is; where it ``closes`` a loop, the shaft behind the element of that name."""
+    holds its rotation where it is; where it ``closes`` a loop, the shaft behind the element of that name. Where it
+    ``converts``, what it takes on one side is not what it gives on the other."""
 
     to: int = 0
     closes: str | None = None
+    converts: bool = False
 
 
 @dataclass(frozen=True)

@@ -67,6 +67,9 @@ def aligned_matrices(topo: Topology, coefficients: LineCoefficients) -> AlignedM
         (elongations.T * part[:, None, :]) @ elongations if part.any() else np.zeros((cases, n, n))
         for part in (coefficients.damping, coefficients.stiffness, coefficients.loss)
     )
+    for one in coefficients.across:
+        turns = np.outer(topo.turning[one.on], topo.turning[one.by])
+        damping = damping + one.slope[:, None, None] * turns
     return AlignedMatrices(on_rotations(topo, coefficients.inertia), damping, stiffness, loss)
 
 

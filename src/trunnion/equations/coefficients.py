@@ -16,15 +16,20 @@ from typing import Any, Literal
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Flags
+from trunnion.driveline.converter_balance import LOCK, input_speed, open_converter, running_line
 from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import Joint
+from trunnion.driveline.mean_balance import is_left_free, own_speed
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.pendulums import CentrifugalPendulum, Swinging
+from trunnion.driveline.quantities import SPEED, shown
 from trunnion.driveline.shafts import Elastic, SpringElement
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
+from trunnion.equations.converters import placed_converters, require_even
 from trunnion.equations.coupling_tables import table_stiffness
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
 from trunnion.equations.loads import exciting_load, mean_load, mean_loads, static_torque, station_loads
@@ -37,17 +42,70 @@ from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
+SAME_SPEED = 1e-12
+"""Relative difference of speeds that rounding makes."""
 MOST_KNOWN = 8
 """Rows whose coefficients are kept."""
 
 
 @dataclass(frozen=True)
 class Assembly:
-    """A line with its topology and packed numbers: what every analysis starts from."""
+    """A line with its topology and packed numbers: what every analysis starts from.
+
+    Of a line with a torque converter that is not locked, ``line`` has it as it runs at the input speed ``runs_at``
+    [rad/s]; ``stated`` is the line as described, None without one.
+    """
 
     line: Driveline
     packed: PackedLine
     topology: Topology
+    stated: Driveline | None = None
+    runs_at: float = float("nan")
+
+    def at(self, speed: float) -> Assembly:
+        """The same where it runs at an input ``speed`` [rad/s]: of a line with a torque converter, as that runs then.
+
+        Raises
+        ------
+        InputError : a speed at which it does not run.
+        """
+        if self.stated is None or not np.isfinite(speed) or not self._otherwise(np.array([speed])).any():
+            return self
+        return _assembled_at(self.stated, float(speed))
+
+    def each(self, speeds: Array) -> list[Assembly] | None:
+        """The same at every input speed (speed,) [rad/s]; None where one stands for all."""
+        if self.stated is None or not self._otherwise(speeds).any():
+            return None
+        return [self.at(float(one)) for one in speeds]
+
+    def _otherwise(self, speeds: Array) -> Flags:
+        """Which speeds are others than that at which it runs."""
+        return np.isfinite(speeds) & ~(np.abs(speeds - self.runs_at) <= SAME_SPEED * np.abs(speeds))
+
+    def require_one_speed(self, speeds: Array) -> None:
+        """Refuse speeds at which its torque converter runs otherwise.
+
+        Raises
+        ------
+        InputError : so.
+        """
+        place = None if self.stated is None else open_converter(self.line)
+        if place is None:
+            return
+        if not np.isfinite(self.runs_at):
+            remedy = 'write [operation] speed = "1500 rpm", say, or locked = true'
+            raise InputError(
+                "runs at a ratio of speeds that follows from the speed, which is neither asked of here nor stated",
+                element=self.line.names[place], key="curves", remedy=remedy,
+            )  # fmt: skip
+        others = speeds[self._otherwise(speeds)]
+        if len(others):
+            here, there = (shown(float(one), SPEED, "rpm", 5) for one in (self.runs_at, others[0]))
+            raise InputError(
+                f"is linearised about how it runs at {here} of the input, and {there} is asked of",
+                element=self.line.names[place], key="locked", remedy=LOCK,
+            )  # fmt: skip
 
     def table(self, rows: int, speed: float | Array | None = None) -> Array:
         """``rows`` copies of the packed numbers, optionally at one ``speed`` [rad/s] or each at its own (rows,)."""
@@ -79,6 +137,7 @@ class Assembly:
         InputError : a loss factor without a frequency, for equations in time; a spring in its free play or with dry
             friction, both unless ``free_play``.
         """
+        self.require_one_speed(np.atleast_2d(table)[:, 0])
         if damped and not any_frequency:
             _refuse_any_frequency(self.line)
         if not free_play:
@@ -127,6 +186,8 @@ class Assembly:
 
     def static_torque(self, table: Array) -> Array:
         """Torque [N m] that every compliance carries under the mean loads (case, compliance)."""
+        if every := self.each(table[:, 0]):
+            return np.concatenate([one.static_torque(row[None]) for one, row in zip(every, table, strict=True)])
         return _static_torque(self, table, mean_loads(self.topology, self.packed.column, table))
 
     def wind_up(self, table: Array) -> Array:
@@ -172,9 +233,49 @@ def assemble(line: Driveline | Assembly, load_case: str | None = None) -> Assemb
     if not isinstance(line, Driveline):
         raise InputError("is not a driveline", key="line", value=line, remedy='tn.load("line.toml"), say')
     for known in tuple(_RECENT):
-        if known.line is line:
+        if known.line is line or known.stated is line:
             return known
+    place = open_converter(line)
+    converter = None if place is None else line.elements[place]
+    if isinstance(converter, TorqueConverter):
+        assert place is not None
+        if converter.run is None:
+            return _as_it_operates_itself(line)
+        plain = type(converter)(**converter.stated)
+        elements = (*line.elements[:place], plain, *line.elements[place + 1 :])
+        return _assembled_at(line.model_copy(update={"elements": elements}), input_speed(line, place), line)
     made = Assembly(line, pack(line), topology(line))
+    _RECENT.append(made)
+    return made
+
+
+_RUNNING: deque[Assembly] = deque(maxlen=512)
+
+
+def _assembled_at(line: Driveline, speed: float, runs: Driveline | None = None) -> Assembly:
+    """A line with a torque converter at an input ``speed`` [rad/s]; ``runs`` where it is known how it runs there."""
+    for known in tuple(_RUNNING):
+        if known.runs_at == speed and (known.stated is line or (runs is not None and known.line is runs)):
+            return known
+    runs = running_line(line, speed) if runs is None else runs
+    made = Assembly(runs, pack(runs), topology(runs), line, speed)
+    laws = zip(made.topology.joints, joint_laws(made, made.table(1)), strict=True)
+    require_even(runs, made.topology, [s for s, law in laws if law.nonuniform])
+    _RUNNING.append(made)
+    return made
+
+
+def _as_it_operates_itself(line: Driveline) -> Assembly:
+    """A line with a torque converter at its own speed; without one as it is described, for analyses that ask of some.
+
+    Raises
+    ------
+    InputError : it does not run at its own speed.
+    """
+    speed = None if line.operation is None else line.operation.speed
+    if speed is None and is_left_free(line):
+        speed = own_speed(line)
+    made = Assembly(line, pack(line), topology(line), line) if speed is None else _assembled_at(line, float(speed))
     _RECENT.append(made)
     return made
 
@@ -397,6 +498,9 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         viscous=loads.viscous,
         quadratic=loads.quadratic,
         lags=tuple(loads.lags),
+        across=tuple(
+            across for one in placed_converters(assembly.line, topo) for across in one.across(len(table)) if damped
+        ),
         not_carried=np.zeros_like(mean) if twisted else mean,
         joints=joint_laws(assembly, table),
         shift=shift,

@@ -138,6 +138,10 @@ def graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array, w
     torque = co.torque[:, None] * wave + k * twist + c * slip
     mass, damping = _both(r, inertia, r), _both(r, growth, r) + 2 * _both(r, inertia, rate) + _both(e, c, e)
     stiffness = _both(r, inertia, rate2) + _both(r, growth, rate) + _both(e, k, e) + _both(e, c, e1)
+    for one in co.across:
+        on, slope = r[:, :, one.on, :, None], one.slope[:, None, None, None]
+        damping = damping + slope * on * r[:, :, one.by, None, :]
+        stiffness = stiffness + slope * on * rate[:, :, one.by, None, :]
     acting = inertial + load - co.not_carried[:, None] * sense
     stiffness += _of_bends(topo, turning, acting, torque)
     forcing = -np.einsum("cts,ctsi->cti", inertial + load, r) - np.einsum("cte,ctei->cti", torque, e)

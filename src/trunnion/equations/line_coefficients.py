@@ -40,6 +40,17 @@ class TorqueLag:
 
 
 @dataclass(frozen=True)
+class CrossDamping:
+    """Torque that resists at station ``on`` by ``slope`` (case,) [N m s/rad] times the speed of station ``by``; where
+    the torque of a ``compliance`` is asked for, it counts there."""
+
+    on: int
+    by: int
+    slope: Array
+    compliance: int | None = None
+
+
+@dataclass(frozen=True)
 class LineCoefficients:
     """What the equations of a line need, one row per case (axes: case, then as named).
 
@@ -52,7 +63,8 @@ class LineCoefficients:
     twist), and what a joint subtracts from its input angle to measure it from its own plane. ``loss`` [N m/rad] per
     compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
     ``waves``: meshes whose stiffness varies about the one given here. ``lags``: of the slopes in ``viscous``, those
-    that lag; only forced responses of straight lines have them.
+    that lag; only forced responses of straight lines have them. ``across``: of torque converters, what their links do
+    not have.
     """
 
     speed: Array
@@ -70,6 +82,7 @@ class LineCoefficients:
     loss: Array
     waves: tuple[MeshWave, ...] = ()
     lags: tuple[TorqueLag, ...] = ()
+    across: tuple[CrossDamping, ...] = ()
 
     @property
     def straight(self) -> LineCoefficients:

@@ -34,7 +34,9 @@ UNKNOWNS, STATIONS, COMPLIANCES, HARMONICS, PRESCRIBED, THETA, OMEGA, ALPHA, SIN
 # How many torques are applied from outside, and where they stand among the numbers; how many of them lag, whose values
 # are the last states.
 APPLIED, APPLIED_AT, LAGS = 11, 12, 13
-HEAD = 14
+# How many torque converters there are, and where they stand.
+CONVERTERS, CONVERTERS_AT = 14, 15
+HEAD = 16
 # Per station.
 BEFORE, LINK, COORDINATE, REFERENCE, MEAN, PHASE, SIZE, COSINE, SQUARE, OVER = range(10)
 # LOAD, BY_SPEED and BY_SQUARE: a torque that goes with the input's prescribed speed, whatever the station's own.
@@ -85,6 +87,10 @@ DENOMINATOR = NUMERATOR + POWERS * POWERS
 CORNER = DENOMINATOR + POWERS
 LAGGED = CORNER + 1
 PER_APPLIED = LAGGED + 1
+# Per torque converter: the stations of its pump and turbine, its compliance, in which SENSE both turn, and its POINTS;
+# of each its speed ratio, and powers from 0 to 3 of capacity and torque ratio above it.
+PUMP, TURBINE, SPRINGLESS, SENSE_OF_BOTH, POINTS = range(5)
+PER_POINT = 9
 # Links; joints by the form of their law. Of a cross SIZE is t, COSINE and SQUARE go with it; of a Fourier law COSINE is
 # the number of its harmonics and SIZE their place among the numbers: order, amplitude and phase of each.
 ROOT, SHAFT, CROSS, RATIO, FOURIER = range(5)
@@ -320,6 +326,42 @@ def applied(p, q, t, angle, speed):
 
 
 @njit(cache=True, nogil=True)
+def converted(p, q, pump, turbine):
+    """Torques that the converter at p[q:] takes at its pump and gives at its turbine, at the speeds of both, and their
+    slopes by the two. Below its first point it is as there, beyond its last not a number."""
+    count, first = int(p[q + POINTS]), q + POINTS + 1
+    if pump == 0.0 and turbine <= 0.0:
+        return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    if not pump > 0.0:
+        return math.nan, math.nan, math.nan, math.nan, math.nan, math.nan
+    ratio, held = turbine / pump, False
+    if ratio < p[first]:
+        ratio, held = p[first], True
+    if ratio > p[first + (count - 1) * PER_POINT]:
+        return math.nan, math.nan, math.nan, math.nan, math.nan, math.nan
+    at = first
+    for i in range(count - 1):
+        if ratio >= p[first + i * PER_POINT]:
+            at = first + i * PER_POINT
+    x = ratio - p[at]
+    k = p[at + 1] + x * (p[at + 2] + x * (p[at + 3] + x * p[at + 4]))
+    m = p[at + 5] + x * (p[at + 6] + x * (p[at + 7] + x * p[at + 8]))
+    k1 = 0.0 if held else p[at + 2] + x * (2 * p[at + 3] + x * 3 * p[at + 4])
+    m1 = 0.0 if held else p[at + 6] + x * (2 * p[at + 7] + x * 3 * p[at + 8])
+    h, h1 = m * k, m1 * k + m * k1
+    square = pump * pump
+    return (
+        k * square, h * square, (2 * k - ratio * k1) * pump, k1 * pump, (2 * h - ratio * h1) * pump, h1 * pump
+    )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
+def next_converter(p, q):
+    """Where the numbers of the converter behind the one at p[q:] begin."""
+    return q + POINTS + 1 + int(p[q + POINTS]) * PER_POINT
+
+
+@njit(cache=True, nogil=True)
 def stage_at(p, q, twist, rate):
     """The stage whose guards are all on the side where it lasts, or nearest to it."""
     best, depth = 0, -math.inf
@@ -409,6 +451,18 @@ def line(t, y_, p_, k, regime, out_):
         torque[i] += r[s] * push
         by_angle[i] += r1[s] * push + r[s] * (turned_by * r[s] + sped_by * r1[s] * v[reference])
         by_rate[i] += r[s] * sped_by * r[s]
+    q = int(p[CONVERTERS_AT])
+    for _ in range(int(p[CONVERTERS])):
+        one, other, sense = int(p[q + PUMP]), int(p[q + TURBINE]), p[q + SENSE_OF_BOTH]
+        takes, gives, by_one, _, _, by_other = converted(p, q, sense * v[one], sense * v[other])
+        for s, push, slope in ((one, -takes, -by_one), (other, gives, by_other)):
+            i = int(p[HEAD + s * PER_STATION + COORDINATE])
+            if i >= 0:
+                reference = int(p[HEAD + s * PER_STATION + REFERENCE])
+                torque[i] += r[s] * sense * push
+                by_angle[i] += r1[s] * sense * push + r[s] * slope * r1[s] * v[reference]
+                by_rate[i] += r[s] * slope * r[s]
+        q = next_converter(p, q)
     for e in range(joined):
         q = compliance + e * PER_COMPLIANCE
         near, far = int(p[q + NEAR]), int(p[q + FAR])
@@ -481,6 +535,16 @@ def line(t, y_, p_, k, regime, out_):
                 o[n + j] -= change
             if i >= 0:
                 o[n + i] += r1[near] * shaft[e] * w[i] + r[near] * change
+        q = int(p[CONVERTERS_AT])
+        for _ in range(int(p[CONVERTERS])):
+            one, other, sense = int(p[q + PUMP]), int(p[q + TURBINE]), p[q + SENSE_OF_BOTH]
+            _, _, _, by_other, by_one, _ = converted(p, q, sense * v[one], sense * v[other])
+            for on, by, slope in ((one, other, -by_other), (other, one, by_one)):
+                i, j = int(p[HEAD + on * PER_STATION + COORDINATE]), int(p[HEAD + by * PER_STATION + COORDINATE])
+                if i >= 0 and j >= 0:
+                    turns = r1[by] * v[int(p[HEAD + by * PER_STATION + REFERENCE])] * w[j] + r[by] * w[n + j]
+                    o[n + i] += r[on] * slope * turns
+            q = next_converter(p, q)
         for i in range(n):
             o[n + i] /= inertia[i]
     return 0
@@ -542,3 +606,9 @@ def observe(times, states, p, twist, torque, rotation, speed, stages):
         for s in range(int(p[SLIDERS])):
             at = slider + s * PER_SLIDER
             torque[m, int(p[at + OF])] += p[at + SPRING] * states[m, 2 * int(p[UNKNOWNS]) + s]
+        q = int(p[CONVERTERS_AT])
+        for _ in range(int(p[CONVERTERS])):
+            sense = p[q + SENSE_OF_BOTH]
+            pump, turbine = sense * speed[m, int(p[q + PUMP])], sense * speed[m, int(p[q + TURBINE])]
+            torque[m, int(p[q + SPRINGLESS])] = -sense * converted(p, q, pump, turbine)[1]
+            q = next_converter(p, q)

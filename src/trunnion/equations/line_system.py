@@ -20,6 +20,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.converters import PlacedConverter, placed_converters
 from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonics
 from trunnion.equations.kinematics import base_motion
@@ -113,6 +114,11 @@ class LineSystem(Portable):
     def clutches(self) -> tuple[PlacedClutch, ...]:
         """Its slip clutches that may slip."""
         return placed_clutches(self.assembly, self.assembly.table(1)[0])
+
+    @cached_property
+    def converters(self) -> tuple[PlacedConverter, ...]:
+        """Its torque converters that are not locked."""
+        return placed_converters(self.assembly.line, self.assembly.topology)
 
     @cached_property
     def pendulums(self) -> tuple[PlacedPendulum, ...]:
@@ -219,6 +225,8 @@ class LineSystem(Portable):
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
+        for station, lost in topo.lost:
+            stations[station, core.LOAD] -= lost * sense[station]
         harmonics = [self._harmonic(one, on, row) for one in self.torques]
         clutches = placed_clutches(self.assembly, row)
         strides = slider_strides(laws, len(friction_sliders) + len(clutches))
@@ -230,6 +238,7 @@ class LineSystem(Portable):
         begin += len(harmonics) * core.PER_HARMONIC + len(friction_sliders) * core.PER_SLIDER
         behind = []
         compliances[:, core.STIFFNESS], compliances[:, core.DAMPING] = co.stiffness[case], co.damping[case]
+        compliances[list(topo.converting), core.DAMPING] = 0.0
         for e, law in laws.items():
             compliances[e, core.LAW :] = begin, law.stride, law.stages, len(law.error), len(law.wave)
             behind.append(law.numbers)
@@ -244,11 +253,15 @@ class LineSystem(Portable):
             behind.append(applied.ravel())
         if programs is not None:
             behind.append(programs)
+        converters = [one.numbers for one in self.converters]
+        at_converters = begin + sum(part.size for part in (applied, programs) if part is not None)
+        behind += converters
         pendulums = placed_pendulums(self.assembly, row)
         behind.append(released_numbers(clutches, strides[len(friction_sliders) :], pendulums))
         head = [topo.size, len(stations), len(compliances), len(harmonics), not topo.free, on.angle, on.speed]
         head += [on.acceleration, on.since, sum(part.size for part in behind), len(friction_sliders)]
         head += [0, 0, 0] if applied is None else [len(applied), begin, lags]
+        head += [len(converters), at_converters]
         scratch = np.zeros(5 * len(stations) + 7 * topo.size + 5 * len(compliances))
         parts = [head, stations.ravel(), compliances.ravel(), np.ravel(harmonics), np.ravel(friction), *behind, scratch]
         return np.concatenate([np.asarray(part, dtype=float) for part in parts])
@@ -418,9 +431,10 @@ def line_system(
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = released(assemble(line), slips=slips, swing=swing)
+    assembly = released(assemble(line).at(speed), slips=slips, swing=swing)
     refuse_second_speed(assembly)
-    require_tree(assembly, "nonlinear equations do")
+    if assembly.topology.knotted:
+        require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
     for name, rotor in assembly.topology.rotors:

@@ -58,6 +58,8 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
 
 def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
     loads = StationLoads(*np.zeros((3, len(table), len(topo.stations))))
+    for station, lost in topo.lost:
+        loads.constant[:, station] += lost
     for (station, place), (name, rotor) in zip(topo.disks, topo.rotors, strict=True):
         load = rotor.load_of(_numbers(column, table, place))
         turning = table[:, 0] * abs(topo.mean_speeds[station])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.mean_balance import balances_in_words
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
@@ -150,6 +151,7 @@ def require_tree(assembly: Assembly, what: str) -> None:
     InputError : so.
     """
     topo = assembly.topology
+    refuse_converters(assembly.line, what)
     if topo.graph:
         problem, both = ("ties one shaft to two others", "legs") if topo.sums else ("closes a loop", "ways round")
         own = has_periodic_base(assembly)
@@ -189,8 +191,9 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
     """What resists and what drives a free line at one row of packed numbers, without a full stop."""
     torques = _at_input(assembly, row[None])[0]
     names = assembly.line.names
-    pairs = zip(assembly.topology.disks, torques, strict=True)
-    named = [(names[i], float(torque)) for (_, i), torque in pairs if torque]
+    lossy = [assembly.topology.compliances[e].shafts[0] for e in assembly.topology.converting]
+    places = [*(i for _, i in assembly.topology.disks), *lossy[: len(assembly.topology.lost)]]
+    named = [(names[i], float(torque)) for i, torque in zip(places, torques, strict=True) if torque]
     resist = ", ".join(f"{name} {torque:.5g}" for name, torque in named if torque > 0)
     drive = ", ".join(f"{name} {-torque:.5g}" for name, torque in named if torque < 0)
     at = f" at {row[0] * 30 / np.pi:.5g} rpm" if np.isfinite(row[0]) else ""
@@ -200,9 +203,11 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
 
 
 def _at_input(assembly: Assembly, table: Array) -> Array:
-    """Mean torques of disks and machines taken to the input (cases, rotor) [N m]."""
+    """Mean torques of disks and machines taken to the input (cases, rotor) [N m]; behind them what converters lose."""
     topo = assembly.topology
-    return _own_loads(assembly, table) * np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
+    rotors = _own_loads(assembly, table) * np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
+    lost = [torque * abs(topo.mean_speeds[station]) for station, torque in topo.lost]
+    return np.hstack([rotors, np.broadcast_to(lost, (len(table), len(lost)))])
 
 
 def _own_loads(assembly: Assembly, table: Array) -> Array:

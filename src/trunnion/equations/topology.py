@@ -14,7 +14,7 @@ straight line.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from fractions import Fraction
 from functools import cached_property
@@ -29,6 +29,7 @@ from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
 
@@ -78,7 +79,8 @@ class Station:
 class Compliance:
     """Shaft(s) in series from a station to the first of another group, or to ``far`` where they close a loop.
 
-    ``drags`` : a damper without a spring; ``number`` : of one element, among its springs and dampers.
+    ``drags`` : a damper without a spring; ``number`` : of one element, among its springs and dampers; ``converts`` :
+    the torque on its near side is another one than that on its far side.
     """
 
     near: int
@@ -87,6 +89,7 @@ class Compliance:
     far: int | None = None
     drags: bool = False
     number: int = 0
+    converts: bool = False
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,8 @@ class Topology:
     an exact fraction. ``inertias`` are station, element and number among the element's own of every inertia, ``disks``
     station and element of those that outer torques act on, ``rotors`` these elements by name; ``meshes`` are those that
     vary with their phase. ``names`` are those of the unknowns; ``points`` are station and name of what is seen to move:
-    each disk where it is, what else is heavy where none is. What follows from these is found once.
+    each disk where it is, what else is heavy where none is. ``lost`` are stations and the torque [N m] by which what
+    does not pass its power on resists there. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -133,6 +137,7 @@ class Topology:
     names: tuple[str, ...]
     meshes: tuple[Mesh, ...]
     points: tuple[tuple[int, str], ...]
+    lost: tuple[tuple[int, float], ...] = ()
 
     @cached_property
     def size(self) -> int:
@@ -183,14 +188,24 @@ class Topology:
         return tuple(s for s, station in enumerate(self.stations) if station.link is LinkKind.SUM)
 
     @cached_property
-    def graph(self) -> bool:
+    def knotted(self) -> bool:
         """Whether it is not a tree: a shaft is tied to two others, or springs close a loop."""
         return bool(self.sums) or any(c.far is not None for c in self.compliances)
 
     @cached_property
+    def converting(self) -> tuple[int, ...]:
+        """Compliances of torque converters."""
+        return tuple(e for e, compliance in enumerate(self.compliances) if compliance.converts)
+
+    @cached_property
+    def graph(self) -> bool:
+        """Whether equations are not those of a tree of springs: it is none, or torques act on two shafts unlike."""
+        return self.knotted or bool(self.converting)
+
+    @cached_property
     def knot(self) -> int:
         """The element that makes it a graph."""
-        closing = (c.shafts[-1] for c in self.compliances if c.far is not None)
+        closing = (c.shafts[-1] for c in self.compliances if c.far is not None or c.converts)
         return self.stations[self.sums[0]].element if self.sums else next(closing)
 
     @cached_property
@@ -367,7 +382,15 @@ def topology(line: Driveline) -> Topology:
     """
     found = _merge_massless(line, stations_of(line))
     _require_closed(line, found)
-    return found
+    return replace(found, lost=tuple(_lost(line, found))) if found.converting else found
+
+
+def _lost(line: Driveline, topo: Topology) -> Iterator[tuple[int, float]]:
+    for e in topo.converting:
+        compliance = topo.compliances[e]
+        element = line.elements[compliance.shafts[0]]
+        if isinstance(element, TorqueConverter) and element.run is not None:
+            yield topo.stations[compliance.near].before, element.run.lost_torque
 
 
 def require_period(line: Driveline, topo: Topology) -> Fraction:
@@ -508,7 +531,10 @@ def stations_of(line: Driveline, *, even: bool = False) -> LineStations:
                 case Sprung(to) | Dragged(to):
                     here = found.add(own[to], LinkKind.SHAFT, i, found.speed_ratio[own[to]], spring=springs)
                     plane, drags, group = turned[to], isinstance(part, Dragged), found.stations[here].group
-                    found.compliances.append(Compliance(own[to], group, (i,), drags=drags, number=springs))
+                    converts = isinstance(part, Dragged) and part.converts
+                    found.compliances.append(
+                        Compliance(own[to], group, (i,), drags=drags, number=springs, converts=converts)
+                    )
                     springs += 1
                 case Loose(to, speed):
                     here, plane = found.add(own[to], LinkKind.LOOSE, i, found.speed_ratio[own[to]] * speed), Plane()

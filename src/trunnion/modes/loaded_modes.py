@@ -7,10 +7,12 @@ the one at the speed before that it shares most with, by the modal assurance cri
 
 from __future__ import annotations
 
+from dataclasses import fields
+
 import numpy as np
 
 from trunnion.arrays import Array, Complex
-from trunnion.equations.aligned import UnitMasses, loaded_matrices
+from trunnion.equations.aligned import AlignedMatrices, UnitMasses, loaded_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.modes.damped_modes import RIGID, damped_modes, matched
 
@@ -23,8 +25,7 @@ def loaded_modes(assembly: Assembly, speeds: Array, table: Array | None = None) 
     """
     topo = assembly.topology
     numbers = assembly.table(len(speeds), speeds) if table is None else table
-    coefficients = assembly.coefficients(numbers, any_frequency=True)
-    matrices = loaded_matrices(topo, coefficients, speeds)
+    matrices = _matrices(assembly, numbers)
     damping = matrices.damping
     n, unit = topo.size, UnitMasses(matrices.inertia[0])
     squares, reference = np.linalg.eigh(unit.of_matrix(matrices.stiffness[0]))
@@ -46,3 +47,12 @@ def loaded_modes(assembly: Assembly, speeds: Array, table: Array | None = None) 
     if alike:
         found[1:], shapes[1:] = found[:1], shapes[:1]
     return found, shapes
+
+
+def _matrices(assembly: Assembly, table: Array) -> AlignedMatrices:
+    """Those of every row; of a line with a torque converter as it runs at the speed of each."""
+    if every := assembly.each(table[:, 0]):
+        parts = [_matrices(one, row[None]) for one, row in zip(every, table, strict=True)]
+        names = [one.name for one in fields(AlignedMatrices)]
+        return AlignedMatrices(**{name: np.concatenate([getattr(one, name) for one in parts]) for name in names})
+    return loaded_matrices(assembly.topology, assembly.coefficients(table, any_frequency=True), table[:, 0])

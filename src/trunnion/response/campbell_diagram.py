@@ -295,6 +295,7 @@ def _largest(assembly: Assembly, torque: DiskTorque, speeds: Array) -> float:
 
 def _energies(assembly: Assembly, speed: float, shape: Complex) -> tuple[Array, Array]:
     """Shares of kinetic (rotation, mode) and elastic energy (spring, mode) at a speed."""
+    assembly = assembly.at(speed)
     coefficients = assembly.coefficients(assembly.table(1, speed), any_frequency=True)
     kinetic = (shape.conj() * (aligned_matrices(assembly.topology, coefficients).inertia[0] @ shape)).real
     potential = coefficients.stiffness[0][:, None] * np.abs(assembly.topology.elongations @ shape) ** 2

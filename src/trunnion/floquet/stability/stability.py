@@ -241,6 +241,7 @@ def stability(
         return _judge(line, run, (Source(Fraction(1)),), Fraction(1, 2), scaled, None, nothing)
     assembly = assemble(line)
     table = assembly.table(1, operating_speed(assembly.line, speed))
+    assembly = assembly.at(float(table[0, 0]))
     if about_steady_state:
         require_own_motion(assembly, table)
     if about_steady_state or has_periodic_base(assembly):

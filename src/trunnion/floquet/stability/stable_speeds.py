@@ -34,6 +34,11 @@ def verdicts_at(
     which has no equations in time, so that no multipliers exist, and where the computation failed.
     ``motions``: periodic steady states that are known already; ``table`` as of ``stability_along``.
     """
+    if table is None and (every := assembly.each(speed)):
+        parts = [
+            verdicts_at(one, speed[[i]], statically_twisted=statically_twisted) for i, one in enumerate(every)
+        ]  # fmt: skip
+        return np.concatenate(parts)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted, any_frequency=True)
     varies = has_joint_angles(assembly) or bool(co.waves)
@@ -49,7 +54,7 @@ def _straight(assembly: Assembly, co: LineCoefficients) -> Codes:
     """Only what feeds energy in makes a straight line unstable: negative damping, a drive whose torque grows with the
     speed."""
     stable = np.full(len(co.speed), Verdict.STABLE, dtype=np.int8)
-    if not any(np.any(part < 0) for part in (co.damping, co.viscous, co.quadratic)):
+    if not co.across and not any(np.any(part < 0) for part in (co.damping, co.viscous, co.quadratic)):
         return stable
     if co.loss.any():
         return np.full_like(stable, Verdict.FAILED)

@@ -180,6 +180,7 @@ def _springs(
     rows = numbers[first : first + len(topo.compliances) * core.PER_COMPLIANCE].reshape(-1, core.PER_COMPLIANCE)
     elastic, losses = 0.0, 0.0
     rubbed = {slider.compliance for slider in line.sliders} | {clutch.compliance for clutch in line.clutches}
+    turned = {one.compliance: one for one in line.converters}
     for e, compliance in enumerate(topo.compliances):
         place = compliance.shafts[0]
         if has_stages(assembly.line.elements[place]):
@@ -191,7 +192,12 @@ def _springs(
             if slider.compliance == e:
                 stored += float(np.diff(slider.stiffness * states[:, 2 * n + s] ** 2 / 2)[0])
         elastic += stored
-        if rows[e, core.LAW] == 0.0 and e not in rubbed:
+        if e in turned:
+            one = turned[e]
+            ends = [one.sense * speed[:, station] for station in (one.pump, one.turbine)]
+            takes, gives = one.torques(*ends)
+            losses += float(weights @ (takes * ends[0] - gives * ends[1]))
+        elif rows[e, core.LAW] == 0.0 and e not in rubbed:
             losses += float(weights @ (rows[e, core.DAMPING] * (speed[:, far[e]] - speed[:, near[e]]) ** 2))
         else:
             losses += float(weights @ given[:, e]) - stored

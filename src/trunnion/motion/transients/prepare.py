@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
+from trunnion.driveline.converter_balance import running_line
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.machines import Motor
 from trunnion.driveline.operating_speed import speed_unit
@@ -96,7 +97,7 @@ def prepared_line(line: Driveline, asked: Actions, speed: float) -> tuple[LineSy
     """
     refuse_pendulums(line)
     refuse_torque_tables(line, "write the stiffness at the torque that matters")
-    driven, acting = driven_line(line, asked, speed)
+    driven, acting = driven_line(running_line(line, max(speed, 0.0)), asked, speed)
     prepared = line_system(driven, abs(speed), leaves=True, slips=True)
     for one in prepared.torques:
         one.refuse_change()

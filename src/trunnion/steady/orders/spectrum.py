@@ -91,6 +91,11 @@ def order_spectrum(
     InputError : a line with too long a period; a free–free line with joint angles, or an excitation's own frequency, in
     a ``table``.
     """
+    if table is None and (every := assembly.each(speed)):
+        return stacked([
+            order_spectrum(one, speed[[i]], statically_twisted=statically_twisted, linearised=linearised, rough=rough)
+            for i, one in enumerate(every)
+        ])  # fmt: skip
     numbers = _numbers(assembly, speed, table)
 
     def solved(*, whole: bool) -> tuple[_SpectrumProblem, OrderSpectrum]:
@@ -467,6 +472,10 @@ class _SpectrumProblem:
         places, v = self.places, nu[..., None]
         k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
         seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
+        for one in co.across:
+            if one.compliance is not None:
+                turned = seen[..., places.deviation] @ self.topo.turning[one.by]
+                seen[..., places.torque.start + one.compliance] += 1j * nu * one.slope[:, None] * turned
 
     def _add_waves(self, seen: Complex, co: LineCoefficients, h: Integers, wave: Array, *, own: bool) -> None:
         """What the varying part of mesh stiffnesses adds to their torques, in place."""
