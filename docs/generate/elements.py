@@ -46,6 +46,7 @@ TABLES = {
     "Ripple": "`ripple` of a RzeppaJoint",
     "Slider": "`friction` of a Clutch",
     "TorquePoint": "`curve` of a machine",
+    "ConverterPoint": "`curves` of a torque converter",
 }
 """Where each further table of a file stands."""
 SHARED = ("type", "name", "after")

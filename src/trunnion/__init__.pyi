@@ -59,8 +59,8 @@ from trunnion.driveline import StiffnessVariation as StiffnessVariation
 from trunnion.driveline import SwitchedOff as SwitchedOff
 from trunnion.driveline import TitleBlock as TitleBlock
 from trunnion.driveline import Tolerance as Tolerance
-from trunnion.driveline import TorqueFunction as TorqueFunction
 from trunnion.driveline import TorqueConverter as TorqueConverter
+from trunnion.driveline import TorqueFunction as TorqueFunction
 from trunnion.driveline import TorquePoint as TorquePoint
 from trunnion.driveline import TransmissionError as TransmissionError
 from trunnion.driveline import TripodJoint as TripodJoint

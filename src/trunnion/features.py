@@ -15,7 +15,7 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
-from trunnion.driveline.features import CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
+from trunnion.driveline.features import CONVERTER, CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
@@ -136,9 +136,16 @@ _STICKS = {"slip clutch": "it sticks, a rigid link; a line whose load lies beyon
 _NOT_SLIPPED = {"slip clutch": "it changes between sticking and slipping, which is not followed"}
 PENDULUM = "centrifugal pendulum"
 HEATED = "temperature of a coupling"
-_NO_SPEED = {PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated"}
-_OTHER_SPEEDS = {PENDULUM: "the square of the speed holds it, and equations here are of one speed"}
+_NO_SPEED = {
+    PENDULUM: "the square of the speed holds it; it is held as at the operating speed where that is stated",
+    CONVERTER: "its ratio of speeds follows from the speed; it runs as at the operating speed where that is stated",
+}
+_OTHER_SPEEDS = {
+    PENDULUM: "the square of the speed holds it, and equations here are of one speed",
+    CONVERTER: "its ratio of speeds follows from the speed and the loads, and equations here are of one",
+}
 _NO_PATH = {PENDULUM: "it swings along a path, which is not followed"}
+_NO_RATIO = {CONVERTER: "its turbine turns by a ratio that follows from the loads, so that no period is the line's"}
 _PASSIVE = {**_TORSION, **_EVEN}
 _FORCES = "a forcing, which moves no frequency and no multiplier of a linear line"
 _FORCING = dict.fromkeys(
@@ -191,6 +198,7 @@ _BASE = {
 _EXCITED = {key: _FORCES for key in _FORCING if key != "transmission error"}
 _UNPROVABLE = {
     **_BASE,
+    **_NO_RATIO,
     DRAGGED: "what it drags may stand anywhere, so that one disturbance never dies out",
     **dict.fromkeys((CURVE, LAG), "a curve over the speed is not enclosed"),
     PENDULUM: "the square of the speed holds it, and the proof is of springs that do not follow the speed",
@@ -229,6 +237,7 @@ _ONE_DRIVE = {
 _ANYWHERE = {DRAGGED: "what it drags may stand anywhere, so that no periodic motion is the only one"}
 _DRIVEN = {
     **_ONE_DRIVE,
+    **_NO_RATIO,
     **_NO_PATH,
     **_NOT_SLIPPED,
     **_NOT_FOLLOWED,
@@ -238,11 +247,13 @@ _DRIVEN = {
 }
 _PASSING = {
     **_ONE_DRIVE,
+    **_NO_RATIO,
     **_AT_ONE_SPEED,
     "excitation that varies with speed or load": "its amplitude would change on the way",
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,
+    **_NO_RATIO,
     **_NO_PATH,
     **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
     OVER_TORQUE: "it goes with the loads at the speed that branches and sweeps follow",
@@ -262,7 +273,7 @@ _RIGID = dict.fromkeys(
         "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "tyre", "vehicle",
         "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
-        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch",
+        "mesh-stiffness variation", "stages", "dry friction", ONE_MOTION, "slip clutch", "locked torque converter",
         "damping in contact only", "load torque", "viscous load", "quadratic load", CURVE, LAG, "excitation by order",
         "excitation that varies with speed or load", "cylinders", "engine", "excitation in time",
         "excitation by order and frequency", "excitation of a prescribed disk",
@@ -298,6 +309,7 @@ ROWS: dict[str, Row] = {
     "settled temperatures": _row(
         refused={
             **_FAR_END,
+            CONVERTER: "its ratio of speeds follows from the loads, and many lines are solved together",
             "free start": "bent, it moves about its own periodic motion, which is found line by line",
             "drive share": "belongs to free–free lines, of which the bent ones are refused",
         },
@@ -339,11 +351,13 @@ ROWS: dict[str, Row] = {
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
     ),
     "whirl": _row(
-        inert={f.key: _TUBE for f in FEATURES if f.key not in _TUBES},
+        refused={CONVERTER: _NO_SPEED[CONVERTER]},
+        inert={f.key: _TUBE for f in FEATURES if f.key not in (*_TUBES, CONVERTER)},
     ),
     "turn": _row(
         refused={
             **_TREES,
+            CONVERTER: "its ratio of speeds follows from the loads at a speed, and a turn is that of rigid shafts",
             PENDULUM: "it swings with the orders of the rotation, and a turn is quasi-static",
             "prescribed far end": "the output follows from the input",
         },
@@ -373,9 +387,13 @@ ROWS: dict[str, Row] = {
         },
         inert={**_TORSION, **_STICKS, "free start": "the first element is driven at the speed asked for"},
     ),
-    "forks": _row(refused={**_TREES, "prescribed far end": "the output follows from the input"}, inert=_RIGID),
+    "forks": _row(
+        refused={**_TREES, **_NO_RATIO, "prescribed far end": "the output follows from the input"}, inert=_RIGID
+    ),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
-    "periodic motion": _row(refused={**_ONE_DRIVE, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE),
+    "periodic motion": _row(
+        refused={**_ONE_DRIVE, **_NO_RATIO, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE
+    ),
     "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED, **_NO_PATH}, said=_IN_ROWS, inert=_PASSIVE),
     "transients": _row(
         refused={
@@ -388,7 +406,9 @@ ROWS: dict[str, Row] = {
     ),
     "long motion": _row(refused=_DRIVEN, said=_BY_PLACE, inert=_PASSIVE),
     "branch": _row(
-        refused={**_ONE_DRIVE, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_NO_PATH, **_ANYWHERE}, said=_BY_PLACE, inert=_PASSIVE
+        refused={**_ONE_DRIVE, **_NO_RATIO, **_NOT_FOLLOWED, **_NOT_SLIPPED, **_NO_PATH, **_ANYWHERE},
+        said=_BY_PLACE,
+        inert=_PASSIVE,
     ),
     "stages": _row(refused=_NOT_EXACT, said=_IN_ROWS, inert=_UNBENT),
     "branch by stages": _row(refused={**_NOT_EXACT, **_NOT_FOLLOWED}, said=_IN_ROWS, inert=_UNBENT),

@@ -35,6 +35,7 @@ EXPECTED = {
     "din-740": ALWAYS,
     "coupling-temperature": ALWAYS,
     "brake-heat": ALWAYS,
+    "converter-heat": ALWAYS,
     "damper-heat": ALWAYS,
     "pendulum-travel": ALWAYS,
     "slip-clutch": ALWAYS,
@@ -176,6 +177,11 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
     shaft = tn.Shaft(name="shaft", stiffness=4e4, damping=20.0)
     soft = tn.Coupling(name="shaft", stiffness=4e4, damping=20.0, vibratory_torque=20.0)
     drags = tn.Brake(name="drags", inertia=0.1, torque=1.0, heat_rating=1.0)
+    points = ((0, 2, 0.08), (0.8, 1.1, 0.06), (1, 1, 0))
+    oil = tn.TorqueConverter(
+        curves=[{"speed_ratio": v, "torque_ratio": m, "capacity": k} for v, m, k in points],
+        inertia_in=0.2, heat_rating=1.0, name="oil",
+    )  # fmt: skip
     warm = tn.Coupling(
         name="shaft", stiffness=4e4, damping=20.0, temperature=300.0, thermal_resistance=1e4, ambient_temperature=300.0,
         highest_temperature=300.01,
@@ -195,6 +201,7 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
         "din-740": tn.Driveline([engine, soft, load], limits=wide),
         "coupling-temperature": tn.Driveline([engine, warm, load], limits=wide),
         "brake-heat": tn.Driveline([engine, shaft, load, drags], limits=wide),
+        "converter-heat": tn.Driveline([engine, shaft, oil, load], limits=[*wide, tn.Limit(of="oil", max_torque=1e6)]),
         "damper-heat": tn.Driveline([engine, hot, shaft, load], limits=[*wide, tn.Limit(of="hot", max_torque=1e6)]),
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(

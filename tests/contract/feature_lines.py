@@ -253,6 +253,23 @@ def looped(line: tn.Driveline, straight: bool = True) -> tn.Driveline:
     return line.but(elements=[*line.elements[:place], second, *line.elements[place:]])
 
 
+CONVERTER = tn.TorqueConverter(
+    curves=[
+        {"speed_ratio": v, "torque_ratio": m, "capacity": k}
+        for v, m, k in ((0.0, 2.0, 6e-3), (0.6, 1.3, 5.5e-3), (0.85, 1.0, 4e-3), (1.0, 1.0, 0.0))
+    ],
+    inertia_in=0.03,
+    inertia_out=0.02,
+    name="converter",
+)
+"""One that carries 20 N m at 100 rad/s."""
+
+
+def converting(locked: bool) -> Change:
+    """Behind the hub of a straight line."""
+    return lambda line: behind("hub", CONVERTER.but(locked=locked))(unbent(line))
+
+
 def excited(change: Change) -> Change:
     return lambda line: change(line).replace("load", excitation=[{"order": 2, "amplitude": 5.0}])
 
@@ -280,6 +297,14 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
     ("optimise", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
     ("fatigue", "elastic teeth of planets"): (excited(behind_hub(planetary())), excited(behind_hub(YIELDING, PINION))),
     ("optimise", "shafts tied to two others"): (excited(unbent), excited(tied)),
+    **{
+        (name, "torque converter"): (excited(converting(locked=True)), excited(converting(locked=False)))
+        for name in ("optimise", "fatigue")
+    },
+    ("campbell_diagram", "torque converter"): (
+        lambda line: put("load", load_torque=0.5)(converting(locked=True)(line)),
+        lambda line: put("load", load_torque=0.5)(converting(locked=False)(line)),
+    ),
 }
 """Where an analysis asks about something else than the lines below have."""
 CHANGES: dict[str, tuple[Change, Change]] = {
@@ -350,6 +375,8 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "dry friction": (clutch(), clutch(True)),
     "dry friction at one motion": (clutch(), clutch(True, linear_amplitude=0.001, linear_frequency=200.0)),
     "slip clutch": (clutched(torque=1e3), clutched(torque=24.0, sliding_torque=20.0, stribeck_speed=0.5)),
+    "torque converter": (converting(locked=True), converting(locked=False)),
+    "locked torque converter": (same, behind("hub", CONVERTER.but(locked=True))),
     "load torque": (same, put("load", load_torque=80.0)),
     "brake": (
         flanged(tn.Disk(inertia=0.02, name="brake")), flanged(tn.Brake(inertia=0.02, torque=15.0, name="brake"))

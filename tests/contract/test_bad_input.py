@@ -44,6 +44,7 @@ from trunnion.driveline import (
     SwitchedOff,
     TitleBlock,
     Tolerance,
+    TorqueConverter,
     TunedDamper,
     Tyre,
     Vehicle,
@@ -374,6 +375,33 @@ def animate(what, **arguments):
 
 
 # (what is done, how the message starts, what it must also say)
+def converter_points(**middle: object) -> list[dict[str, object]]:
+    """Three points of a torque converter, of which the one between is changed."""
+    between = {"speed_ratio": 0.8, "torque_ratio": 1.1, "capacity": 3e-3} | middle
+    ends = [
+        {"speed_ratio": 0, "torque_ratio": 2, "capacity": 4e-3},
+        {"speed_ratio": 1, "torque_ratio": 1, "capacity": 0},
+    ]
+    if "pump_torque" in middle:
+        between.pop("capacity")
+    return [ends[0], between, ends[1]]
+
+
+def converted(short: bool = False, twice: bool = False, joint: bool = False, **load: object) -> Driveline:
+    """A line with a torque converter."""
+    points = converter_points()
+    if short:
+        points = [points[0], {"speed_ratio": 0.4, "torque_ratio": 1.5, "capacity": 4e-3}, points[1]]
+    converter = TorqueConverter(curves=points, name="converter")
+    second = [Disk(inertia=0.1), converter.but(name="second")] if twice else []
+    bend = [HookeJoint(angle=0.2, name="bend")] if joint else []
+    end = Disk(inertia=0.2, name="load", **({"load_torque": 2.0} | load))
+    return Driveline(
+        [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=0.1), *bend, converter, *second, Disk(inertia=0.1),
+         Shaft(stiffness=1e4), end]
+    )  # fmt: skip
+
+
 PYTHON = [
     *FATIGUE,
     # what moves
@@ -1856,6 +1884,87 @@ PYTHON = [
         lambda: pendulum(largest_travel=1, path="epicycloid"),
         "CentrifugalPendulum.largest_travel = 1: is more than the 0.02795 m that its path has",
         "check the unit",
+    ),
+    (lambda: TorqueConverter(), "TorqueConverter.curves: is missing", "speed_ratio = 0"),
+    (lambda: TorqueConverter(curves=converter_points()[:2]), "TorqueConverter.curves = 2: must have three", "between"),
+    (
+        lambda: TorqueConverter(curves=converter_points()[::-1]),
+        "TorqueConverter.curves: does not rise in speed_ratio: 0.8 after 1",
+        "sort the points",
+    ),
+    (
+        lambda: TorqueConverter(curves=[{"speed_ratio": -0.1, "torque_ratio": 2, "capacity": 1}, *converter_points()]),
+        "TorqueConverter.curves = -0.1: must not be negative",
+        "begin at 0",
+    ),
+    (lambda: TorqueConverter(curves="sheet.csv"), "TorqueConverter.curves = 'sheet.csv': names", "read_converter"),
+    (
+        lambda: TorqueConverter(curves=[*converter_points()[:2], {"speed_ratio": 1, "torque_ratio": 1}]),
+        "TorqueConverter.curves 3 capacity: is missing",
+        "pump_torque",
+    ),
+    (
+        lambda: TorqueConverter(curves=converter_points(torque_ratio=1.5)),
+        "TorqueConverter.curves: gives more power than it takes at a speed ratio of 0.8",
+        "1.25 or less",
+    ),
+    (
+        lambda: TorqueConverter(curves=converter_points(capacity=0)),
+        "TorqueConverter.curves: must be positive at a speed ratio of 0.8",
+        "nothing or less",
+    ),
+    (
+        lambda: TorqueConverter(
+            curves=[*converter_points(), {"speed_ratio": 1.2, "torque_ratio": 1, "capacity": 1e-3}]
+        ),
+        "TorqueConverter.curves: is positive at a speed ratio of 1.2",
+        "negative",
+    ),
+    (
+        lambda: TorqueConverter(curves=converter_points(capacity=None, pump_torque=90)),
+        "TorqueConverter.reference_speed: is needed with pump_torque",
+        '"2000 rpm"',
+    ),
+    (
+        lambda: TorqueConverter(curves=converter_points(), reference_speed=200),
+        "TorqueConverter.reference_speed: conflicts with capacity",
+        "leave it out",
+    ),
+    (
+        lambda: TorqueConverter(curves=converter_points()).at(1.1, 200.0),
+        "TorqueConverter.speed_ratio = 1.1: lies beyond its points, 0 to 1",
+        "add points",
+    ),
+    (
+        lambda: order_response(converted(load_torque=400), [100.0]),
+        "converter.curves: stalls at 954.93 rpm of the input: its turbine would have to carry 400 N*m, and gives",
+        "lower the load",
+    ),
+    (
+        lambda: order_response(converted(short=True), [100.0]),
+        "converter.curves: ends at a speed ratio of 0.8, where its turbine still gives more",
+        "add points up to",
+    ),
+    (
+        lambda: order_response(converted(drive_share=1), [100.0]),
+        "load.drive_share: holds a speed behind converter",
+        "locked = true",
+    ),
+    (lambda: natural_frequencies(converted()), "converter.curves: runs at a ratio of speeds that", "[operation]"),
+    (
+        lambda: tn.stability_chart(converted(), ("speed", 90, 110, 3), ("load.inertia", 0.1, 0.2, 3)),
+        "converter.locked: turns its turbine by a ratio that follows from the loads at each speed, which charts do not",
+        "locked = true",
+    ),
+    (
+        lambda: order_response(converted(twice=True), [100.0]),
+        "converter, second: are several torque converters",
+        "locked = true",
+    ),
+    (
+        lambda: order_response(converted(joint=True), [100.0]),
+        "converter.curves: turns unevenly with bend at its side",
+        "put a Shaft between",
     ),
     (lambda: SlipClutch(), "SlipClutch.torque: is missing", 'torque = "1200 N*m"'),
     (lambda: SlipClutch(torque=0), "SlipClutch.torque = 0: must be positive", '"250 N*m"'),

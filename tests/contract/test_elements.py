@@ -37,6 +37,7 @@ from trunnion.driveline import (
     RzeppaJoint,
     Shaft,
     SlipClutch,
+    TorqueConverter,
     TunedDamper,
     Tyre,
     Vehicle,
@@ -119,6 +120,17 @@ MACHINES = [
     Fan(inertia=3, rated_power="30 kW", rated_speed="1480 rpm", load_torque=2),
     Pump(inertia=0.3, load_torque="120 N*m", viscous_load=0.2),
     Propeller(inertia=60, entrained_inertia=15, quadratic_load=20, damping_factor=2.9),
+    TorqueConverter(
+        curves=[
+            {"speed_ratio": 0, "torque_ratio": 2.1, "pump_torque": "180 N*m"},
+            {"speed_ratio": 0.85, "torque_ratio": 1, "pump_torque": "120 N*m"},
+            {"speed_ratio": 1, "torque_ratio": 1, "pump_torque": 0},
+        ],
+        reference_speed="2000 rpm",
+        inertia_in=0.15,
+        inertia_out=0.05,
+        heat_rating="20 kW",
+    ),
     Brake(inertia=0.3, torque="200 N*m", static_torque="260 N*m", stribeck_speed="20 rpm", heat_rating="5 kW"),
 ]
 WITH_STAGES = [

@@ -42,8 +42,8 @@ from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.starter import STARTERS, starter
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import Tolerance
-from trunnion.driveline.torque_file import read_torque
 from trunnion.driveline.torque_converters import ConverterPoint, TorqueConverter
+from trunnion.driveline.torque_file import read_torque
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 __all__ = [

@@ -68,8 +68,8 @@ def behind_converter(line: ElementChain, place: int) -> list[tuple[float, str, R
     found = []
     for i in sorted(behind - {place}):
         element, name = line.elements[i], line.names[i]
-        if isinstance(element, ConstantSpeed) or getattr(element, "drive_share", 0.0):
-            key = None if isinstance(element, ConstantSpeed) else "drive_share"
+        if isinstance(element, ConstantSpeed) or getattr(element, "drive_share", False):
+            key = "" if isinstance(element, ConstantSpeed) else "drive_share"
             raise InputError(
                 f"holds a speed behind {line.names[place]}, whose turbine turns as fast as its loads let it",
                 element=name, key=key, remedy=f"give it a torque, or {LOCK.removeprefix('write ')}",
@@ -115,13 +115,13 @@ def _unbalanced(
     resists = sum(ratio * float(load.value(ratio * first * pump)) for ratio, load in loads)
     if resists >= stall:
         return InputError(
-            f"stalls at {at} of the input: its turbine would have to carry {shown(resists, TORQUE, digits=5)} and gives "
-            f"{shown(stall, TORQUE, digits=5)} where it stands", element=name, key="curves",
+            f"stalls at {at} of the input: its turbine would have to carry {shown(resists, TORQUE, digits=5)}, and "
+            f"gives {shown(stall, TORQUE, digits=5)} where it stands", element=name, key="curves",
             remedy="lower the load, or ask at a higher speed; tn.transient follows a start",
         )  # fmt: skip
     return InputError(
-        f"ends at a speed ratio of {last:g}, where its turbine still gives more than its loads take at {at} of the input",
-        element=name, key="curves", remedy="add points up to a speed ratio of 1, where its capacity is 0",
+        f"ends at a speed ratio of {last:g}, where its turbine still gives more than its loads take at {at} of the "
+        "input", element=name, key="curves", remedy="add points up to a speed ratio of 1, where its capacity is 0",
     )  # fmt: skip
 
 
@@ -148,13 +148,11 @@ def running_line(line: Driveline, speed: float) -> Driveline:
     run = STANDING if not speed else run_of(line, place, speed)
     if speed and run.ratio < STANDS * converter.curves[-1].speed_ratio:
         raise InputError(
-            f"has its turbine all but stand, at a speed ratio of {run.ratio:.3g}, so that nothing turns evenly behind it",
+            f"has its turbine all but stand, at a speed ratio of {run.ratio:.3g}, so that nothing turns behind it",
             element=line.names[place], key="curves", remedy="lower the load, or ask at a higher speed",
         )  # fmt: skip
     elements = (*line.elements[:place], converter.running(run), *line.elements[place + 1 :])
     return line.model_copy(update={"elements": elements})
-
-
 
 
 SCANNED = 400

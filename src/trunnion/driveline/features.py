@@ -35,6 +35,7 @@ from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.title_block import TitleBlock
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.driveline.vehicle import Tyre, Vehicle
 
 Finder = Callable[[Driveline], list[str]]
@@ -148,6 +149,7 @@ def _of_loaded(key: str) -> tuple[str, ...]:
 
 
 CURVE = "torque curve"
+CONVERTER = "torque converter"
 OVER_TORQUE = "stiffness over mean torque"
 FEATURES = (
     Feature(
@@ -293,6 +295,19 @@ FEATURES = (
         _kind(SlipClutch),
     ),
     Feature(
+        CONVERTER,
+        (
+            *_of("TorqueConverter", "curves", "reference_speed", "inertia_in", "inertia_out"),
+            *_of("ConverterPoint", "speed_ratio", "torque_ratio", "capacity", "pump_torque"),
+        ),
+        _where(TorqueConverter, "curves", lambda one: not one.locked),
+    ),
+    Feature(
+        "locked torque converter",
+        _of("TorqueConverter", "locked"),
+        _where(TorqueConverter, "locked", lambda one: one.locked),
+    ),
+    Feature(
         "dry friction at one motion",
         tuple(f"{kind}.linear_{key}" for kind in _STAGED[1:] for key in ("amplitude", "frequency")),
         _dry_friction(True),
@@ -365,6 +380,7 @@ NOT_FEATURES = {
         "coupling_temperatures finds by them where the temperature settles",
     ),
     "Brake.heat_rating": "a rating, which checks compare with",
+    "TorqueConverter.heat_rating": "a rating, which checks compare with",
     "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
     **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",

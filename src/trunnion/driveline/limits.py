@@ -44,6 +44,7 @@ from trunnion.driveline.quantities import (
 from trunnion.driveline.record import listed, one_of
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.driveline.vehicle import Tyre, Vehicle
 from trunnion.errors import InputError
 
@@ -61,6 +62,7 @@ SHIP_SHAFTS = {
 
 SPRING_KINDS: tuple[type[Element], ...] = (
     Shaft, Coupling, PiecewiseShaft, Clutch, ViscousDamper, TunedDamper, CentrifugalPendulum, Belt, Tyre,
+    TorqueConverter,
 )  # fmt: skip
 """Elements that carry a torque, meshes aside."""
 _TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller, Brake)

@@ -7,6 +7,7 @@ disk or a motor has a ``drive_share`` its controller keeps any speed, and no bal
 from __future__ import annotations
 
 import warnings
+
 from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.converter_balance import converter_balances, open_converter
 from trunnion.driveline.elements import ConstantSpeed, Rotor

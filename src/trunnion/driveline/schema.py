@@ -28,6 +28,7 @@ from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.sn_curves import SNCurve
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.driveline.tolerances import SCATTERING, Tolerance
+from trunnion.driveline.torque_converters import ConverterPoint
 
 _TUBE = ["outer_diameter", "length"]
 _SOLID = ["outer_diameter", "thickness"]
@@ -212,6 +213,7 @@ def json_schema() -> dict[str, Any]:
             "Ripple": _model(Ripple),
             "Slider": _model(Slider),
             "TorquePoint": _model(TorquePoint),
+            "ConverterPoint": _model(ConverterPoint),
         },
     }
 

@@ -152,8 +152,8 @@ class TorqueConverter(Elastic):
     """A hydrodynamic converter between an engine and its gearbox: pump, turbine, and a stator that holds the rest.
 
     Its turbine turns as fast as the torques let it, at every speed of the pump otherwise (see
-    ``trunnion.laws.converter``): linear analyses find that balance and take the slopes of both torques there, motions in
-    time follow the curves. No spring joins the two sides.
+    ``trunnion.laws.converter``): linear analyses find that balance and take the slopes of both torques there, motions
+    in time follow the curves. No spring joins the two sides.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ class TorqueConverter(Elastic):
             if (gain > 1 + GAIN and capacity > 0) or (gain < 1 - GAIN and capacity < 0):
                 raise InputError(
                     f"gives more power than it takes at a speed ratio of {ratio:g}: torque_ratio is "
-                    f"{point.torque_ratio:g}", key="curves", remedy=f"write at most {1 / ratio:.4g} below 1, at least above",
+                    f"{point.torque_ratio:g}", key="curves", remedy=f"write {1 / ratio:.4g} or less, above 1 or more",
                 )  # fmt: skip
         return self
 

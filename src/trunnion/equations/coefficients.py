@@ -79,6 +79,24 @@ class Assembly:
             return None
         return [self.at(float(one)) for one in speeds]
 
+    def each_of(self, table: Array) -> list[Assembly] | None:
+        """The same at the input speed of every row of packed numbers (case, column).
+
+        Raises
+        ------
+        InputError : rows that change more than the speed, with which a torque converter may run otherwise.
+        """
+        if self.stated is None:
+            return None
+        if np.any(table[:, 1:] != self.packed.values[1:]):
+            place = open_converter(self.line)
+            assert place is not None
+            raise InputError(
+                "runs at a ratio of speeds that follows from numbers that change here", element=self.line.names[place],
+                key="locked", remedy=LOCK,
+            )  # fmt: skip
+        return self.each(table[:, 0])
+
     def _otherwise(self, speeds: Array) -> Flags:
         """Which speeds are others than that at which it runs."""
         return np.isfinite(speeds) & ~(np.abs(speeds - self.runs_at) <= SAME_SPEED * np.abs(speeds))

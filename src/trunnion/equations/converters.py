@@ -15,6 +15,9 @@ from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
 from trunnion.laws.converter import ConverterRun
 
+NEAR = 1e-3
+"""Share of the last speed ratio within which a motion that ends there has come beyond it."""
+
 
 @dataclass(frozen=True)
 class PlacedConverter:
@@ -54,6 +57,19 @@ class PlacedConverter:
             ratio = np.maximum(np.where(pump_speed > 0, turbine_speed / pump_speed, 0.0), self.element.law.ratios[0])
         takes = self.element.law.pump(ratio) * pump_speed**2
         return takes, self.element.law.torque_ratio(ratio) * takes
+
+    def left_curves(self, speed: Array) -> str:
+        """What is said where a motion ends as it comes beyond the curves, at speeds of all stations (station,) there;
+        empty where it does not."""
+        pump, turbine = (float(self.sense * speed[one]) for one in (self.pump, self.turbine))
+        last = self.element.law.ratios[-1]
+        if pump > 0 and turbine / pump < last * (1 - NEAR):
+            return ""
+        there = f"a speed ratio of {turbine / pump:.6g}" if pump > 0 else "a pump that stands or turns backwards"
+        return (
+            f"{self.name} comes to {there}, beyond its curves, which end at {last:g}; add points, above 1 with a "
+            "negative capacity, or end the run before that"
+        )
 
 
 def placed_converters(line: Driveline, topo: Topology) -> tuple[PlacedConverter, ...]:

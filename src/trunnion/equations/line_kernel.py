@@ -491,6 +491,12 @@ def line(t, y_, p_, k, regime, out_):
             torque[j] -= shaft[e]
         if i >= 0:
             torque[i] += r[near] * shaft[e]
+    q = int(p[CONVERTERS_AT])
+    for _ in range(int(p[CONVERTERS])):
+        sense = p[q + SENSE_OF_BOTH]
+        gives = converted(p, q, sense * v[int(p[q + PUMP])], sense * v[int(p[q + TURBINE])])[1]
+        shaft[int(p[q + SPRINGLESS])] = -sense * gives
+        q = next_converter(p, q)
     for s in range(count):
         q = HEAD + s * PER_STATION
         i = int(p[q + COORDINATE])

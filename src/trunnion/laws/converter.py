@@ -22,6 +22,8 @@ from trunnion.laws.torque_curve import TorqueCurve
 
 BETWEEN = 48
 """Places between two points of the curves, where balances are looked for."""
+ROUNDING = 1e-13
+"""Share of the largest torque that counts as none."""
 EXACT = 1e-14
 """Of a ratio of speeds."""
 
@@ -136,11 +138,15 @@ def balances(
         return np.asarray(curves.turbine(ratio) * pump_speed**2 - resists)
 
     knots = {v for v in curves.ratios if v > 0} | {
-        knot / (r * pump_speed) for r, load in loads for knot in load.knots if 0 < knot < curves.ratios[-1] * r * pump_speed
+        knot / (r * pump_speed)
+        for r, load in loads
+        for knot in load.knots
+        if 0 < knot < curves.ratios[-1] * r * pump_speed
     }
     ends = sorted({max(curves.ratios[0], 0.0), *knots})
     at = np.unique(np.concatenate([np.linspace(a, b, BETWEEN + 1) for a, b in zip(ends, ends[1:], strict=False)]))
     value = left(at)
+    value[np.abs(value) <= ROUNDING * np.nanmax(np.abs(value), initial=0.0)] = 0.0
     for i in range(len(at) - 1):
         here, there = float(value[i]), float(value[i + 1])
         if not (np.isfinite(here) and np.isfinite(there)) or here * there > 0 or there == 0 and i + 2 < len(at):

@@ -13,6 +13,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi, sqrt
 
+import numpy as np
+
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
@@ -59,6 +61,7 @@ def bending_speeds(line: Driveline | Assembly) -> tuple[BendingSpeed, ...]:
     691.59
     """
     assembly = assemble(line)
+    assembly.require_one_speed(np.full(1, np.nan))
     described, topo = assembly.line, assembly.topology
     ratio = {e: abs(float(topo.speed_ratio[c.near])) for c in topo.compliances for e in c.shafts}
     found = []

@@ -28,6 +28,7 @@ from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import DEGREE
 from trunnion.driveline.shafts import Shaft, SpringElement
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.torque_converters import TorqueConverter
 from trunnion.pictures.draw_matplotlib import SMALL, new_figure, through
 from trunnion.pictures.looks import ACCENT, FAINT, INK
 
@@ -45,6 +46,7 @@ LENGTH = {
     "TunedDamper": 0.7, "Differential": 0.9, "Clutch": 1.25, "Tyre": 0.8, "Vehicle": 1.5,
     "SlipClutch": 0.7, "CentrifugalPendulum": 0.7, "Motor": 0.95, "Generator": 0.95,
     "Fan": 0.8, "Pump": 0.8, "Propeller": 0.8, "Brake": 0.7,
+    "TorqueConverter": 0.9,
 }  # fmt: skip
 JOINT_LENGTH = 0.9
 THROW = 0.5
@@ -340,6 +342,24 @@ def _brake(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
         axes.add_patch(Ellipse(tuple(pad), 0.16, 0.4, angle=tilt, fc="#e0a458", ec=INK, lw=1.1, zorder=4))
 
 
+def _converter(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
+    """Two half rings of blades that face each other, and the lock-up clutch between them where it is closed."""
+    converter = place.element
+    assert isinstance(converter, TorqueConverter)
+    for side, faces in ((-1, "#c9d8e3"), (1, "#e0c9a0")):
+        end = place.start if side < 0 else place.end
+        _bar(axes, end, place.middle + 0.2 * side * _along(place.direction))
+        for way in (1, -1):
+            at = place.middle + 0.13 * side * _along(place.direction) + 0.4 * way * _across(place.direction)
+            axes.add_patch(
+                Ellipse(tuple(at), 0.2, 0.46, angle=np.rad2deg(place.direction), fc=faces, ec=INK, lw=1.1, zorder=4)
+            )
+        wall = replace(place, start=place.middle, end=place.middle)
+        _box(axes, wall.part(side * 0.2 - 0.03, side * 0.2 + 0.03), 0.62, fc=SOLID)
+    if converter.locked:
+        _bar(axes, place.start, place.end, lw=2.4, zorder=5)
+
+
 def _pump(axes: Axes, place: _ElementPlace, disks: list[float]) -> None:
     """The circle of a pump with its triangle."""
     _bar(axes, place.start, place.end)
@@ -507,6 +527,7 @@ _DRAW: dict[str, Callable[[Axes, _ElementPlace, list[float]], None]] = {
     "Propeller": _blades,
     "Pump": _pump,
     "Brake": _brake,
+    "TorqueConverter": _converter,
 }
 
 

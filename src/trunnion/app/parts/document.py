@@ -418,6 +418,13 @@ _EXAMPLES: dict[str, dict[str, Any]] = {
     "Coupling": {"stiffness": "12 kN*m/rad", "relative_damping": 0.8},
     "Clutch": {"stiffnesses": ["800 N*m/rad"], "friction": [{"torque": "6 N*m", "stiffness": "4 kN*m/rad"}]},
     "SlipClutch": {"torque": "1200 N*m"},
+    "TorqueConverter": {
+        "curves": [
+            {"speed_ratio": 0, "torque_ratio": 2.1, "capacity": 0.0042},
+            {"speed_ratio": 0.85, "torque_ratio": 1, "capacity": 0.003},
+            {"speed_ratio": 1, "torque_ratio": 1, "capacity": 0},
+        ]
+    },
     "Disk": {"inertia": "0.4 kg*m^2"},
     "Engine": {
         "firing_order": "1-3-4-2",

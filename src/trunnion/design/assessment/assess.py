@@ -10,6 +10,7 @@ from trunnion.design.assessment.bending import bending
 from trunnion.design.assessment.brake_heat import brake_heat
 from trunnion.design.assessment.check import Check, in_order, worst
 from trunnion.design.assessment.compared import uncovered
+from trunnion.design.assessment.converter_heat import converter_heat
 from trunnion.design.assessment.coupling_heat import coupling_heat
 from trunnion.design.assessment.couplings import coupling_ratings
 from trunnion.design.assessment.deciding import weighed
@@ -34,7 +35,9 @@ from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
-OF_RESPONSE = (stated_limits, coupling_ratings, coupling_heat, brake_heat, ship_shafts, gear_hammer, slip_clutches)
+OF_RESPONSE = (
+    stated_limits, coupling_ratings, coupling_heat, brake_heat, converter_heat, ship_shafts, gear_hammer, slip_clutches
+)  # fmt: skip
 
 
 @keeps_time
@@ -146,7 +149,7 @@ def of_response(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Ch
 
 def of_line(subject: AssessmentInput) -> Iterator[Check]:
     """The checks of geometry, which no load case changes."""
-    assembly, turn = subject.cases[0].assembly, _turn(subject)
+    assembly, turn = subject.cases[0].assembly.at(subject.high), _turn(subject)
     yield from joint_angles(subject, assembly, turn)
     yield from uniformity(subject, turn)
     yield from bending(subject, assembly)

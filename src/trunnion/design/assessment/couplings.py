@@ -31,6 +31,7 @@ from trunnion.driveline.dampers import Damper
 from trunnion.driveline.elements import Element
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.quantities import LENGTH, POWER, TORQUE, shown
+from trunnion.driveline.torque_converters import TorqueConverter
 
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 OF_DAMPERS = Rule(
@@ -61,6 +62,8 @@ LIMITED = {"vibratory_torque": "T_KW/S_t"}
 def coupling_ratings(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
     """Every rating that a coupling, a damper or a pendulum states."""
     for name, element in subject.line.parts:
+        if isinstance(element, TorqueConverter):
+            continue
         stated = [key for key in element.ratings if getattr(element, key) is not None]
         if len(element.ratings) > 1 and not stated:
             why = f"{name} states no {', '.join(element.ratings[:-1])} or {element.ratings[-1]}"

@@ -27,6 +27,7 @@ from trunnion.design.sensitivity.result import (
 from trunnion.design.sensitivity.tips import tip_slopes
 from trunnion.design.sensitivity.torques import exact_torque_slopes, free_line_growth, slopes, torques
 from trunnion.driveline.arguments import several, speeds_of
+from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.parameters import Parameter
@@ -99,6 +100,7 @@ def sensitivity(
     kinds = _kinds(of)
     stated = line if load_case is None else line.with_load(load_case)
     refuse_pendulums(stated, NOT_ALIKE)
+    refuse_converters(stated, "derivatives do")
     problem = _SensitivityProblem(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
         load_case=load_case, unit=unit or speed_unit(line),

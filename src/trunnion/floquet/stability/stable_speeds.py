@@ -34,7 +34,7 @@ def verdicts_at(
     which has no equations in time, so that no multipliers exist, and where the computation failed.
     ``motions``: periodic steady states that are known already; ``table`` as of ``stability_along``.
     """
-    if table is None and (every := assembly.each(speed)):
+    if every := assembly.each(speed) if table is None else assembly.each_of(table):
         parts = [
             verdicts_at(one, speed[[i]], statically_twisted=statically_twisted) for i, one in enumerate(every)
         ]  # fmt: skip

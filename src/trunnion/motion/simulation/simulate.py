@@ -335,11 +335,23 @@ def _along(
         system = prepared.system
         if len(profile.time) > 1:
             system = system.reading(prepared.numbers(row, course, drive, known))
-        pieces.append(go.on(system, state, course.since, end))
+        pieces.append(_named(prepared, system, go.on(system, state, course.since, end)))
         state = pieces[-1].final
         if pieces[-1].outcome.kind != REACHED:
             break
     return pieces
+
+
+def _named(prepared: LineSystem, system: System, piece: Simulation) -> Simulation:
+    """The piece, with what ended it where it came beyond the curves of a torque converter."""
+    if piece.outcome.kind not in ("not finite", "step too small"):
+        return piece
+    speed = prepared.moving(np.array([piece.end]), piece.final[None], system.numbers)[1][0]
+    for converter in prepared.converters:
+        if words := converter.left_curves(speed):
+            said = f"stopped at t = {piece.end:.6g} s, where {words}"
+            return replace(piece, outcome=Outcome(False, "beyond curves", said))
+    return piece
 
 
 def _made_turns(

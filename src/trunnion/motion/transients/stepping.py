@@ -195,7 +195,8 @@ class Stepper:
 
     def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[WatchedValue]) -> Outcome:
         """The outcome of a run whose integration ended at ``place``, and what of its torques is not a number there."""
-        if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
+        ended = trajectory.end in (IntegrationEnd.NOT_FINITE, IntegrationEnd.TOO_SMALL)
+        if ended and (wrong := self._no_number(place)):
             return wrong
         guards = (*(regimes.guards if (regimes := self.line.system.regimes) else ()), *(w.label for w in watched))
         return outcome_of(self.line.system, trajectory, self.tolerance, guards)
@@ -203,6 +204,11 @@ class Stepper:
     def _no_number(self, place: Place) -> Outcome | None:
         """The outcome of a run in which a formula or a function gives no number at ``place``, or just behind it."""
         self._write_course(place)
+        if self.line.converters:
+            speed = self.line.moving(np.array([place.time]), place.state[None], self.numbers)[1][0]
+            for converter in self.line.converters:
+                if words := converter.left_curves(speed):
+                    return Outcome(False, "beyond curves", f"stopped at t = {place.time:.6g} s, where {words}")
         soon = LATER * max(abs(place.time), 1 / max(self.fastest, self.usual))
         for one, cell in zip(self.torques, self.cells, strict=True):
             if not (one.stated.by_program and one.acts(cell)):

@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.arguments import quantity
+from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import known_speed, speed_unit
 from trunnion.driveline.quantities import LENGTH, SPEED, TORQUE
@@ -87,6 +88,7 @@ def kinetostatics(
             value=friction,
             remedy='write tn.CrossFriction(coefficient=0.005, pin_radius="12 mm", arm="40 mm")',
         )
+    refuse_converters(line, "a turn does")
     refuse_pendulums(
         line, "swings with the orders of the rotation, and a turn is quasi-static", "leave it out of the turn"
     )

@@ -91,7 +91,7 @@ def order_spectrum(
     InputError : a line with too long a period; a free–free line with joint angles, or an excitation's own frequency, in
     a ``table``.
     """
-    if table is None and (every := assembly.each(speed)):
+    if every := assembly.each(speed) if table is None else assembly.each_of(table):
         return stacked([
             order_spectrum(one, speed[[i]], statically_twisted=statically_twisted, linearised=linearised, rough=rough)
             for i, one in enumerate(every)
@@ -256,7 +256,9 @@ class _SpectrumProblem:
     def solved(self, rows: slice) -> OrderSpectrum:
         """The sum of all responses at some of the cases."""
         total, cut_off = self._solved(self.numbers[rows])
-        springs = (part[rows] if len(part) > 1 else part for part in (self.springs.damping, self.springs.loss))
+        damping = self.springs.damping.copy()
+        damping[:, list(self.topo.converting)] = 0.0  # a part of torques that are no damper's
+        springs = (part[rows] if len(part) > 1 else part for part in (damping, self.springs.loss))
         return total.spectrum(self.numbers[rows, 0], cut_off, *springs)
 
     def _solved(self, table: Array) -> tuple[OrderSum, Array]:
