@@ -396,8 +396,9 @@ def converted(short: bool = False, twice: bool = False, joint: bool = False, **l
     second = [Disk(inertia=0.1), converter.but(name="second")] if twice else []
     bend = [HookeJoint(angle=0.2, name="bend")] if joint else []
     end = Disk(inertia=0.2, name="load", **({"load_torque": 2.0} | load))
+    drive = Disk(inertia=0.1, drive_share=1) if "drive_share" in load else ConstantSpeed()
     return Driveline(
-        [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=0.1), *bend, converter, *second, Disk(inertia=0.1),
+        [drive, Shaft(stiffness=1e4), Disk(inertia=0.1), *bend, converter, *second, Disk(inertia=0.1),
          Shaft(stiffness=1e4), end]
     )  # fmt: skip
 
@@ -1886,16 +1887,16 @@ PYTHON = [
         "check the unit",
     ),
     (lambda: TorqueConverter(), "TorqueConverter.curves: is missing", "speed_ratio = 0"),
-    (lambda: TorqueConverter(curves=converter_points()[:2]), "TorqueConverter.curves = 2: must have three", "between"),
+    (lambda: TorqueConverter(curves=converter_points()[:2]), "TorqueConverter.curves = [{", "must have three"),
     (
         lambda: TorqueConverter(curves=converter_points()[::-1]),
-        "TorqueConverter.curves: does not rise in speed_ratio: 0.8 after 1",
-        "sort the points",
+        "TorqueConverter.curves = [{",
+        "does not rise in speed_ratio: 0.8 after 1; sort the points",
     ),
     (
         lambda: TorqueConverter(curves=[{"speed_ratio": -0.1, "torque_ratio": 2, "capacity": 1}, *converter_points()]),
-        "TorqueConverter.curves = -0.1: must not be negative",
-        "begin at 0",
+        "TorqueConverter.curves = [{",
+        "must not be negative; begin at 0",
     ),
     (lambda: TorqueConverter(curves="sheet.csv"), "TorqueConverter.curves = 'sheet.csv': names", "read_converter"),
     (
@@ -1905,20 +1906,20 @@ PYTHON = [
     ),
     (
         lambda: TorqueConverter(curves=converter_points(torque_ratio=1.5)),
-        "TorqueConverter.curves: gives more power than it takes at a speed ratio of 0.8",
-        "1.25 or less",
+        "TorqueConverter.curves = [{",
+        "gives more power than it takes at a speed ratio of 0.8: torque_ratio is 1.5; write 1.25 or less",
     ),
     (
         lambda: TorqueConverter(curves=converter_points(capacity=0)),
-        "TorqueConverter.curves: must be positive at a speed ratio of 0.8",
-        "nothing or less",
+        "TorqueConverter.curves = [{",
+        "must be positive at a speed ratio of 0.8; only at",
     ),
     (
         lambda: TorqueConverter(
             curves=[*converter_points(), {"speed_ratio": 1.2, "torque_ratio": 1, "capacity": 1e-3}]
         ),
-        "TorqueConverter.curves: is positive at a speed ratio of 1.2",
-        "negative",
+        "TorqueConverter.curves = [{",
+        "is positive at a speed ratio of 1.2; write it negative",
     ),
     (
         lambda: TorqueConverter(curves=converter_points(capacity=None, pump_torque=90)),
@@ -1927,7 +1928,7 @@ PYTHON = [
     ),
     (
         lambda: TorqueConverter(curves=converter_points(), reference_speed=200),
-        "TorqueConverter.reference_speed: conflicts with capacity",
+        "TorqueConverter.reference_speed = 200: conflicts with capacity",
         "leave it out",
     ),
     (

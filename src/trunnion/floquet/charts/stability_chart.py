@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex
+from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
@@ -308,6 +309,7 @@ def _line_task(
     numpy_only: bool,
 ) -> Task:
     assembly = assemble(line)
+    refuse_converters(assembly.line, "charts do")
     require_period(assembly.line, assembly.topology)
     across, up, clipped, base = _axes_of(assembly, x, y, speed)
     corners = _corners(assembly, across, up, base)
