@@ -392,9 +392,11 @@ ROWS: dict[str, Row] = {
     ),
     "motion": _row(refused=_ONE_DRIVE, said=_BY_PLACE, inert=_PASSIVE),
     "periodic motion": _row(
-        refused={**_ONE_DRIVE, **_NO_RATIO, **_ANYWHERE, **_NOT_SLIPPED}, said=_BY_PLACE, inert=_PASSIVE
+        refused={**_ONE_DRIVE, **_NO_RATIO, **_ANYWHERE},
+        said=_BY_PLACE,
+        inert={**_PASSIVE, "slip clutch": "it sticks, a rigid link; a motion in which it would slip is refused"},
     ),
-    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NOT_SLIPPED, **_NO_PATH}, said=_IN_ROWS, inert=_PASSIVE),
+    "passage": _row(refused={**_PASSING, **_SLOWEST, **_NO_PATH}, said=_IN_ROWS, inert=_PASSIVE),
     "transients": _row(
         refused={
             **_ONE_DRIVE,

@@ -301,6 +301,10 @@ OTHERS: dict[tuple[str, str], tuple[Change, Change]] = {
         (name, "torque converter"): (excited(converting(locked=True)), excited(converting(locked=False)))
         for name in ("optimise", "fatigue")
     },
+    **{
+        (name, "slip clutch"): (clutched(torque=1e3), clutched(torque=900.0))
+        for name in ("periodic_response", "linearity_check")
+    },
     ("campbell_diagram", "torque converter"): (
         lambda line: put("load", load_torque=0.5)(converting(locked=True)(line)),
         lambda line: put("load", load_torque=0.5)(converting(locked=False)(line)),

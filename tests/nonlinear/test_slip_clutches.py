@@ -8,6 +8,9 @@ from scipy.integrate import solve_ivp
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
+from trunnion.equations.line_system import line_system
+from trunnion.motion.held_clutches import held_torques
+from trunnion.motion.passing.run_up import _let_slip
 from trunnion.response.orders.clutch_torque import clutch_torque
 
 OMEGA = 40.0
@@ -239,8 +242,6 @@ def test_linear_analyses_take_it_as_a_rigid_link() -> None:
 def test_what_is_not_followed_is_refused_by_name() -> None:
     line = loaded(20.0, torque=51.0)
     for run in (
-        lambda: tn.periodic_response(line, 45.0),
-        lambda: tn.run_up(line, 20.0, 30.0, acceleration=5.0),
         lambda: tn.periodic_branch(line, "speed", 20.0, 30.0),
         lambda: tn.exact_motion(line, 0.1, speed=20.0),
         lambda: tn.poincare_map(line, 5, speed=20.0),
@@ -265,3 +266,53 @@ def test_the_torque_in_a_response_is_that_of_the_simulation(shaken: str) -> None
     times = np.linspace(60.0 - 2 * np.pi / 95.0, 60.0, 4001)
     torque = run.torque_at(times)[:, run.shafts.index("clutch")]
     assert told.peak(tn.order_response(line, [OMEGA]))[0] == pytest.approx(np.abs(torque).max(), rel=1e-6)
+
+
+def shaken(torque: float, clutch: object = None) -> tn.Driveline:
+    """An angled joint, excitation and loads on both sides of a clutch."""
+    between = tn.SlipClutch(name="clutch", torque=torque) if clutch is None else clutch
+    return tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), tn.Shaft(stiffness=5e3, damping=3.0, name="front"),
+            tn.Disk(inertia=0.2, name="hub", viscous_load=0.1), between,
+            tn.Disk(inertia=0.3, name="plate", viscous_load=0.05, excitation=[{"order": 2, "amplitude": 30.0}]),
+            tn.Shaft(stiffness=8e3, damping=3.0, name="rear"), tn.Disk(inertia=0.4, name="load", load_torque=20.0),
+        ]
+    )  # fmt: skip
+
+
+def test_a_periodic_motion_has_the_clutch_stick_and_says_where_it_would_not() -> None:
+    """The torque that it holds, against that of the line in which it may slip, followed from the same state."""
+    found = tn.periodic_response(shaken(500.0), 60.0)
+    rigid = tn.periodic_response(shaken(0.0, tn.Ratio(ratio=1.0)), 60.0)
+    np.testing.assert_allclose(found.torque_peak_to_peak, rigid.torque_peak_to_peak, rtol=1e-9)
+    times = np.linspace(0.0, found.period, 301)
+    held = held_torques(found.line, found.system, times, found.trajectory.at(times))[:, 0]
+    free = line_system(shaken(500.0), 60.0, leaves=True, slips=True)
+    start = _let_slip(found.line, found.start)
+    run = tn.simulate(shaken(500.0), found.period, speed=60.0, start=start, tolerance=1e-12)
+    slips = run.torque_at(times)[:, free.shafts.index("clutch")]
+    # Its torque is positive with a twist, the other where it drives what lies beyond.
+    np.testing.assert_allclose(held, -slips, atol=2e-6 * np.abs(slips).max())
+    most = float(np.abs(held).max())
+    assert tn.periodic_response(shaken(1.001 * most), 60.0).outcome.ok
+    with pytest.raises(tn.InputError, match=r"clutch\.torque: would have to hold .* beyond its capacity of .*it slips"):
+        tn.periodic_response(shaken(0.999 * most), 60.0)
+
+
+def test_a_run_up_lets_the_clutch_slip() -> None:
+    """Sticking it is a rigid link; slipping its plate is accelerated by its torque alone, which tells slip and heat."""
+    stuck, rigid = (tn.run_up(line, 40.0, 80.0, acceleration=40.0, steady=0) for line in
+                    (shaken(900.0), shaken(0.0, tn.Ratio(ratio=1.0))))  # fmt: skip
+    np.testing.assert_allclose(stuck.peak_torque[[0, 2]], rigid.peak_torque, rtol=1e-7)
+    assert stuck.simulation.slip_heat[0, 0] == 0.0
+    line = tn.Driveline(
+        [tn.ConstantSpeed(), tn.Shaft(stiffness=1e6, damping=200.0), tn.Disk(inertia=0.05),
+         tn.SlipClutch(name="clutch", torque=12.0), tn.Disk(inertia=0.5)]
+    )  # fmt: skip
+    run = tn.run_up(line, 50.0, 90.0, acceleration=40.0, ramp=0.0, steady=0)
+    lasts, gains = 1.0, 40.0 - 12.0 / 0.5  # s; rad/s², by which the plate falls behind
+    heat, angle = run.simulation.slip_heat[:, 0]
+    np.testing.assert_allclose(angle, gains * lasts**2 / 2, rtol=2e-3)
+    np.testing.assert_allclose(heat, 12.0 * angle, rtol=1e-6)
+    np.testing.assert_allclose(run.peak_torque[run.shafts.index("clutch")], 12.0, rtol=1e-9)

@@ -19,11 +19,11 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.clutches import Clutch
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.clutch_capacity import carries_static_torque, refuse_overload
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineMotion, LineSystem, line_system
 from trunnion.equations.loads import given_shares
-from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import (
     has_joint_angles,
     imbalance,
@@ -33,6 +33,7 @@ from trunnion.equations.steady_base import (
 )
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.stability import Stability, stability
+from trunnion.motion.held_clutches import held_torques, require_held
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
 from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contacts
 from trunnion.motion.simulation.simulate import simulate_system
@@ -318,11 +319,12 @@ def periodic_response(
             raise InputError("belongs to a driveline", key="speed", value=speed, remedy="leave it out")
         return periodic_orbit(line, start=start, period=period, periods=periods, tolerance=tolerance, settle=settle)
     description = line.line if isinstance(line, Assembly) else line
-    refuse_slip_clutches(description)
     prepared = line_system(line, operating_speed(description, speed), swing=True)
     refuse_dragged(prepared.assembly)
     if prepared.assembly.topology.free:
-        return _free(prepared, start, tolerance, settle)
+        response = _free(prepared, start, tolerance, settle)
+        _require_held(response)
+        return response
     require_forced(prepared)
     if carries_static_torque(prepared.assembly):
         refuse_overload(prepared.assembly, prepared.speed)
@@ -331,6 +333,7 @@ def periodic_response(
         refuse_overload(prepared.assembly, prepared.speed)
         orbit = replace(orbit, outcome=_slipping_on(prepared, periods) or orbit.outcome)
     response = PeriodicResponse.of_line(orbit, prepared, prepared.speed)
+    _require_held(response)
     if not compare or not orbit.outcome.ok:
         return response
     try:
@@ -340,6 +343,16 @@ def periodic_response(
     except (InputError, ComputationError) as error:
         return replace(response, no_comparison=f"does not apply ({error})")
     return replace(response, comparison=comparison, no_comparison="")
+
+
+def _require_held(found: PeriodicResponse) -> None:
+    """Refuse a motion in which a slip clutch does not stick."""
+    if found.outcome.ok and any(isinstance(one, SlipClutch) for one in found.line.assembly.line.elements):
+        cuts, at = found.trajectory.time_of_state, found.trajectory.at
+        require_held(
+            found.line, lambda times: held_torques(found.line, found.system, times, at(times)), cuts,
+            "the periodic motion in which it sticks",
+        )  # fmt: skip
 
 
 def _forced(

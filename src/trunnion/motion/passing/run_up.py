@@ -22,11 +22,11 @@ import numpy as np
 from trunnion.arrays import Array, Codes
 from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.loads import drive_torques, given_shares, static_torque
 from trunnion.equations.released import refuse_pendulums
-from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
 from trunnion.motion.orbits.periodic_branch import periodic_branch
@@ -280,7 +280,6 @@ def run_up(
     check(first, last, acceleration)
     if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
         raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)
-    refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
     refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     require_share(prepared.assembly)
@@ -292,6 +291,7 @@ def run_up(
     except OutOfTime as error:
         begun, extra = prepared.twisted() if prepared.assembly.topology.free else prepared.rest(), 0.0
         ended = f"{error.why}: the run does not begin on the periodic motion at the first speed"
+    begun = _let_slip(prepared, begun)
     run, ending = _run(prepared, asked, begun, extra, tolerance)
     if not run.outcome.ok and (why := time_is_up()):
         ended = f"{why}: the run is not whole"
@@ -310,7 +310,7 @@ def run_up(
     lag = np.diff(asked.profile.angle(edges)) / np.diff(edges) - speed
     middle = (edges[:-1] + edges[1:]) / 2
     own = _FreeInputSpeed(asked, middle, lag) if ending is not None else None
-    quasi_static, count = _quasi_static(prepared.assembly, asked, own), len(run.shafts)
+    quasi_static, count = _quasi_static(run.line.assembly, asked, own), len(run.shafts)
 
     def curves(times: Array) -> Array:
         torque = run.torque_at(times)
@@ -331,7 +331,7 @@ def run_up(
         lower=seen.low[:, :count],
         vibration=seen.largest[:, count:],
         lag=lag,
-        inertia_torque=np.abs(_inertia_torque(prepared.assembly)) * asked.acceleration,
+        inertia_torque=np.abs(_inertia_torque(run.line.assembly)) * asked.acceleration,
         steady=found,
         ending=ending,
         unit=run.unit,
@@ -365,6 +365,17 @@ def _begin(prepared: LineSystem) -> tuple[Array, float]:
         orbit = periodic_orbit(prepared.system, start=begun, settle=False)
         begun = orbit.start if orbit.outcome.ok else begun
     return begun, 0.0
+
+
+def _let_slip(prepared: LineSystem, state: Array) -> Array:
+    """The same state of the line in which slip clutches may slip, both sides of which turn as one."""
+    free = line_system(prepared.assembly, prepared.speed, slips=True)
+    if free.assembly is prepared.assembly:
+        return state
+    motion, speed = prepared.moving(np.zeros(1), state[None], prepared.system.numbers)
+    firsts, topo, n = free.assembly.topology.firsts, free.assembly.topology, prepared.assembly.topology.size
+    rates = speed[0, firsts] - topo.mean_speeds[firsts] * prepared.speed
+    return np.concatenate([motion.rotation[0, firsts], rates, state[2 * n :]])
 
 
 def _inertia_torque(assembly: Assembly) -> Array:
@@ -423,7 +434,8 @@ def _steady(assembly: Assembly, first: float, last: float, points: int) -> Stead
     prepared = line_system(assembly, first)
     if prepared.system.forcing_period is None or (assembly.topology.free and not is_periodic(prepared)):
         return None
-    if prepared.sliders or assembly.topology.dragged:  # no branch follows them
+    clutched = any(isinstance(one, SlipClutch) for one in assembly.line.elements)
+    if prepared.sliders or clutched or assembly.topology.dragged:  # no branch follows them
         return None
     branch = periodic_branch(
         assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10

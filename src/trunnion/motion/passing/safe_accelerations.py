@@ -18,7 +18,6 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import line_system
 from trunnion.equations.released import refuse_pendulums
-from trunnion.equations.slip_clutches import refuse_slip_clutches
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
@@ -202,10 +201,9 @@ def safe_accelerations(
     (15.6, 80.0)
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
-    refuse_slip_clutches(line.line if isinstance(line, Assembly) else line)
     refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
-    limits = _limits(limit, prepared.shafts)
+    limits = _limits(limit, line_system(line, first, slips=True).shafts)
     low, high = accelerations
     if not (0 < low < high and np.isfinite(high)):
         raise InputError("must be a rising pair", key="accelerations", value=list(accelerations))
