@@ -2424,7 +2424,7 @@ PYTHON = [
         "load case a.Shaft 1 = 2: is not a Fan, Pump, Propeller or Generator",
         "leave factors out",
     ),
-    (lambda: LoadCase(name="a", factors={"fan": 0}), "load case a.fan = 0: must be positive", "0.01"),
+    (lambda: LoadCase(name="a", factors={"fan": -1}), "load case a.fan = -1: must not be negative", "write 0"),
     (lambda: LoadCase(name="a", factors=3), "load case a.factors = 3: is not a table of factors", "fan = 1.2"),
     (lambda: Schedule(travel=[0, 1], angles={"a": [0, 1]}), "schedule.name: is missing", "axle travel"),
     (lambda: Schedule(name="x", angles={"a": [0, 1]}), "schedule x.travel: has neither travel nor speed", "or speed"),

@@ -382,3 +382,28 @@ def test_each_load_case_is_judged_where_the_line_then_runs() -> None:
     stalled = line.but(operation=tn.Operation(load_cases=[tn.LoadCase(name="jam", factors={"fan": 9.0})]))
     assert len(tn.mean_speeds(stalled.with_load("jam"))) == 1  # it creeps, and stays judged there
     assert next(one for one in tn.assess(stalled).checks if one.name == "max torque of shaft").load_case == "jam"
+
+
+@pytest.mark.parametrize(
+    "machine",
+    [
+        tn.Fan(inertia=3.0, rated_power="30 kW", rated_speed="1480 rpm", name="load"),
+        tn.Fan(inertia=3.0, curve=[{"speed": 0, "torque": 10.0}, {"speed": 400.0, "torque": 100.0}], name="load"),
+        tn.Generator(inertia=3.0, power="30 kW", name="load"),
+        tn.Propeller(inertia=3.0, quadratic_load=0.02, damping_factor=2.9, name="load"),
+    ],
+    ids=lambda one: one.kind,
+)
+def test_a_machine_with_the_factor_0_is_its_disk(machine: tn.Fan) -> None:
+    """Mean torques and vibration of the line with a disk of its inertia in its place."""
+
+    def line(one: object, cases: list[tn.LoadCase]) -> tn.Driveline:
+        engine = tn.Disk(inertia=0.3, drive_share=1, excitation=[{"order": 2, "amplitude": 80.0}])
+        shafts = tn.Shaft(stiffness=3e4, damping=4.0), tn.Shaft(stiffness=1e4, damping=2.0)
+        elements = [engine, shafts[0], one, shafts[1], tn.Disk(inertia=1.0, load_torque=5.0)]
+        return tn.Driveline(elements, operation=tn.Operation(speed=150.0, load_cases=cases))
+
+    idle = tn.order_response(line(machine, [tn.LoadCase(name="idle", factors={"load": 0})]), [150.0], load_case="idle")
+    disk = tn.order_response(line(tn.Disk(inertia=3.0, name="load"), []), [150.0])
+    np.testing.assert_allclose(idle.mean_torque, disk.mean_torque, atol=1e-10)
+    np.testing.assert_allclose(idle.vibratory_torque, disk.vibratory_torque, rtol=1e-12)

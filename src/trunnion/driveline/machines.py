@@ -37,6 +37,9 @@ if TYPE_CHECKING:
 KLOSS = ("breakdown_torque", "breakdown_slip", "synchronous_speed")
 """Numbers of Kloss's formula."""
 
+NOTHING = 1e-15
+"""Times its torque: none of a machine that idles."""
+
 
 class Machine(Rotor):
     """What machines have in common.
@@ -96,7 +99,9 @@ class Machine(Rotor):
         return table_curve(self.curve)
 
     def with_torque_times(self, factor: float) -> Self:
-        """The same with ``factor`` times its torque at every speed."""
+        """The same with ``factor`` times its torque at every speed; with 0 what is left of it is below rounding, as a
+        machine has a torque of its own kind."""
+        factor = factor or NOTHING
         changes: dict[str, Any] = {key: factor * getattr(self, key) for key in self.torque_keys if getattr(self, key)}
         if self.curve:
             changes["curve"] = [one.but(torque=factor * one.torque) for one in self.curve]

@@ -67,8 +67,8 @@ _TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'wr
 
 def _factor(value: object) -> float:
     found = parse(value, RATIO)
-    if not found > 0:
-        raise InputError("must be positive", remedy="write 0.01, say, for a machine that hardly takes any torque")
+    if not found >= 0:
+        raise InputError("must not be negative", remedy="write 0 for a machine that takes no torque")
     return found
 
 
@@ -86,7 +86,8 @@ class LoadCase(Named):
     name : what it is called.
     loads : load torque [N m] by the name of the Disk it acts on; positive resists rotation. Disks that are
         not named keep their own.
-    factors : by the name of a Fan, Pump, Propeller or Generator, what its torque is multiplied by at every speed.
+    factors : by the name of a Fan, Pump, Propeller or Generator, what its torque is multiplied by at every speed; 0 for
+        one that idles.
 
     >>> LoadCase(name="uphill", loads={"wheel": "400 N*m"}).loads["wheel"]
     400.0
