@@ -17,6 +17,7 @@ from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import imbalance, require_share
 from trunnion.errors import InputError
+from trunnion.motion.converter_ends import converter_end
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.motion.simulation.simulation import LineSimulation, Simulation, SystemSimulation
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, integrate
@@ -335,23 +336,13 @@ def _along(
         system = prepared.system
         if len(profile.time) > 1:
             system = system.reading(prepared.numbers(row, course, drive, known))
-        pieces.append(_named(prepared, system, go.on(system, state, course.since, end)))
-        state = pieces[-1].final
+        piece = go.on(system, state, course.since, end)
+        ended = converter_end(prepared, piece.end, piece.final, system.numbers, piece.outcome)
+        pieces.append(replace(piece, outcome=ended))
+        state = piece.final
         if pieces[-1].outcome.kind != REACHED:
             break
     return pieces
-
-
-def _named(prepared: LineSystem, system: System, piece: Simulation) -> Simulation:
-    """The piece, with what ended it where it came beyond the curves of a torque converter."""
-    if piece.outcome.kind not in ("not finite", "step too small"):
-        return piece
-    speed = prepared.moving(np.array([piece.end]), piece.final[None], system.numbers)[1][0]
-    for converter in prepared.converters:
-        if words := converter.left_curves(speed):
-            said = f"stopped at t = {piece.end:.6g} s, where {words}"
-            return replace(piece, outcome=Outcome(False, "beyond curves", said))
-    return piece
 
 
 def _made_turns(

@@ -27,6 +27,7 @@ from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, Tor
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, released_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
+from trunnion.motion.converter_ends import converter_end
 from trunnion.motion.transients.lagging import held_lags, with_lags
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.motion.transients.together import Bonds, bonds_of
@@ -195,20 +196,15 @@ class Stepper:
 
     def _failed(self, place: Place, trajectory: Trajectory, watched: Sequence[WatchedValue]) -> Outcome:
         """The outcome of a run whose integration ended at ``place``, and what of its torques is not a number there."""
-        ended = trajectory.end in (IntegrationEnd.NOT_FINITE, IntegrationEnd.TOO_SMALL)
-        if ended and (wrong := self._no_number(place)):
+        if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
             return wrong
         guards = (*(regimes.guards if (regimes := self.line.system.regimes) else ()), *(w.label for w in watched))
-        return outcome_of(self.line.system, trajectory, self.tolerance, guards)
+        outcome = outcome_of(self.line.system, trajectory, self.tolerance, guards)
+        return converter_end(self.line, place.time, place.state, self.numbers, outcome)
 
     def _no_number(self, place: Place) -> Outcome | None:
         """The outcome of a run in which a formula or a function gives no number at ``place``, or just behind it."""
         self._write_course(place)
-        if self.line.converters:
-            speed = self.line.moving(np.array([place.time]), place.state[None], self.numbers)[1][0]
-            for converter in self.line.converters:
-                if words := converter.left_curves(speed):
-                    return Outcome(False, "beyond curves", f"stopped at t = {place.time:.6g} s, where {words}")
         soon = LATER * max(abs(place.time), 1 / max(self.fastest, self.usual))
         for one, cell in zip(self.torques, self.cells, strict=True):
             if not (one.stated.by_program and one.acts(cell)):
