@@ -199,8 +199,8 @@ class Stepper:
         if trajectory.end is IntegrationEnd.NOT_FINITE and (wrong := self._no_number(place)):
             return wrong
         guards = (*(regimes.guards if (regimes := self.line.system.regimes) else ()), *(w.label for w in watched))
-        outcome = outcome_of(self.line.system, trajectory, self.tolerance, guards)
-        return converter_end(self.line, place.time, place.state, self.numbers, outcome)
+        found = outcome_of(self.line.system, trajectory, self.tolerance, guards)
+        return converter_end(self.line, place.time, place.state, self.numbers, found)
 
     def _no_number(self, place: Place) -> Outcome | None:
         """The outcome of a run in which a formula or a function gives no number at ``place``, or just behind it."""
