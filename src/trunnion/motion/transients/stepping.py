@@ -117,8 +117,6 @@ class Stepper:
         self.called = [one.called for one in self.torques if one.called is not None]
         self.groups = {one.first: [f for f in self.frictions if f.first == one.first] for one in self.frictions}
 
-    # What acts.
-
     def run(self, place: Place, duration: float, progress: Callable[[float], None] | None = None) -> Found:
         """From ``place`` on for ``duration`` [s]; ``progress`` is told the share of it that is done."""
         begin, end = place.time, place.time + duration
