@@ -9,8 +9,8 @@ from scipy.integrate import solve_ivp
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.line_system import line_system
-from trunnion.motion.held_clutches import held_torques
 from trunnion.motion.passing.run_up import _let_slip
+from trunnion.motion.simulation.held_clutches import held_torques
 from trunnion.response.orders.clutch_torque import clutch_torque
 
 OMEGA = 40.0

@@ -33,9 +33,9 @@ from trunnion.equations.steady_base import (
 )
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.stability.stability import Stability, stability
-from trunnion.motion.held_clutches import held_torques, require_held
 from trunnion.motion.orbits.clutches import StuckClutch, Watched, continuum, slipping_on
 from trunnion.motion.orbits.spring_contacts import SpringContact, spring_contacts
+from trunnion.motion.simulation.held_clutches import held_torques, require_held
 from trunnion.motion.simulation.simulate import simulate_system
 from trunnion.motion.simulation.simulation import OfShafts
 from trunnion.numerics.curves import Extremes, extremes, fourier

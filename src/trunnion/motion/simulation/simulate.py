@@ -17,7 +17,7 @@ from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
 from trunnion.equations.steady_base import imbalance, require_share
 from trunnion.errors import InputError
-from trunnion.motion.converter_ends import converter_end
+from trunnion.motion.simulation.converter_ends import converter_end
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.motion.simulation.simulation import LineSimulation, Simulation, SystemSimulation
 from trunnion.numerics.integration.integration import MOST_STEPS, TOLERANCE, integrate

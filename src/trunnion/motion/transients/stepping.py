@@ -27,7 +27,7 @@ from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, Tor
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, released_kernel, watch_kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
-from trunnion.motion.converter_ends import converter_end
+from trunnion.motion.simulation.converter_ends import converter_end
 from trunnion.motion.transients.lagging import held_lags, with_lags
 from trunnion.motion.transients.place import LOCATED, Found, Piece, Place
 from trunnion.motion.transients.together import Bonds, bonds_of
