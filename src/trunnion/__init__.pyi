@@ -89,6 +89,7 @@ from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack
 from trunnion.driveline.pressure import read_pressure as read_pressure
+from trunnion.driveline.torque_converters import read_converter as read_converter
 from trunnion.equations.exact_oscillator import exact_oscillator as exact_oscillator
 from trunnion.equations.speed_profile import SpeedProfile as SpeedProfile
 from trunnion.errors import ComputationError as ComputationError

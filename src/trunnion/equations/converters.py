@@ -86,8 +86,8 @@ def placed_converters(line: Driveline, topo: Topology) -> tuple[PlacedConverter,
     return tuple(found)
 
 
-def require_even(line: Driveline, topo: Topology, uneven: list[int]) -> None:
-    """Refuse ``uneven`` joints rigidly beside a converter, whose slopes would vary with them.
+def require_even(line: Driveline, topo: Topology, angled: list[int]) -> None:
+    """Refuse ``angled`` joints rigidly beside a converter, whose slopes would vary with them.
 
     Raises
     ------
@@ -96,9 +96,9 @@ def require_even(line: Driveline, topo: Topology, uneven: list[int]) -> None:
     for one in placed_converters(line, topo):
         for station in (one.pump, one.turbine):
             at = station
-            while at != topo.reference[topo.group_of(at)] and at not in uneven:
+            while at != topo.reference[topo.group_of(at)] and at not in angled:
                 at = topo.stations[at].before
-            if at in uneven:
+            if at in angled:
                 raise InputError(
                     f"turns unevenly with {line.names[topo.stations[at].element]} at its side, and its torques with it",
                     element=one.name, key="curves", remedy="put a Shaft between joint and converter",
