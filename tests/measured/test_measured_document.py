@@ -18,7 +18,12 @@ from trunnion.measured.signals.channel_file import description_of
 def test_the_description_of_the_page() -> None:
     (text,) = pages.blocks("measured", "toml")
     found = description_of(tomllib.loads(text), "page")
-    assert abs(found.rate - 200e3) < 1e-6 and [one.label for one in found.columns] == ["input", "hub", "gauge"]
+    assert abs(found.rate - 200e3) < 1e-6 and [one.label for one in found.columns] == [
+        "input",
+        "hub",
+        "gauge",
+        "sensor",
+    ]
     assert found.columns[2].unit_size == 1000.0 and found.columns[1].pitch_error == 0.01
 
 

@@ -73,6 +73,6 @@ def test_a_wrong_recipe_would_be_seen() -> None:
         arguments_of({"args": ["dask", "worker", "--nproc", "16"]})
 
 
-def test_the_study_of_the_page() -> None:
-    (text,) = blocks("toml")
-    assert as_description(tomllib.loads(text)) is not None
+def test_the_studies_of_the_page() -> None:
+    for text in blocks("toml"):
+        assert as_description(tomllib.loads(text)) is not None

@@ -17,6 +17,7 @@ from trunnion.exchange.held import schedules_refused
 
 NOT_IN_C = {
     "slip clutch": "leave it out, for the line while it sticks",
+    "torque converter": "write locked = true, for the line with its clutch shut",
     "centrifugal pendulum": "describe it by a TunedDamper at the speed that matters",
     "dry friction": "leave its sliders out",
     "dry friction at one motion": "leave its sliders out",
