@@ -52,7 +52,7 @@ COLUMNS = TableKind(
 )
 POINTS = (
     "curves = [{ speed_ratio = 0, torque_ratio = 2.1, capacity = 0.0042 }, "
-    "{ speed_ratio = 1, torque_ratio = 1, capacity = 0 }]"
+    "{ speed_ratio = 0.85, torque_ratio = 1, capacity = 0.003 }, { speed_ratio = 1, torque_ratio = 1, capacity = 0 }]"
 )
 FINEST = 1_000_000
 """Largest denominator of the ratio of speeds that equations have."""
@@ -101,7 +101,7 @@ def _points(value: object) -> tuple[ConverterPoint, ...]:
         raise InputError("names a file that is not known here", value=value, remedy=remedy)
     made = _READ(value)
     if len(made) < 3:
-        raise InputError("must have three points at least", value=len(made), remedy=f"write {POINTS}, and some between")
+        raise InputError("must have three points at least", value=len(made), remedy=f"write {POINTS}")
     for before, after in pairwise(made):
         if not after.speed_ratio > before.speed_ratio:
             ratios = f"{after.speed_ratio:g} after {before.speed_ratio:g}"
