@@ -148,8 +148,9 @@ def test_after_a_refused_edit_until_it_is_taken_back(monkeypatch: pytest.MonkeyP
             await settled(made)  # computed again, but not of what stands in the table
         made.show_view("driveline")
         await settled(made)
-        sketch = made.view_of("driveline").of(NOW)
-        assert sketch.stamp.object and faintly(sketch.sketch) and faintly(sketch.modes)
+        view = made.view_of("driveline")
+        side = view.of(NOW)
+        assert side.stamp.object and faintly(view.picture) and faintly(side.modes)
         made.edit(lambda document: document.undo())
         await settled(made)
         made.show_view("verdict")

@@ -31,7 +31,7 @@ REFUSED = [
     (lambda: tn.compare(LINE, LINE, (1.0, 2.0), load_case="hill"), "load_case = 'hill'", ""),
     (lambda: tn.compare(LINE, LINE).plot(), "comparison: has nothing to draw", "change a value"),
     (lambda: tn.compare(LINE, BENT).plot(), "comparison: has nothing to draw", "name speeds"),
-    (lambda: tn.optimise(LINE, {}, "irregularity"), "free: must name one parameter or more", "fork_offset"),
+    (lambda: tn.optimise(LINE, {}, "irregularity"), "free: must name one parameter or more", "Shaft 1.stiffness"),
     (lambda: tn.optimise(LINE, {"speed": (1, 2)}, "irregularity"), "speed: is not a parameter", "give speeds"),
     (lambda: tn.optimise(LINE, {"Shaft 9.damping": (0, 1)}, "irregularity"), "is not a parameter", "did you mean"),
     (lambda: tn.optimise(LINE, {ANGLE: 0.3}, "irregularity"), "= 0.3: must be a low and a high bound", "free="),

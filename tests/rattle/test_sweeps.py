@@ -86,7 +86,7 @@ def test_dataset() -> None:
     [
         ([], {}, "must be positive numbers"),
         ([0.0, 1.0], {}, "must be positive numbers"),
-        ([1.0], {"least": 9, "most": 3}, "must be from 1"),
+        ([1.0], {"least": 9, "most": 3}, "must be 1 or more, and not less than least"),
     ],
 )
 def test_refusals(frequencies: Any, options: Any, words: str) -> None:
