@@ -229,3 +229,15 @@ def test_what_is_left_open_is_refused(call, words: str) -> None:  # type: ignore
     with pytest.raises(tn.InputError, match=words) as refusal:
         call()
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize(("angle", "told"), [(1e-4, False), (0.3, True)])
+def test_no_rounding_noise_is_told_as_a_torque(angle: float, told: bool) -> None:
+    """What the drives give beyond the balance grows with the square of the angle: next to none is not told."""
+    line = tn.Driveline([
+        tn.Disk(inertia=1.3, drive_share=1.0), tn.HookeJoint(angle=angle), tn.Shaft(stiffness=9e3, damping=3.0),
+        tn.Disk(inertia=0.7, load_torque=30.0, viscous_load=0.1),
+    ])  # fmt: skip
+    text = str(tn.stability(line, 60.0))
+    assert "judged about the line's own periodic motion" in text
+    assert ("beyond the balance" in text) is told

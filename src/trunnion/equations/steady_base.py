@@ -202,6 +202,11 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
     return f"{loads} and nothing drives" if not drive else f"{loads}, {drives}"
 
 
+def carried_at_input(assembly: Assembly, row: Array) -> float:
+    """Sum of the mean torques of all disks and machines taken to the input [N m], whatever their sign, at one row."""
+    return float(np.abs(_at_input(assembly, row[None])).sum())
+
+
 def _at_input(assembly: Assembly, table: Array) -> Array:
     """Mean torques of disks and machines taken to the input (cases, rotor) [N m]; behind them what converters lose."""
     topo = assembly.topology

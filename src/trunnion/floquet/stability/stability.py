@@ -22,7 +22,12 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
-from trunnion.equations.steady_base import has_periodic_base, require_no_steady_state, require_own_motion
+from trunnion.equations.steady_base import (
+    carried_at_input,
+    has_periodic_base,
+    require_no_steady_state,
+    require_own_motion,
+)
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
@@ -56,6 +61,8 @@ NEAR = 0.1
 OWN = 0.1
 """Tolerance of the motion that a free line is judged about, over that of its multipliers."""
 EXTRA = "what the drives of a free–free line with joint angles give beyond the balance of the loads; None elsewhere"
+NO_EXTRA = 1e-6
+"""Share of the torques that a line carries below which what its drives give beyond their balance is not told."""
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -91,6 +98,7 @@ class Stability(Result):
     left_out: tuple[Finding, ...] = internal("what the line has and this does not count", default=())
     unit: str = internal("of speeds in print", default="rad/s")
     extra_torque: float | None = internal(EXTRA, "N m at the input", default=None)
+    carried: float = internal("mean torques of all disks together, at the input", "N m", default=0.0)
     about_steady_state: bool = attribute("whether about the line's own periodic motion", default=False)
     dragged: int = internal("how many of those set aside belong to dampers without a spring", default=0)
     speed_sentence: str = internal(
@@ -181,11 +189,10 @@ class Stability(Result):
             many = self.set_aside - self.dragged
             yield f"  {SET_ASIDE.get(many, f'the {many} multipliers at 1 of rigid rotations are set aside')}"
         if self.about_steady_state:
-            extra = self.extra_torque
-            given = (
-                "" if extra is None else f", for which the drives give {extra:.4g} N m beyond the balance of the loads"
-            )
-            yield f"  judged about the line's own periodic motion{given}"
+            extra, beyond = self.extra_torque, ""
+            if extra is not None and abs(extra) > NO_EXTRA * self.carried:
+                beyond = f", for which the drives give {extra:.4g} N m beyond the balance of the loads"
+            yield f"  judged about the line's own periodic motion{beyond}"
         if self.speed_sentence:
             yield f"  {self.speed_sentence}"
         if self.response is not None:
@@ -324,6 +331,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
         set_aside=int(topo.free),
         about_steady_state=True,
         extra_torque=orbit.values[-1] if topo.free else None,
+        carried=carried_at_input(assembly, assembly.table(1, speed)[0]),
         speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
     )
 
