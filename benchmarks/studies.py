@@ -4,6 +4,7 @@
     python benchmarks/studies.py workers [tasks] [seconds]
     python benchmarks/studies.py batch [points]
     python benchmarks/studies.py memory [points] [points]
+    python benchmarks/studies.py client [points] [points]
 
 Times are processor time unless they are called elapsed: other work on the machine does not change them.
 """
@@ -20,7 +21,7 @@ from typing import Any
 
 import trunnion as tn
 from trunnion.studies.points import DONE, StudyQuestion
-from trunnion.studies.runner import workers_here
+from trunnion.studies.runner import StudyProgress, workers_here
 
 EVERY = 0.05
 """Seconds between two looks at what processes hold."""
@@ -60,7 +61,11 @@ def overhead(tasks: int = 60, seconds: int = 1) -> None:
 
 
 def _sleepers(store: Path, tasks: int) -> dict[str, Any]:
-    return asked(store, ["growth_rate", "liouville_defect"], tasks * 16, block=16)
+    """As many blocks of 16 points, each a task: 59 or 61 in place of 60 would tell a wrong share."""
+    study = asked(store, ["growth_rate", "liouville_defect"], tasks * 16, block=16)
+    for axis, points in zip(study["parameter"], (tasks, 16), strict=True):
+        axis["points"] = points
+    return study
 
 
 def _sleeping(seconds: float) -> None:
@@ -106,6 +111,15 @@ def batch(points: int = 1_000_000) -> None:
 
 def memory(*sizes: int) -> None:
     """The largest that this process holds while points are computed, above what it holds before; each study new."""
+    _filled(sizes, workers=0)
+
+
+def client(*sizes: int) -> None:
+    """The same of the client, with the scheduler beside it, while two workers compute; and of the workers together."""
+    _filled(sizes, workers=2)
+
+
+def _filled(sizes: tuple[int, ...], workers: int) -> None:
     from trunnion.studies.store import Store
     from trunnion.studies.study import _plan, completed
 
@@ -113,22 +127,28 @@ def memory(*sizes: int) -> None:
         with tempfile.TemporaryDirectory() as folder:
             plan = _plan(asked(Path(folder) / "a.zarr", ["growth_rate", "verdict"], points), line(), False)
             store = Store.create(plan.store, plan.question, plan.design, plan.block, plan.source)
-            held, stop = [_held()], threading.Event()
+            held, theirs, stop = [_held()], [0], threading.Event()
 
             def watch(seen: list[int] = held, end: threading.Event = stop) -> None:
                 while not end.is_set():
                     seen.append(_held())
                     sleep(EVERY)
 
+            def report(state: StudyProgress, most: list[int] = theirs) -> None:
+                most[0] = max(most[0], state.bytes)
+
             watcher = threading.Thread(target=watch)
             watcher.start()
-            begun = process_time()
-            completed(store, 0, None, None, None, False, None)
+            begun, elapsed = process_time(), perf_counter()
+            completed(store, workers, None, None, None, False, report)
+            used, elapsed = process_time() - begun, perf_counter() - elapsed
             stop.set()
             watcher.join()
         most, above = max(held) / 1e6, (max(held) - held[0]) / 1e6
-        used = process_time() - begun
-        print(f"{points} points: at most {most:.0f} MB held, {above:.0f} MB above the start; {used:.0f} s", flush=True)
+        print(f"{points} points: at most {most:.0f} MB held, {above:.0f} MB above the start; {used:.0f} s of processor "
+              f"time here, {elapsed:.0f} s elapsed")  # fmt: skip
+        if workers:
+            print(f"  {workers} workers together: at most {theirs[0] / 1e6:.0f} MB", flush=True)
 
 
 def _held() -> int:
@@ -139,4 +159,5 @@ def _held() -> int:
 
 if __name__ == "__main__":
     what, *numbers = sys.argv[1:]
-    {"overhead": overhead, "workers": workers, "batch": batch, "memory": memory}[what](*map(int, numbers))
+    named = {"overhead": overhead, "workers": workers, "batch": batch, "memory": memory, "client": client}
+    named[what](*map(int, numbers))
