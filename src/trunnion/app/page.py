@@ -97,6 +97,8 @@ select.bk-input { appearance: none; padding-right: 24px; background-repeat: no-r
     linear-gradient(135deg, var(--ink) 50%, transparent 50%) !important;
   background-position: calc(100% - 14px) 55%, calc(100% - 9px) 55% !important; background-size: 5px 5px !important; }
 .bk-input { border-color: var(--edge) !important; }
+.bk-btn.bk-btn-primary { color: var(--on-accent) !important; }
+select { text-overflow: ellipsis; }
 .bk-input::placeholder { color: var(--faint); opacity: 1; }
 .noUi-target { background: var(--button); border: 1px solid var(--edge); } .noUi-connect { background: var(--edge); }
 .noUi-handle { background: var(--ground); border: 1px solid var(--edge); box-shadow: none; }
@@ -118,7 +120,7 @@ pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 13px; }
 h2, p, li, td, th { overflow-wrap: anywhere; }
 .verdict { font-size: 17px; font-weight: 600; border-left: 8px solid var(--undecided); padding: 4px 10px; }
 .verdict { margin: 4px 0; overflow-wrap: anywhere; } .figure { font-size: 15px; font-weight: 600; margin: 4px 0; }
-.sketch img { max-height: 104px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
+.sketch img { max-height: 150px; width: auto !important; max-width: 100% !important; display: block; margin: 0 auto; }
 .verdict.satisfied { border-color: var(--satisfied); } .verdict.exceeded { border-color: var(--exceeded); }
 a { color: var(--accent); }
 .bk-spin-btn { display: none !important; }

@@ -22,6 +22,7 @@ COLOURS: Mapping[str, tuple[str, str]] = {
     "field": ("#ffffff", "#10151a"),
     "button": ("#eef1f4", "#2a333d"),
     "accent": ("#00558a", "#7cc0f0"),
+    "on-accent": ("#ffffff", "#12202c"),
     "focus": ("#0072b2", "#f0b400"),
     "chosen": ("#12324a", "#cfe6f7"),
     "on-chosen": ("#ffffff", "#12202c"),
@@ -42,7 +43,8 @@ TEXTS = (
     ("ink", "ground"), ("ink", "raised"), ("ink", "side"), ("ink", "field"), ("ink", "button"), ("ink", "note"),
     ("faint", "ground"), ("faint", "raised"), ("faint", "side"), ("faint", "field"),
     ("accent", "ground"), ("accent", "raised"), ("accent", "side"),
-    ("on-chosen", "chosen"), ("on-bar", "bar"), ("bad", "ground"), ("bad", "bad-ground"), ("bad", "raised"),
+    ("on-chosen", "chosen"), ("on-accent", "accent"), ("on-bar", "bar"),
+    ("bad", "ground"), ("bad", "bad-ground"), ("bad", "raised"),
 )  # fmt: skip
 """Colours of letters, and what they stand on."""
 EDGES = (
@@ -62,7 +64,7 @@ _PANEL = {
     "--design-surface-color": "button",
     "--design-surface-text-color": "ink",
     "--design-primary-color": "accent",
-    "--design-primary-text-color": "on-chosen",
+    "--design-primary-text-color": "on-accent",
 }
 """Names that Panel's own controls have for these."""
 

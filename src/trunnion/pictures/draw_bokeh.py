@@ -54,8 +54,8 @@ KEYS = 32
 """Rows for entries of the legend at first."""
 PLACE, KEY = 62.0, 6.0
 """Letters of a row of the legend in the narrowest page, and the room of the line before a name."""
-WIDE, NARROW = 52, 34
-"""Letters of a title in one line over the narrowest picture, and over one that has half of the page."""
+WIDE, NARROW = 40, 34
+"""Letters of a title, or of a name in the legend, in one line of the narrowest page, and of one that has half of it."""
 SHARE, LETTER = 0.66, 7.5
 """Share of a picture's height beside which the words of its axis stand, and the pixels of a letter of them."""
 FINE = 400
@@ -247,10 +247,11 @@ class Drawn:
         """Every name once."""
         entries = [] if not panel.key else self.entries
         now = [(item.label["value"], item.index) for item in self.legend.items]
-        if now != [(name, k) for k, (_, name, _) in enumerate(entries)]:
+        names = ["\n".join(wrap(name, WIDE)) for _, name, _ in entries]
+        if now != [(name, k) for k, name in enumerate(names)]:
             self.legend.items = [
                 LegendItem(label={"value": name}, index=k, renderers=[self.key_glyphs[part] for part in _parts(kind)])
-                for k, (_, name, kind) in enumerate(entries)
+                for k, (name, (*_, kind)) in enumerate(zip(names, entries, strict=True))
             ]
         _update(self.legend, title=panel.key_title or None)
         self._fit()
@@ -259,12 +260,13 @@ class Drawn:
         """Rows of the legend below the picture, which keeps its height and holds every name; lines of the title."""
         names = [item.label["value"] for item in self.legend.items]
         across = 1 if self.is_narrow else min(columns(names, PLACE - self.aside, KEY), IN_A_ROW)
-        rows = -(-len(names) // across) + bool(self.legend.title)
+        high = [max(name.count("\n") for name in names[k : k + across]) for k in range(0, len(names), across)]
+        rows = len(high) + bool(self.legend.title)
         letters = NARROW if self.is_narrow else WIDE
         lines = [line for part in self.words.split("\n") for line in wrap(part, letters)]
         _update(self.legend, ncols=across, visible=bool(names))
         _update(self.figure, toolbar_location="right" if self.height > LOW else None)
-        _update(self.figure, height=self.height + ROW * max(rows - 1, 0) + 16 * max(len(lines) - 1, 0))
+        _update(self.figure, height=self.height + ROW * max(rows - 1, 0) + 16 * (sum(high) + max(len(lines) - 1, 0)))
         _update(self.figure.title, text="\n".join(lines))
         if isinstance(self.figure.xaxis[0].ticker, BasicTicker):
             _update(self.figure.xaxis[0].ticker, desired_num_ticks=3 if self.is_narrow else 6)

@@ -199,7 +199,7 @@ export function render({ model }) {
 """
 
 _STYLE = """
-:host { display: block; width: 100%; }
+:host { width: 100%; }
 .group { display: flex; border-top: 1px solid var(--line); padding: 4px 0; gap: 8px; }
 .head { flex: 0 0 210px; display: flex; align-items: center; gap: 6px; font-weight: 600; align-self: flex-start; }
 .head[draggable] { cursor: grab; }
@@ -215,6 +215,7 @@ input, select, button { font: inherit; padding: 2px 4px; border: 1px solid var(-
 input:focus-visible, select:focus-visible, button:focus-visible { outline: 3px solid var(--focus);
   outline-offset: 1px; }
 input[aria-invalid="true"] { border: 2px solid var(--bad); background: var(--bad-ground); }
+input::placeholder { color: var(--faint); opacity: 1; }
 input[type="number"] { width: 5em; }
 button { cursor: pointer; background: var(--button); min-width: 24px; min-height: 24px; }
 .tools { white-space: nowrap; }

@@ -11,7 +11,7 @@ import panel as pn
 from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.jobs import Job
-from trunnion.app.parts.widgets import Html, HtmlPane, column, items, joined, markup, pane, picture, small, wrapped
+from trunnion.app.parts.widgets import Html, HtmlPane, column, items, joined, markup, pane, picture, small
 from trunnion.app.views.base import VariantPane, View, ViewStep, at_speed, speed_range, unit_of
 from trunnion.driveline.driveline import Driveline
 from trunnion.pictures.picture import Picture
@@ -22,6 +22,15 @@ LOW = 2.0
 REST = 0.4
 """Seconds without a further change before the line is judged: sliders under way do not wait for that."""
 MOST_CHECKS, MOST_SPEEDS = 4, 6
+GRID = """
+:host { display: grid !important; grid-template-columns: repeat(12, minmax(0, 1fr)); gap: 8px; }
+.tile { grid-column: span 12; align-self: stretch !important; width: auto !important; height: auto !important; }
+@media (min-width: 700px) { .of-stability { grid-column: span 7; } .of-speeds { grid-column: span 5; } }
+@media (min-width: 1200px) {
+  .of-verdict { grid-column: span 5; } .of-stability { grid-column: span 4; } .of-speeds { grid-column: span 3; }
+  .of-orders, .of-campbell { grid-column: span 6; }
+}
+"""
 TILE = """
 :host { border: 1px solid var(--line); border-radius: 6px; padding: 0 8px 4px; background: var(--raised);
   overflow: hidden; }
@@ -52,12 +61,9 @@ class _DashboardPane(VariantPane["DashboardView"]):
             "campbell": ("Campbell diagram", [self.campbell.panel]),
         }
         opened = {"speeds": "orders", "campbell": "orders"}
-        line = self._tile("The line", "live", [self.sketch])
-        made = [self._tile(title, opened.get(key, key), inside) for key, (title, inside) in tiles.items()]
-        for tile, wide in zip(made, (300, 300, 240, 400, 400), strict=True):
-            tile.styles = {"flex": f"1 1 {wide}px", "min-width": "0"}
-        rest = wrapped(*made, styles={"gap": "8px", "align-items": "stretch", "margin-top": "8px"})
-        self.panel = column(line, rest)
+        line = self._tile("The line", "live", [self.sketch], "line")
+        made = [self._tile(title, opened.get(key, key), inside, key) for key, (title, inside) in tiles.items()]
+        self.panel = column(line, *made, stylesheets=[GRID])
         self.parts = {
             ("sketch",): [self.sketch],
             ("assessment",): [self.verdict],
@@ -67,10 +73,10 @@ class _DashboardPane(VariantPane["DashboardView"]):
             ("crossings",): [self.campbell.panel, self.crossings],
         }
 
-    def _tile(self, title: str, view: str, inside: Sequence[Any]) -> Any:
+    def _tile(self, title: str, view: str, inside: Sequence[Any], place: str) -> Any:
         button = pn.widgets.Button(label=f"{title} ›", button_type="default", stylesheets=[TITLE], margin=0)
         button.on_click(lambda event: self.view.session.show_view(view))
-        return column(button, *inside, stylesheets=[TILE])
+        return column(button, *inside, stylesheets=[TILE], css_classes=["tile", f"of-{place}"])
 
     def expect(self, wanted: Sequence[tuple[ViewStep, Job]], doubt: str) -> None:
         """Where the verdict is of another line, say so at once: it is not yet checked."""

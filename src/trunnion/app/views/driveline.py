@@ -71,7 +71,11 @@ class DrivelineView(View):
         self.beside = Editor(self._edited, alone=True, visible=False, styles={"flex": "1 1 260px", "min-width": "0"})
         self.touched = wrapped(self.picture, self.beside, styles={"gap": "12px"})
         self.begin = pn.widgets.Select(
-            label="Begin with", options=_beginnings(), sizing_mode="stretch_width", max_width=400, min_width=200
+            label="Begin with",
+            options=_beginnings(),
+            sizing_mode="stretch_width",
+            min_width=200,
+            styles={"max-width": "min(400px, calc(100% - 20px))"},
         )
         load = pn.widgets.Button(label="Begin", width=70, align="end")
         load.on_click(lambda event: self.session.edit(self._begin))
