@@ -451,6 +451,7 @@ VIEWS: Mapping[str, str] = {
     "dashboard": "trunnion.app.views.dashboard:DashboardView",
     "driveline": "trunnion.app.views.driveline:DrivelineView",
     "live": "trunnion.app.views.live:LiveView",
+    "parts": "trunnion.app.views.parts:PartsView",
     "verdict": "trunnion.app.views.verdict:VerdictView",
     "orders": "trunnion.app.views.orders:OrdersView",
     "stability": "trunnion.app.views.stability:StabilityView",

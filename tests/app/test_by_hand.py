@@ -18,6 +18,7 @@ from trunnion.driveline.starter import starter
 
 QUICK = {
     "driveline": "",
+    "parts": "",
     "verdict": "",
     "stability": "stability.across=8&stability.up=6&stability.at_x=707.0&stability.at_y=19.5&stability.look=True",
     "limits": "limits.what=errors+of+assembly&limits.error=2.0",

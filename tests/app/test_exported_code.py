@@ -35,6 +35,7 @@ SETTINGS = [
     ("live", {"what": "response"}),
     ("live", {"what": "disturbance"}),
     pytest.param("live", {"what": "run-up", "rate": "400"}, marks=pytest.mark.slow),
+    ("parts", {}),
     ("verdict", {}),
     ("orders", {"speed": "1234.5", "spring": "Shaft 2"}),
     ("stability", {"across": "8", "up": "6", "at_x": "707", "at_y": "19.5", "look": "True"}),

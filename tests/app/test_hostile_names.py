@@ -211,6 +211,7 @@ VIEWS = (
     ("Driveline", "img[alt^='sketch']"),
     ("Dashboard", "[data-value=growth]"),
     ("Live", "canvas.view"),
+    ("Parts", "table.checks"),
     ("Verdict", "[data-verdict]"),
     ("Orders", ".bk-Canvas"),
     ("Joints", "img[alt^='joints and forks']"),

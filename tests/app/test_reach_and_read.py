@@ -12,7 +12,7 @@ from trunnion.pictures import looks
 
 LEAST_CONTRAST = 4.5
 """Of text, by WCAG 2.2, 1.4.3."""
-LABORIOUS = ("driveline", "live", "verdict", "joints", "orders", "stability", "limits", "motion")
+LABORIOUS = ("driveline", "live", "parts", "verdict", "joints", "orders", "stability", "limits", "motion")
 VIEWS = [
     "dashboard",
     *(pytest.param(view, marks=pytest.mark.slow) for view in LABORIOUS),

@@ -182,7 +182,7 @@ def test_a_figure_takes_other_panels_of_its_kind_and_leaves_what_is_alike() -> N
     np.testing.assert_array_equal(made.sources["lines"].data["ys"][0], X)
     assert [item.label["value"] for item in made.legend.items] == ["other"]
     logarithmic = panel(x=Axis(scale="log"))
-    assert Drawn.kind_of(logarithmic) != Drawn.kind_of(panel()) == made.kind
+    assert Drawn.kind_of(logarithmic, 320) != Drawn.kind_of(panel(), 320) == made.kind
 
 
 def test_rows_of_legends_and_texts_never_become_fewer() -> None:
@@ -202,10 +202,11 @@ def test_rows_of_legends_and_texts_never_become_fewer() -> None:
 
 
 def test_a_low_picture_has_no_buttons() -> None:
-    made = Drawn(panel(Line(X, Y, "line")), 150)
-    assert made.figure.toolbar_location is None
-    made.show(panel(Line(X, Y, "line")), 320)
-    assert made.figure.toolbar_location == "right"
+    """And one that becomes higher is another figure: a page cannot put buttons beside one that had none."""
+    low, high = (Drawn(panel(Line(X, Y, "line")), height) for height in (150, 320))
+    assert (low.figure.toolbar_location, high.figure.toolbar_location) == (None, "right")
+    assert low.kind != high.kind
+    assert Drawn.kind_of(panel(), 300) == high.kind
 
 
 def test_a_zoom_stays_while_the_ends_are_the_same() -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from trunnion.driveline.quantities import shown
 from trunnion.errors import ComputationError
 from trunnion.pictures import design, kinetostatics, orders
 from trunnion.pictures.frequency_response import method_curve
@@ -21,6 +22,7 @@ from trunnion.pictures.picture import Item, Key, Picture, Points
 from trunnion.pictures.shared import stands
 from trunnion.pictures.stability_chart import stability_chart
 from trunnion.pictures.tongues import edges_of
+from trunnion.reporting import tables
 from trunnion.results.drawing import described
 from trunnion.results.speeds import speed_factor
 from trunnion.results.words import Words
@@ -109,6 +111,54 @@ def assessment(result: Any) -> Plain:
         "switched_off": [str(one) for one in result.switched_off],
         "findings": [str(f) for f in result.findings],
     }
+
+
+def parts(result: Any) -> Plain:
+    """What every part of a line is made of, and of those with a maker's sheet what it prints, what was typed of it and
+    what the line has."""
+    named = result.as_stated.parts
+    return {"rows": list(tables.elements(result).rows), "sheets": [_sheet(*one) for one in named if one[1].sheet]}
+
+
+def _sheet(name: str, element: Any) -> Plain:
+    """The sheet of a part; numbers as they were typed beside those of the line, which is said where they differ."""
+    sheet, departures = element.sheet, element.departures
+    stated = element.stated
+    made = [
+        (key.replace("_", " "), _typed(typed), _now(element, key, stated), "differs" if key in departures else "")
+        for key, typed in sheet.numbers.items()
+    ]
+    title, note = f"{name}: {sheet.component}", sheet.note or ""
+    return {"title": title, "source": sheet.words, "note": note, "printed": dict(sheet.printed), "made": made}
+
+
+def _typed(value: object) -> str:
+    return ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+
+
+def _now(element: Any, key: str, stated: Plain) -> str:
+    """A number of an element for the eye."""
+    value, kind = stated.get(key), element.quantity_of(key)
+    if value is None:
+        return "left out"
+    every = value if isinstance(value, tuple) else (value,)
+    return ", ".join(shown(one, kind) if kind else str(one) for one in every)
+
+
+def loads(result: Any) -> Plain:
+    """What is judged of single parts, the one that binds first: their ratings, limits and guidelines against loads."""
+    of_parts = tuple(c for c in result.checks if c.element)
+    rows = [
+        (c.element, row["check"], row["status"], row["margin"], row[f"speed [{result.unit}]"], row["because"])
+        for c, row in zip(result.checks, result.table(), strict=True)
+        if c.element
+    ]
+    picture = design.margins(replace(result, checks=of_parts)) if any(map(_has_margin, of_parts)) else None
+    return {"sentence": result.sentence, "unit": result.unit, "rows": rows, "picture": picture}
+
+
+def _has_margin(check: Any) -> bool:
+    return bool(np.isfinite(check.margin))
 
 
 def verdict_in_short(result: Any) -> Plain:

@@ -91,10 +91,11 @@ class Drawn:
     """
 
     def __init__(self, panel: Panel, height: int = 320, name: str = "") -> None:
-        self.kind, self.is_narrow = self.kind_of(panel), False
+        self.kind, self.is_narrow = self.kind_of(panel, height), False
         ranges = {"match_aspect": True} if panel.even else {"x_range": Range1d(0, 1), "y_range": Range1d(0, 1)}
         self.figure = figure(
             height=height, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset", active_scroll=None,
+            toolbar_location="right" if height > LOW else None,
             x_axis_type="log" if panel.x.scale == "log" else "linear",
             y_axis_type="log" if panel.y.scale == "log" else "linear", **ranges,
         )  # fmt: skip
@@ -112,10 +113,11 @@ class Drawn:
         self.show(panel, height)
 
     @staticmethod
-    def kind_of(panel: Panel) -> tuple[Any, ...]:
-        """Kinds of axes and colours of a panel, which cannot be replaced in place."""
+    def kind_of(panel: Panel, height: int) -> tuple[Any, ...]:
+        """Kinds of axes and colours of a panel, and whether it has buttons, which cannot be replaced in place."""
         named = [bool(axis.names or axis.ticks) for axis in (panel.x, panel.y)]
-        return panel.x.scale, panel.y.scale, *named, _logarithmic(panel), panel.right is not None, panel.even
+        ends = (panel.right is not None, panel.even, height > LOW)
+        return panel.x.scale, panel.y.scale, *named, _logarithmic(panel), *ends
 
     def show(self, panel: Panel, height: int) -> None:
         """Replace what the figure holds, where it differs; ``height`` in pixels without further rows of the legend."""
@@ -265,7 +267,6 @@ class Drawn:
         letters = NARROW if self.is_narrow else WIDE
         lines = [line for part in self.words.split("\n") for line in wrap(part, letters)]
         _update(self.legend, ncols=across, visible=bool(names))
-        _update(self.figure, toolbar_location="right" if self.height > LOW else None)
         _update(self.figure, height=self.height + ROW * max(rows - 1, 0) + 16 * (sum(high) + max(len(lines) - 1, 0)))
         _update(self.figure.title, text="\n".join(lines))
         if isinstance(self.figure.xaxis[0].ticker, BasicTicker):

@@ -42,7 +42,7 @@ class Canvas:
 
     def _draw(self, picture: Picture, more: Sequence[Item]) -> None:
         panels, height = [panel.with_items(*more) for panel in picture.panels], height_of(picture)
-        if [one.kind for one in self.drawn] != [Drawn.kind_of(panel) for panel in panels]:
+        if [one.kind for one in self.drawn] != [Drawn.kind_of(panel, height) for panel in panels]:
             self.drawn = [Drawn(panel, height, self.name) for panel in panels]
             for one in self.drawn:
                 one.narrow(self.is_narrow)

@@ -52,6 +52,8 @@ _WORDS = (
     *("name", "description", "after", "of", "speed_unit", "application", "rule", "reason"),
     *TitleBlock.model_fields,
 )
+PLACED = ("name", "after", "to")
+"""What an element keeps that is made of another component: what it is called and where it stands."""
 
 
 @dataclass(frozen=True)
@@ -190,6 +192,12 @@ class Document:
         """A new element in front of, or behind, that at ``place``, in its own chain."""
         with self._changing_chain() as (chain, fresh):
             (chain.put_in_front if front else chain.put_behind)(place, _made(kind), fresh)
+
+    def make_of(self, place: int, component: str) -> None:
+        """Have the element at ``place`` be of a component, "maker/type": its numbers and its sheet, the name kept."""
+        with self._changing() as data, self._names_kept(data):
+            before = data["element"][place]
+            data["element"][place] = _made(component) | {key: before[key] for key in PLACED if key in before}
 
     def branch(self, place: int, kind: str) -> None:
         """A new element on a branch of its own that leaves from that at ``place``."""
