@@ -15,7 +15,7 @@ from enum import Enum
 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
-from trunnion.driveline.features import CONVERTER, CURVE, FEATURES, OVER_TORQUE, UNEVEN, feature
+from trunnion.driveline.features import CONVERTER, CURVE, FEATURES, LOSSES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, remarks
 from trunnion.equations.linear_clutches import stand_ins
@@ -57,6 +57,9 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     if TABLE[analysis][DRAGGED].reason == SET_ASIDE:
         own += tuple(Finding(Gravity.NOTE, DRAGGED_ALONG.format(slip)) for slip in feature(DRAGGED).places(line))
+    if TABLE[analysis][LOSSES].treatment is Treatment.COUNTED and analysis not in _MEAN_ONLY:
+        lossy = (name for name, element in line.parts if element.losses)
+        own += tuple(Finding(Gravity.NOTE, BY_MEAN.format(name)) for name in lossy)
     places: dict[str, dict[str, None]] = {}
     for key, cell in TABLE[analysis].items():
         if cell.treatment is Treatment.SAID and not cell.quote:
@@ -86,11 +89,14 @@ def as_it_operates(line: Driveline) -> tuple[Finding, ...]:
 _LIKE = {
     "rolling resistance": "load torque",
     "brake": "load torque",
+    LOSSES: "load torque",
     "air drag": "quadratic load",
     "slip of a tyre": DRAGGED,
     "elastic teeth of planets": "closed loop",
 }
-"""Features that every analysis treats as another, whose equations they share."""
+"""Features that every analysis treats as another, whose equations they share, but where a row names them."""
+BY_MEAN = "{} loses by its mean torque, in the sense in which power flows; of what vibrates nothing is lost there"
+"""What is said of gear losses by what counts them."""
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is not an instability and set aside"
 """What is said of a damper without a spring by what judges disturbances."""
@@ -122,10 +128,13 @@ def _row(
     for treatment, reasons in treated.items():
         for key, words in (reasons or {}).items():
             row[key] = Cell(treatment, *((words,) if isinstance(words, str) else words))
-    row |= {key: row[other] for key, other in _LIKE.items()}
+    named = {key for reasons in treated.values() for key in reasons or {}}
+    row |= {key: row[other] for key, other in _LIKE.items() if key not in named}
     return {f.key: row[f.key] for f in FEATURES}
 
 
+_MEAN_ONLY = ("kinetostatics",)
+"""Analyses whose torques do not vibrate."""
 _TORSION = {"bending stiffness": "torsion does not bend the tubes"}
 _PLANE = "its plane, from which the next joint measures its own, counts as a joint plane"
 _EVEN = {
@@ -171,7 +180,8 @@ _SERIES: dict[str, Reason] = {
 _IN_ROWS = {**_HELD, **_SERIES}
 _BY_PLACE = {**_IN_ROWS, **QUASI_STATIC}
 _AT_ONE_SPEED = dict.fromkeys((CURVE, LAG), "its tangent holds at one speed, and the speed changes") | {
-    OVER_TORQUE: "it holds for small motions about one mean torque, and the torque changes"
+    OVER_TORQUE: "it holds for small motions about one mean torque, and the torque changes",
+    LOSSES: "they are those of the mean torque, and the torque changes",
 }
 ONE_MOTION = "dry friction at one motion"
 _DRY_FRICTION = {"dry friction": "linear equations have none; a clutch that states a motion counts by its mean there"}
@@ -203,6 +213,7 @@ _UNPROVABLE = {
     **dict.fromkeys((CURVE, LAG), "a curve over the speed is not enclosed"),
     PENDULUM: "the square of the speed holds it, and the proof is of springs that do not follow the speed",
     OVER_TORQUE: "a table over the mean torque is not enclosed",
+    LOSSES: "a torque by the sense in which power flows is not enclosed",
 }
 _ALIGNED = "frequencies are those of the aligned line, all joints straight"
 _MODES_SAID: dict[str, Reason] = {
@@ -256,7 +267,7 @@ _NOT_EXACT = {
     **_NO_RATIO,
     **_NO_PATH,
     **dict.fromkeys((CURVE, LAG), "its tangent goes with the speed that branches and sweeps follow"),
-    OVER_TORQUE: "it goes with the loads at the speed that branches and sweeps follow",
+    **dict.fromkeys((OVER_TORQUE, LOSSES), "it goes with the loads at the speed that branches and sweeps follow"),
     **_NOT_SLIPPED,
     **_ANYWHERE,
     "excitation that varies with speed or load": "its amplitude changes with the speed that branches and sweeps follow",
@@ -268,8 +279,8 @@ _NOT_EXACT = {
 _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no phase"}
 _RIGID = dict.fromkeys(
     (
-        "inertia", "stiffness", OVER_TORQUE, HEATED, "tube inertia", "bending stiffness", "damping", "loss factor",
-        "damping ratio",
+        "inertia", "stiffness", OVER_TORQUE, LOSSES, HEATED, "tube inertia", "bending stiffness", "damping",
+        "loss factor", "damping ratio",
         "viscous damper", DRAGGED, "tuned damper", PENDULUM, "dual-mass flywheel", "tyre", "vehicle",
         "angle of an ideal joint",
         "mesh damping", "impact damping", "backlash", "transmission error",
@@ -400,7 +411,7 @@ ROWS: dict[str, Row] = {
     "transients": _row(
         refused={
             **_ONE_DRIVE,
-            OVER_TORQUE: _AT_ONE_SPEED[OVER_TORQUE],
+            **{key: _AT_ONE_SPEED[key] for key in (OVER_TORQUE, LOSSES)},
             **_NO_PATH,
         },
         said=_IN_ROWS,

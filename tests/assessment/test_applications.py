@@ -36,6 +36,7 @@ EXPECTED = {
     "coupling-temperature": ALWAYS,
     "brake-heat": ALWAYS,
     "converter-heat": ALWAYS,
+    "gear-heat": ALWAYS,
     "damper-heat": ALWAYS,
     "pendulum-travel": ALWAYS,
     "slip-clutch": ALWAYS,
@@ -202,6 +203,9 @@ def exceeded_alone() -> dict[str, tn.Driveline]:
         "coupling-temperature": tn.Driveline([engine, warm, load], limits=wide),
         "brake-heat": tn.Driveline([engine, shaft, load, drags], limits=wide),
         "converter-heat": tn.Driveline([engine, shaft, oil, load], limits=[*wide, tn.Limit(of="oil", max_torque=1e6)]),
+        "gear-heat": tn.Driveline(
+            [engine, shaft, tn.Disk(inertia=0.1), tn.Ratio(ratio=2, efficiency=0.9, heat_rating=1.0), load], limits=wide
+        ),
         "damper-heat": tn.Driveline([engine, hot, shaft, load], limits=[*wide, tn.Limit(of="hot", max_torque=1e6)]),
         "m68": tn.Driveline([engine, tube, load], limits=[tn.Limit(of="shaft", ship_shaft="slot", max_torque=1e6)]),
         "gear-hammer": tn.Driveline(

@@ -366,6 +366,7 @@ CHANGES: dict[str, tuple[Change, Change]] = {
     "closed loop": (unbent, looped),
     "elastic teeth of planets": (behind_hub(planetary()), behind_hub(YIELDING, PINION)),
     "gear mesh": (same, meshed()),
+    "gear losses": (meshed(teeth_out=25), meshed(teeth_out=25, efficiency=0.8, drag_torque=3.0)),
     "mesh damping": (meshed(), meshed(mesh_damping=5000.0)),
     "impact damping": (
         meshed(teeth_out=25, backlash=1e-4),

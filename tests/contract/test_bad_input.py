@@ -28,6 +28,7 @@ from trunnion.driveline import (
     DualMassFlywheel,
     Engine,
     Fan,
+    GearPair,
     Generator,
     HookeJoint,
     IdealJoint,
@@ -180,6 +181,10 @@ def long_line(inertias: int) -> Driveline:
     """A chain with a joint at its front."""
     chain = [e for _ in range(inertias) for e in (Shaft(stiffness=1e5, damping=1.0), Disk(inertia=0.1))]
     return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
+
+
+def toothed(**changes: object) -> GearPair:
+    return GearPair(**{"teeth_in": 20, "teeth_out": 40, "module": 0.003, "mesh_stiffness": 1e8} | changes)
 
 
 def planetary(**changes: object) -> Planetary:
@@ -1606,6 +1611,32 @@ PYTHON = [
         lambda: engine(gas_torque=[], firing_intervals=["180 deg", "-180 deg", "360 deg", "360 deg"]),
         "Engine.firing_intervals = ['180 deg', '-180 deg', '360 deg', '360 deg']: must not be negative",
         "crank angle from each firing",
+    ),
+    (lambda: Ratio(ratio=2, efficiency=1.1), "Ratio.efficiency = 1.1: must be above 0, and at most 1", "0.98"),
+    (lambda: Ratio(ratio=2, drag_torque=-1), "Ratio.drag_torque = -1: must not be negative", "either direction"),
+    (lambda: Ratio(ratio=2, efficiency=0.9, heat_rating=0), "Ratio.heat_rating = 0: must be positive", "W"),
+    (lambda: Differential(efficiency=0), "Differential.efficiency = 0: must be above 0", "loses nothing"),
+    (
+        lambda: planetary(
+            sun_mesh_efficiency=0.99, sun_mesh_stiffness=1e8, ring_mesh_stiffness=1e8, module=0.003, planet_inertia=1e-3
+        ),
+        "Planetary.sun_mesh_efficiency = 0.99: belongs to rigid teeth",
+        "leave out the mesh stiffnesses",
+    ),
+    (
+        lambda: toothed(friction_coefficient=0.06, efficiency=0.99),
+        "GearPair.friction_coefficient = 0.06: conflicts with efficiency",
+        "leave out one",
+    ),
+    (
+        lambda: toothed(friction_coefficient=50),
+        "GearPair.friction_coefficient = 50: must be above 0, and below",
+        "0.06",
+    ),
+    (
+        lambda: GearPair(base_radius_in=1, base_radius_out=1, mesh_stiffness=1, friction_coefficient=0.1),
+        "GearPair.friction_coefficient = 0.1: needs tooth numbers",
+        "efficiency = 0.98",
     ),
     (lambda: Brake(inertia=1.0), "Brake.torque: is missing", 'write torque = "200 N*m"'),
     (lambda: Brake(inertia=1.0, torque=-5), "Brake.torque = -5: must not be negative", "either direction"),

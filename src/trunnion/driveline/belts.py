@@ -7,9 +7,20 @@ from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from trunnion.driveline.elements import not_negative, positive
+from trunnion.driveline.elements import can_lose, not_negative, one_mesh, positive
+from trunnion.driveline.gear_losses import RATING, MeshLoss
 from trunnion.driveline.parts import Geared, Heavy, Numbers, Part, Sprung
-from trunnion.driveline.quantities import Damping, Inertia, Length, Maybe, MeshStiffness, optional
+from trunnion.driveline.quantities import (
+    Damping,
+    Dimensionless,
+    Inertia,
+    Length,
+    Maybe,
+    MeshStiffness,
+    Power,
+    Torque,
+    optional,
+)
 from trunnion.driveline.shafts import Elastic
 
 SPANS = 2
@@ -27,6 +38,9 @@ class Belt(Elastic):
     span_stiffness : k of one free span [N/m], its tensile stiffness EA [N] over its length.
     damping : at the driving pulley [N m s/rad].
     inertia_in, inertia_out : of the pulleys [kg m²], where no Disk has them already.
+    efficiency : power that leaves over power that enters, whichever way it flows; without it nothing is lost.
+    drag_torque : of bearings and bending at the driving pulley, whatever the load [N m].
+    heat_rating : power lost borne continuously [W], which checks compare with.
 
     >>> Belt(radius_in="60 mm", radius_out="150 mm", span_stiffness=4e5).torsional_stiffness
     2880.0
@@ -40,11 +54,15 @@ class Belt(Elastic):
     damping: Damping = optional(default=0.0, description="at the driving pulley")
     inertia_in: Maybe[Inertia] = optional(default=None, description="of the driving pulley, where no Disk has it")
     inertia_out: Maybe[Inertia] = optional(default=None, description="of the driven pulley, where no Disk has it")
+    efficiency: Maybe[Dimensionless] = optional(default=None, description="share of the power that it passes on")
+    drag_torque: Maybe[Torque] = optional(default=None, description="of bearings and bending at the driving pulley")
+    heat_rating: Maybe[Power] = optional(default=None, description=RATING)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         positive(self, "radius_in", "radius_out", "span_stiffness", "inertia_in", "inertia_out")
         not_negative(self, "damping")
+        can_lose(self, "efficiency")
         return self
 
     @property
@@ -56,6 +74,11 @@ class Belt(Elastic):
     def speed_ratio(self) -> float:
         """Input speed over output speed."""
         return float(self.fraction)
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Of bending and creep, as friction of the shaft behind the spans."""
+        return one_mesh(self, self.fraction, 1, 2)
 
     def parts(self) -> tuple[Part, ...]:
         """The driving pulley, the spans at its radius, and behind them the driven pulley."""

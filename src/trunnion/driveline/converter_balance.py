@@ -8,7 +8,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from trunnion.driveline.chain import ElementChain
-from trunnion.driveline.elements import ConstantSpeed, Rotor
+from trunnion.driveline.elements import ConstantSpeed
+from trunnion.driveline.loss_curves import behind, with_losses
 from trunnion.driveline.quantities import SPEED, TORQUE, shown
 from trunnion.driveline.speed_ratios import speed_ratios
 from trunnion.driveline.torque_converters import TorqueConverter
@@ -54,19 +55,25 @@ def refuse_converters(line: ElementChain, what: str, remedy: str = LOCK) -> None
         raise InputError(AT_EVERY_SPEED.format(what), element=line.names[place], key="locked", remedy=remedy)
 
 
-def behind_converter(line: ElementChain, place: int) -> list[tuple[float, str, Rotor]]:
-    """Rotors that the turbine drives: the speed of each over the turbine's, its name and itself.
+def behind_converter(line: ElementChain, place: int) -> list[tuple[float, TorqueCurve]]:
+    """What the turbine drives, disks, machines and what gears lose: the speed of each shaft over the turbine's, and the
+    torque that resists.
 
     Raises
     ------
-    InputError : a prescribed speed or a drive_share behind the turbine.
+    InputError : a prescribed speed or a drive_share behind the turbine; gears in front of it that lose a share of the
+        power that it takes.
     """
-    behind, ratios = {place}, speed_ratios(line)
-    for i in range(place + 1, len(line.elements)):
-        if line.parents[i] in behind and (line.parents[i] != place or line.hangs_on[i]):
-            behind.add(i)
-    found = []
-    for i in sorted(behind - {place}):
+    ratios, driven = speed_ratios(line), sorted(behind(line, place))
+    for i, element in enumerate(line.elements):
+        if element.losses and place in behind(line, i):
+            key = element.losses[0].key
+            raise InputError(
+                f"loses a share of what {line.names[place]} behind it takes, which is not followed",
+                element=line.names[i], key=key, value=getattr(element, key),
+                remedy=f"write its loss as drag_torque, or {LOCK.removeprefix('write ')}",
+            )  # fmt: skip
+    for i in driven:
         element, name = line.elements[i], line.names[i]
         if isinstance(element, ConstantSpeed) or getattr(element, "drive_share", False):
             key = "" if isinstance(element, ConstantSpeed) else "drive_share"
@@ -74,9 +81,7 @@ def behind_converter(line: ElementChain, place: int) -> list[tuple[float, str, R
                 f"holds a speed behind {line.names[place]}, whose turbine turns as fast as its loads let it",
                 element=name, key=key, remedy=f"give it a torque, or {LOCK.removeprefix('write ')}",
             )  # fmt: skip
-        if isinstance(element, Rotor):
-            found.append((abs(float(ratios[i] / ratios[place])), name, element))
-    return found
+    return [(abs(float(ratios[i] / ratios[place])), curve) for i, curve in with_losses(line, driven)]
 
 
 def run_of(line: ElementChain, place: int, speed: float) -> ConverterRun:
@@ -88,8 +93,7 @@ def run_of(line: ElementChain, place: int, speed: float) -> ConverterRun:
     """
     converter, name = line.elements[place], line.names[place]
     assert isinstance(converter, TorqueConverter)
-    rotors = behind_converter(line, place)
-    loads: list[tuple[float, TorqueCurve]] = [(ratio, rotor.load) for ratio, _, rotor in rotors]
+    loads = behind_converter(line, place)
     pump = speed * abs(float(speed_ratios(line)[place]))
     at = shown(speed, SPEED, "rpm", 5)
     if not pump > 0:
@@ -170,14 +174,9 @@ def converter_balances(line: ElementChain, place: int, low: float, high: float) 
     converter, ratios = line.elements[place], speed_ratios(line)
     assert isinstance(converter, TorqueConverter)
     law, own = converter.law, abs(float(ratios[place]))
-    behind = behind_converter(line, place)
-    names = {name for _, name, _ in behind}
-    loads = [(ratio, rotor.load) for ratio, _, rotor in behind]
-    others = [
-        (abs(float(ratio)), one.load)
-        for ratio, name, one in zip(ratios, line.names, line.elements, strict=True)
-        if isinstance(one, Rotor) and name not in names
-    ]
+    loads = behind_converter(line, place)
+    before = set(range(len(line.elements))) - behind(line, place)
+    others = [(abs(float(ratios[i])), curve) for i, curve in with_losses(line, sorted(before))]
 
     def run_at(speed: float) -> ConverterRun | None:
         lasting = [ratio for ratio, lasts in balances(law, loads, own * speed) if lasts]

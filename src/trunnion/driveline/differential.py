@@ -7,9 +7,10 @@ from typing import Any, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from trunnion.driveline.elements import Element, Teeth, one_way, positive
+from trunnion.driveline.elements import Element, Teeth, can_lose, one_mesh, one_way, positive
+from trunnion.driveline.gear_losses import DRAG, RATING, MeshLoss
 from trunnion.driveline.parts import Geared, Heavy, Loose, Numbers, Part, Tied
-from trunnion.driveline.quantities import Dimensionless, Inertia, Maybe, optional
+from trunnion.driveline.quantities import Dimensionless, Inertia, Maybe, Power, Torque, optional
 from trunnion.errors import InputError
 
 
@@ -25,6 +26,10 @@ class Differential(Element):
     ratio : final drive in front of the case, input speed over that of the case; 1 by default, negative reverses.
     teeth_in, teeth_out : tooth numbers of the final drive instead.
     inertia : of the case with the crown wheel [kg m²].
+    efficiency : of the final drive, power that leaves over power that enters, whichever way it flows; without it
+        nothing is lost. Legs that turn as one rub nowhere.
+    drag_torque : of oil and seals at the pinion, whatever the load [N m].
+    heat_rating : power lost borne continuously [W], which checks compare with.
 
     >>> Differential(teeth_in=10, teeth_out=41).speed_ratio
     4.1
@@ -36,6 +41,9 @@ class Differential(Element):
     teeth_in: Teeth | None = Field(default=None, description="teeth of the pinion")
     teeth_out: Teeth | None = Field(default=None, description="teeth of the crown wheel")
     inertia: Maybe[Inertia] = optional(default=None, description="of the case with the crown wheel")
+    efficiency: Maybe[Dimensionless] = optional(default=None, description="of the final drive: power passed on")
+    drag_torque: Maybe[Torque] = optional(default=None, description=DRAG)
+    heat_rating: Maybe[Power] = optional(default=None, description=RATING)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -45,6 +53,7 @@ class Differential(Element):
             remedy = "write input speed over that of the case"
             raise InputError("must not be zero", key="ratio", value=0.0, remedy=remedy)
         positive(self, "inertia")
+        can_lose(self, "efficiency")
         return self
 
     @property
@@ -63,6 +72,11 @@ class Differential(Element):
     def ports(self) -> dict[str, int]:
         """The legs."""
         return {"left": 3, "right": 2}
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Of the final drive."""
+        return one_mesh(self, self.fraction)
 
     def parts(self) -> tuple[Part, ...]:
         """The case, the right leg with a rotation of its own, and the left leg, which follows from both."""

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 from pydantic import BeforeValidator, Field, PrivateAttr, model_validator
 
 from trunnion.driveline.excitation import Excitations
+from trunnion.driveline.gear_losses import DRAG, EFFICIENCY, RATING, MeshLoss
 from trunnion.driveline.geometry import disk_inertia
 from trunnion.driveline.materials import MATERIALS, of_material, without_material
 from trunnion.driveline.parts import Geared, Heavy, Numbers, Part, Prescribed
@@ -29,6 +30,7 @@ from trunnion.driveline.quantities import (
     Length,
     Mass,
     Maybe,
+    Power,
     QuadraticLoad,
     Several,
     Torque,
@@ -115,6 +117,11 @@ class Element(Record):
     def kind(self) -> str:
         """The class name: what ``type`` says in a file."""
         return type(self).__name__
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Its meshes that lose power."""
+        return ()
 
     springs: ClassVar[tuple[str, ...]] = ("",)
     """What stands before its name in those of the springs and dampers among its parts, in order."""
@@ -376,13 +383,16 @@ Teeth = Annotated[int, BeforeValidator(_tooth_number)]
 
 
 class Ratio(Element):
-    """An ideal gear or final drive: rigid, lossless, without inertia.
+    """A gear or final drive: rigid, without inertia, and without loss where none is stated.
 
     Parameters
     ----------
     ratio : input speed over output speed; negative reverses.
     teeth_in, teeth_out : tooth numbers instead; the ratio is teeth_out/teeth_in, exactly, and both shafts
         count their rotation positive in their own sense of turning.
+    efficiency : power that leaves over power that enters, whichever way it flows; without it nothing is lost.
+    drag_torque : of oil and seals at the input shaft, whatever the load [N m].
+    heat_rating : power lost borne continuously [W], which checks compare with.
 
     >>> Ratio(teeth_in=11, teeth_out=43).speed_ratio
     3.909090909090909
@@ -393,9 +403,13 @@ class Ratio(Element):
     ratio: Maybe[Dimensionless] = optional(default=None, description="input speed over output speed; negative reverses")
     teeth_in: Teeth | None = Field(default=None, description="teeth of the driving gear")
     teeth_out: Teeth | None = Field(default=None, description="teeth of the driven gear")
+    efficiency: Maybe[Dimensionless] = optional(default=None, description=EFFICIENCY)
+    drag_torque: Maybe[Torque] = optional(default=None, description=DRAG)
+    heat_rating: Maybe[Power] = optional(default=None, description=RATING)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
+        can_lose(self, "efficiency")
         one_way(self, "ratio", ("teeth_in", "teeth_out"), ("teeth_in", "teeth_out"))
         if self.ratio == 0:
             raise InputError("must not be zero", key="ratio", value=0.0, remedy="write input speed over output speed")
@@ -416,6 +430,11 @@ class Ratio(Element):
     def speed_ratio(self) -> float:
         """Input speed over output speed."""
         return float(self.fraction)
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Of its gears."""
+        return one_mesh(self, self.fraction)
 
 
 def with_defaults(data: Any, given: str, **defaults: float) -> Any:
@@ -465,6 +484,29 @@ def not_negative(element: Element, *keys: str, remedy: str = "") -> None:
         value = getattr(element, key)
         if value is not None and value < 0:
             raise InputError("must not be negative", key=key, value=value, remedy=remedy or _advice(element, key))
+
+
+def can_lose(element: Element, *efficiencies: str) -> None:
+    """Refuse efficiencies, drag and rating of gears that cannot be.
+
+    Raises
+    ------
+    InputError : names the key.
+    """
+    for key in efficiencies:
+        stated = getattr(element, key)
+        if stated is not None and not 0 < stated <= 1:
+            remedy = f"write {key} = 0.98, say; 1 loses nothing"
+            raise InputError("must be above 0, and at most 1", key=key, value=stated, remedy=remedy)
+    not_negative(element, "drag_torque", remedy="write how much it resists; it does so in either direction")
+    positive(element, "heat_rating")
+
+
+def one_mesh(element: Element, ratio: Fraction, front: int = 0, driven: int = 1) -> tuple[MeshLoss, ...]:
+    """The loss of a pair of gears by its ``efficiency``: friction of the one in front against the housing."""
+    if getattr(element, "efficiency", None) is None:
+        return ()
+    return (MeshLoss(front, None, driven, -1 / float(ratio), "efficiency"),)
 
 
 def _advice(element: Element, key: str) -> str:

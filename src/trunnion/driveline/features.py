@@ -129,6 +129,7 @@ UNEVEN = (
 MACHINES = ("Motor", "Generator", "Fan", "Pump", "Propeller")
 ELECTRIC, CONSUMERS = MACHINES[:2], MACHINES[2:]
 _STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
+_MESHED = ("Ratio", "GearPair", "Belt", "Differential")
 _DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")
 
 
@@ -151,6 +152,7 @@ def _of_loaded(key: str) -> tuple[str, ...]:
 CURVE = "torque curve"
 CONVERTER = "torque converter"
 OVER_TORQUE = "stiffness over mean torque"
+LOSSES = "gear losses"
 FEATURES = (
     Feature(
         "inertia",
@@ -278,6 +280,14 @@ FEATURES = (
         ),
     ),
     Feature(
+        LOSSES,
+        (
+            *(f"{kind}.{key}" for kind in _MESHED for key in ("efficiency", "drag_torque")),
+            *_of("Planetary", "sun_mesh_efficiency", "ring_mesh_efficiency", "drag_torque"),
+            "GearPair.friction_coefficient",
+        ),
+    ),
+    Feature(
         "stages",
         tuple(f"{kind}.{key}" for kind in _STAGED for key in ("breakpoints", "stiffnesses")),
     ),
@@ -379,6 +389,7 @@ NOT_FEATURES = {
         ("Coupling.thermal_resistance", "Coupling.ambient_temperature"),
         "coupling_temperatures finds by them where the temperature settles",
     ),
+    **dict.fromkeys((f"{kind}.heat_rating" for kind in (*_MESHED, "Planetary")), "a rating, which checks compare with"),
     "Brake.heat_rating": "a rating, which checks compare with",
     "TorqueConverter.heat_rating": "a rating, which checks compare with",
     "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",

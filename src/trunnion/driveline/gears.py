@@ -9,7 +9,8 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Element, Teeth, not_negative, positive
+from trunnion.driveline.elements import Doubt, Element, Teeth, can_lose, not_negative, one_mesh, positive
+from trunnion.driveline.gear_losses import DRAG, EFFICIENCY, RATING, MeshLoss, friction_losses
 from trunnion.driveline.parts import Geared, Part, Sprung
 from trunnion.driveline.quantities import (
     DEGREE,
@@ -20,7 +21,9 @@ from trunnion.driveline.quantities import (
     Maybe,
     MeshDamping,
     MeshStiffness,
+    Power,
     TableList,
+    Torque,
     optional,
 )
 from trunnion.driveline.record import Record, listed, one_of
@@ -112,6 +115,11 @@ class GearPair(Element):
     stiffness_ratio : slope within the backlash over that outside, 0 (free play) to 1.
     transmission_error, stiffness_variation : harmonics in the mesh phase, see ``TransmissionError`` and
         ``StiffnessVariation``; they take tooth numbers. They follow the mean rotation of the gears.
+    efficiency : power that leaves over power that enters, whichever way it flows; without it nothing is lost.
+    friction_coefficient : mean one of the teeth instead, which for standard spur gears makes the loss
+        (Ohlendorf's formula, see ``trunnion.driveline.gear_losses``).
+    drag_torque : of oil and seals at the input shaft, whatever the load [N m].
+    heat_rating : power lost borne continuously [W], which checks compare with.
 
     Linear analyses take the slope that the static load puts the mesh on, times its variation with the mesh phase; the
     transmission error is not part of them.
@@ -152,11 +160,18 @@ class GearPair(Element):
     stiffness_variation: Annotated[
         TableList[StiffnessVariation], BeforeValidator(listed(StiffnessVariation, "harmonic"))
     ] = optional(default=(), description="harmonics of the mesh stiffness over its mean")
+    efficiency: Maybe[Dimensionless] = optional(default=None, description=EFFICIENCY)
+    friction_coefficient: Maybe[Dimensionless] = optional(
+        default=None, description="mean one of the teeth instead of the efficiency, of standard spur gears"
+    )
+    drag_torque: Maybe[Torque] = optional(default=None, description=DRAG)
+    heat_rating: Maybe[Power] = optional(default=None, description=RATING)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         self._check_size()
         self._check_law()
+        self._check_losses()
         phased = "transmission_error" if self.transmission_error else "stiffness_variation"
         if (self.transmission_error or self.stiffness_variation) and self.teeth_in is None:
             remedy = "give teeth_in, teeth_out and module instead of base radii"
@@ -219,6 +234,23 @@ class GearPair(Element):
                 "needs a backlash", key="damping_law", value=self.damping_law, remedy='give one, or write "always"'
             )
 
+    def _check_losses(self) -> None:
+        can_lose(self, "efficiency")
+        if self.friction_coefficient is None:
+            return
+        if self.efficiency is not None:
+            remedy = "leave out one"
+            raise InputError("conflicts with efficiency", key="friction_coefficient", remedy=remedy)
+        if self.teeth_in is None or self.teeth_out is None:
+            remedy = "give teeth_in, teeth_out and module instead of base radii, or write efficiency = 0.98, say"
+            raise InputError("needs tooth numbers", key="friction_coefficient", remedy=remedy)
+        most = 1 / friction_losses(self.teeth_in, self.teeth_out, self.pressure_angle)
+        if not 0 < self.friction_coefficient < most:
+            raise InputError(
+                f"must be above 0, and below {most:.3g}, at which all power is lost", key="friction_coefficient",
+                value=self.friction_coefficient, remedy="write 0.06, say",
+            )  # fmt: skip
+
     def doubts(self) -> Iterator[Doubt]:
         if self.stiffness_ratio and not self.total_backlash:
             yield ("stiffness_ratio", "has no backlash to act in", "give backlash or angular_backlash")
@@ -232,6 +264,14 @@ class GearPair(Element):
     def parts(self) -> tuple[Part, ...]:
         """The output gear where a rigid mesh would hold it, and behind the mesh where it is."""
         return Geared(self.fraction), Sprung(to=1)
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Of the mesh."""
+        if self.friction_coefficient is None or self.teeth_in is None or self.teeth_out is None:
+            return one_mesh(self, self.fraction)
+        over = friction_losses(self.teeth_in, self.teeth_out, self.pressure_angle)
+        return (MeshLoss(0, None, 1, -1 / self.speed_ratio, "friction_coefficient", over),)
 
     @property
     def fraction(self) -> Fraction:

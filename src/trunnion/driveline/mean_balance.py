@@ -1,6 +1,7 @@
 """The mean speeds at which a free–free line turns by itself: where the torques of its disks and machines balance.
 
-Power is passed on whole, so a load M on a shaft that turns R times as fast as the input asks for |R| M there. Where a
+A load M on a shaft that turns R times as fast as the input asks for |R| M there; what gears lose of its power on the
+way is a load of theirs. Where a
 disk or a motor has a ``drive_share`` its controller keeps any speed, and no balance tells one.
 """
 
@@ -10,7 +11,8 @@ import warnings
 
 from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.converter_balance import converter_balances, open_converter
-from trunnion.driveline.elements import ConstantSpeed, Rotor
+from trunnion.driveline.elements import ConstantSpeed
+from trunnion.driveline.loss_curves import with_losses
 from trunnion.driveline.quantities import DAMPING, SPEED, shown
 from trunnion.driveline.speed_ratios import speed_ratios
 from trunnion.errors import InputError, InputRemark
@@ -31,9 +33,10 @@ def is_left_free(line: ElementChain) -> bool:
 
 
 def geared_curves(line: ElementChain) -> list[tuple[float, TorqueCurve]]:
-    """What resists, with the speed ratio of its shaft."""
-    ratios = zip(speed_ratios(line), line.elements, strict=True)
-    return [(abs(float(ratio)), one.load) for ratio, one in ratios if ratio and isinstance(one, Rotor)]
+    """What resists, disks, machines and what gears lose, with the speed ratio of its shaft."""
+    ratios = speed_ratios(line)
+    every = with_losses(line, range(len(line.elements)))
+    return [(abs(float(ratios[i])), curve) for i, curve in every if ratios[i]]
 
 
 def mean_speeds(line: ElementChain) -> tuple[TorqueBalance, ...]:

@@ -74,6 +74,11 @@ UNITS = {
     "backlash": "m",
     "angular_backlash": "rad",
     "stiffness_ratio": "1",
+    "efficiency": "1",
+    "friction_coefficient": "1",
+    "sun_mesh_efficiency": "1",
+    "ring_mesh_efficiency": "1",
+    "drag_torque": "N*m",
     "damping_ratio": "1",
     "damping_ratio_frequency": "rad/s",
 }

@@ -9,7 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from trunnion.driveline.elements import Doubt, Teeth, not_negative, positive
+from trunnion.driveline.elements import Doubt, Teeth, can_lose, not_negative, positive
+from trunnion.driveline.gear_losses import DRAG, RATING, MeshLoss
 from trunnion.driveline.parts import Geared, Heavy, Loose, Numbers, Part, Sprung, Tied
 from trunnion.driveline.quantities import (
     Angle,
@@ -20,6 +21,8 @@ from trunnion.driveline.quantities import (
     Maybe,
     MeshDamping,
     MeshStiffness,
+    Power,
+    Torque,
     optional,
 )
 from trunnion.driveline.record import one_of
@@ -28,6 +31,7 @@ from trunnion.errors import InputError
 
 SHAFTS = ("sun", "carrier", "ring")
 MESHES = ("sun_mesh_stiffness", "ring_mesh_stiffness")
+EFFICIENCIES = ("sun_mesh_efficiency", "ring_mesh_efficiency")
 SHIFTED = 2
 """Teeth by which profile shift may make planets larger or smaller than their room."""
 STILL = 1e-9
@@ -49,8 +53,8 @@ def _one_shaft(value: object) -> object:
 class Planetary(Elastic):
     """A planetary gear set: any of its three shafts drives, is driven, is held or turns freely; teeth rigid or elastic.
 
-    z_s ω_s + z_r ω_r = (z_s + z_r) ω_c (Willis), rotations positive in one sense; torques follow without loss. The
-    inertias of sun, carrier and ring are Disks on them; planets turn with them.
+    z_s ω_s + z_r ω_r = (z_s + z_r) ω_c (Willis), rotations positive in one sense; torques follow, without loss where
+    none is stated. The inertias of sun, carrier and ring are Disks on them; planets turn with them.
 
     Parameters
     ----------
@@ -68,6 +72,10 @@ class Planetary(Elastic):
         teeth are rigid. Then planet_inertia and module are needed, and an inertia right behind the output.
     mesh_damping : of one mesh along the line of action [N s/m].
     module, pressure_angle : of the teeth [m, rad], for the planets' base radius m z_p cos α/2.
+    sun_mesh_efficiency, ring_mesh_efficiency : share of the power of rolling, that of the rotation relative to the
+        carrier, which a mesh passes on, whichever way; without them nothing is lost. Teeth are rigid then.
+    drag_torque : of oil and seals at the input shaft, whatever the load [N m].
+    heat_rating : power lost borne continuously [W], which checks compare with.
 
     All planets move alike; their modes against each other, √((k_s + k_r) r_b²/J_p), move nothing else.
 
@@ -104,6 +112,12 @@ class Planetary(Elastic):
     mesh_damping: MeshDamping = optional(default=0.0, description="of one such mesh along the line of action")
     module: Maybe[Length] = optional(default=None, description="of elastic teeth")
     pressure_angle: Angle = optional(default=PRESSURE_ANGLE, description="of elastic teeth; 20 deg by default")
+    sun_mesh_efficiency: Maybe[Dimensionless] = optional(
+        default=None, description="share of the rolling power that planets and sun pass on; teeth rigid"
+    )
+    ring_mesh_efficiency: Maybe[Dimensionless] = optional(default=None, description="of planets and ring")
+    drag_torque: Maybe[Torque] = optional(default=None, description=DRAG)
+    heat_rating: Maybe[Power] = optional(default=None, description=RATING)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -131,6 +145,7 @@ class Planetary(Elastic):
             raise InputError("conflicts with held", key="free_speed", value=self.free_speed, remedy=remedy)
         positive(self, "planet_inertia", "planet_mass", "centre_distance", "module", *MESHES)
         not_negative(self, "mesh_damping")
+        can_lose(self, *EFFICIENCIES)
         self._check_meshes()
         return self
 
@@ -147,6 +162,10 @@ class Planetary(Elastic):
             if getattr(self, key) is None:
                 remedy = "elastic teeth need sun_mesh_stiffness, ring_mesh_stiffness, module and planet_inertia"
                 raise InputError(f"is needed with {stated[0]}", key=key, remedy=remedy)
+        lossy = next((key for key in EFFICIENCIES if getattr(self, key) is not None), None)
+        if lossy is not None:
+            remedy = "leave out the mesh stiffnesses, or the efficiencies"
+            raise InputError("belongs to rigid teeth", key=lossy, value=getattr(self, lossy), remedy=remedy)
         if not 0 < self.pressure_angle < pi / 4:
             remedy = 'write "20 deg", say'
             raise InputError(
@@ -203,6 +222,26 @@ class Planetary(Elastic):
     def elastic(self) -> bool:
         """Whether its teeth yield."""
         return self.sun_mesh_stiffness is not None
+
+    @property
+    def losses(self) -> tuple[MeshLoss, ...]:
+        """Of sun and ring with the planets, as friction between each and the carrier."""
+        place: dict[str, int] = {self.input: 0, **self.ports}
+        place[self.driven] = driven = 1 + len(self.ports) + (self.planet_inertia is not None)
+        weight = {"sun": self.teeth_sun, "ring": self.teeth_ring, "carrier": -self.teeth_sun - self.teeth_ring}
+        found = []
+        for key, gear in zip(EFFICIENCIES, ("sun", "ring"), strict=True):
+            if getattr(self, key) is None:
+                continue
+            over = weight[gear] / weight[self.driven]
+            at, against = place.get(gear), place.get("carrier")
+            held = at is None  # the gear is: then the carrier rubs
+            found.append(
+                MeshLoss(against or 0, None, driven, -over, key)
+                if held
+                else MeshLoss(at or 0, against, driven, over, key)
+            )
+        return tuple(found)
 
     @property
     def planet_radius(self) -> float:

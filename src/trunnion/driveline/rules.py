@@ -108,6 +108,7 @@ RULES = {
         ),
         NamedRule("brake-heat", "the friction power that a brake states as its rating", "the maker's sheet"),
         NamedRule("converter-heat", "the heat that a torque converter states as its rating", "the maker's sheet"),
+        NamedRule("gear-heat", "the lost power that gears or a belt state as their rating", "the maker's sheet"),
         NamedRule("damper-heat", "the heat that a damper states as its rating", "the maker's sheet"),
         NamedRule("pendulum-travel", "the travel that a centrifugal pendulum states as its stop", "the file"),
         NamedRule("slip-clutch", "a slip clutch sticks: its torque stays below its capacity", "mechanics"),

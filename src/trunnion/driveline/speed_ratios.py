@@ -11,6 +11,11 @@ from trunnion.driveline.parts import Dragged, Geared, Jointed, Loose, Part, Pres
 
 def speed_ratios(line: ElementChain) -> list[Fraction]:
     """Mean speed over the input's of the shaft in front of every element."""
+    return [own[0] for own in coordinate_speeds(line)]
+
+
+def coordinate_speeds(line: ElementChain) -> list[list[Fraction]]:
+    """Mean speeds over the input's of the coordinates of every element, that of the shaft in front of it first."""
     found: list[list[Fraction]] = []
     for i, element in enumerate(line.elements):
         parent = line.parents[i]
@@ -19,7 +24,7 @@ def speed_ratios(line: ElementChain) -> list[Fraction]:
             if (turned := _turned(part, own)) is not None:
                 own.append(turned)
         found.append(own)
-    return [own[0] for own in found]
+    return found
 
 
 def _turned(part: Part, own: Sequence[Fraction]) -> Fraction | None:

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.loss_curves import loses
 from trunnion.driveline.parts import Numbers
 from trunnion.driveline.quantities import TEMPERATURE, TORQUE, shown
 from trunnion.errors import InputError
@@ -59,7 +60,7 @@ CHANGES = "the torque changes here"
 
 
 def refuse_torque_tables(line: Driveline, remedy: str, why: str = CHANGES) -> None:
-    """Refuse couplings whose stiffness follows the mean torque, where that changes.
+    """Refuse couplings whose stiffness follows the mean torque, and gears that lose a share of it, where that changes.
 
     Raises
     ------
@@ -70,4 +71,11 @@ def refuse_torque_tables(line: Driveline, remedy: str, why: str = CHANGES) -> No
             raise InputError(
                 f"follow the mean torque, by which the stiffness holds for small motions about it, and {why}",
                 element=name, key="stiffnesses", remedy=remedy,
+            )  # fmt: skip
+        if loses(element):
+            key = element.losses[0].key if element.losses else "drag_torque"
+            raise InputError(
+                f"holds by the torque of steady running, and {why if why is CHANGES else 'that is not enclosed'}",
+                element=name, key=key, value=getattr(element, key),
+                remedy="leave it out, or write what it takes as the load_torque of a Disk",
             )  # fmt: skip

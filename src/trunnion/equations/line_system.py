@@ -437,11 +437,11 @@ def line_system(
         require_tree(assembly, "nonlinear equations do")
     if not assembly.topology.compliances:
         raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
-    for name, rotor in assembly.topology.rotors:
-        if rotor.tangent and not linearised:
-            at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
-            remark = f"{name}: equations of motion have its torque over speed by the tangent at {at} of the input"
-            warnings.warn(InputRemark(remark), stacklevel=2)
+    held = {name: "torque over speed by the tangent" for name, rotor in assembly.topology.rotors if rotor.tangent}
+    held |= {rub.name: "losses by the mean torque" for rub in assembly.topology.rubs}
+    for name, what in held.items() if not linearised else ():
+        at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
+        warnings.warn(InputRemark(f"{name}: equations of motion have its {what} at {at} of the input"), stacklevel=2)
     return LineSystem(assembly, float(speed), leaves)
 
 

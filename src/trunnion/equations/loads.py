@@ -18,6 +18,7 @@ from trunnion.driveline.elements import Disk, Loaded, Rotor
 from trunnion.driveline.machines import ElectricMachine, Motor
 from trunnion.driveline.parts import Numbers
 from trunnion.driveline.quantities import SPEED, TORQUE, shown
+from trunnion.equations.gear_losses import LostTorques, lost_torques
 from trunnion.equations.line_coefficients import TorqueLag
 from trunnion.equations.topology import Topology
 from trunnion.errors import InputError
@@ -46,14 +47,43 @@ def station_loads(topo: Topology, column: Column, table: Array) -> StationLoads:
     ------
     InputError : a speed beyond the curve of a machine; a motor that would have to carry more than it can.
     """
-    loads = _described(topo, column, table)
+    loads = _resisting(topo, column, table)
     if topo.free and (share := given_shares(topo, column, table)).any():
-        left = load_at_input(topo, column, table)
-        alone = topo.rigid_count == 1
-        torque = drive_torques(topo, share, left) if alone else _balancing(topo, share, loads, table[:, 0])
+        torque = _carried_by(topo, share, loads, table[:, 0])
         loads = replace(loads, constant=loads.constant + torque)
         _put_slopes(topo, column, table, loads, torque / np.where(share > 0, share, 1.0))
     return loads
+
+
+def gear_losses(topo: Topology, column: Column, table: Array) -> LostTorques:
+    """What gears lose at every row of packed numbers (cases, columns), drives balanced."""
+    return _lost(topo, column, table, _described(topo, column, table))
+
+
+def _resisting(topo: Topology, column: Column, table: Array) -> StationLoads:
+    """As described, and what gears lose."""
+    loads = _described(topo, column, table)
+    if not (topo.rubs or topo.drags):
+        return loads
+    return replace(loads, constant=loads.constant + _lost(topo, column, table, loads).resists)
+
+
+def _lost(topo: Topology, column: Column, table: Array, loads: StationLoads) -> LostTorques:
+    share = given_shares(topo, column, table) if topo.free else np.zeros(0)
+
+    def carried(lost: Array) -> Array:
+        resisting = replace(loads, constant=loads.constant + lost)
+        felt = mean_load(topo, resisting, table[:, 0])
+        return felt + _carried_by(topo, share, resisting, table[:, 0]) if share.any() else felt
+
+    return lost_torques(topo, column, table, carried)
+
+
+def _carried_by(topo: Topology, share: Array, loads: StationLoads, speed: Array) -> Array:
+    """Loads (case, station) [N m], negative, of drives that carry all others by their ``share`` (case, station)."""
+    if topo.rigid_count > 1:
+        return _balancing(topo, share, loads, speed)
+    return drive_torques(topo, share, mean_load(topo, loads, speed) @ np.abs(topo.mean_speeds))
 
 
 def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
@@ -169,7 +199,7 @@ def accelerating_loads(
 def load_at_input(topo: Topology, column: Column, table: Array) -> Array:
     """Torque [N m] at the input (case,) that the loads ask for at the speed in column 0, and that drives with a share
     carry between them."""
-    return np.asarray(mean_load(topo, _described(topo, column, table), table[:, 0]) @ np.abs(topo.mean_speeds))
+    return np.asarray(mean_load(topo, _resisting(topo, column, table), table[:, 0]) @ np.abs(topo.mean_speeds))
 
 
 def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:

@@ -10,8 +10,9 @@ from trunnion.driveline.mean_balance import balances_in_words
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.gear_losses import sliding
 from trunnion.equations.graph_matrices import require_fixed_speeds
-from trunnion.equations.loads import drive_places, given_shares, loads_on_unknowns, mean_loads, own_load
+from trunnion.equations.loads import drive_places, gear_losses, given_shares, loads_on_unknowns, mean_loads, own_load
 from trunnion.errors import InputError
 
 BALANCED = 1e-9
@@ -191,8 +192,10 @@ def torques_in_words(assembly: Assembly, row: Array) -> str:
     """What resists and what drives a free line at one row of packed numbers, without a full stop."""
     torques = _at_input(assembly, row[None])[0]
     names = assembly.line.names
-    lossy = [assembly.topology.compliances[e].shafts[0] for e in assembly.topology.converting]
-    places = [*(i for _, i in assembly.topology.disks), *lossy[: len(assembly.topology.lost)]]
+    topo = assembly.topology
+    lossy = [topo.compliances[e].shafts[0] for e in topo.converting]
+    places = [*(i for _, i in topo.disks), *lossy[: len(topo.lost)], *(rub.element for rub in topo.rubs)]
+    places += [i for _, i in topo.drags]
     named = [(names[i], float(torque)) for i, torque in zip(places, torques, strict=True) if torque]
     resist = ", ".join(f"{name} {torque:.5g}" for name, torque in named if torque > 0)
     drive = ", ".join(f"{name} {-torque:.5g}" for name, torque in named if torque < 0)
@@ -208,11 +211,16 @@ def carried_at_input(assembly: Assembly, row: Array) -> float:
 
 
 def _at_input(assembly: Assembly, table: Array) -> Array:
-    """Mean torques of disks and machines taken to the input (cases, rotor) [N m]; behind them what converters lose."""
-    topo = assembly.topology
+    """Mean torques of disks and machines taken to the input (cases, rotor) [N m]; behind them what converters lose, and
+    what gears do."""
+    topo, gears = assembly.topology, np.zeros((len(table), 0))
+    if topo.rubs or topo.drags:
+        found = gear_losses(topo, assembly.packed.column, table)
+        rubs = found.friction * np.abs([sliding(topo, rub) for rub in topo.rubs])
+        gears = np.hstack([rubs, found.drag * np.abs(topo.mean_speeds[[station for station, _ in topo.drags]])])
     rotors = _own_loads(assembly, table) * np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
     lost = [torque * abs(topo.mean_speeds[station]) for station, torque in topo.lost]
-    return np.hstack([rotors, np.broadcast_to(lost, (len(table), len(lost)))])
+    return np.hstack([rotors, np.broadcast_to(lost, (len(table), len(lost))), gears])
 
 
 def _own_loads(assembly: Assembly, table: Array) -> Array:

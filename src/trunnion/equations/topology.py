@@ -30,6 +30,7 @@ from trunnion.driveline.gears import GearPair
 from trunnion.driveline.parts import Dragged, Geared, Heavy, Jointed, Loose, Prescribed, Sprung, Tied
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.driveline.torque_converters import TorqueConverter
+from trunnion.equations.lossy_gears import Rub, lossy_gears, refuse_in_loops
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import LONGEST_PERIOD, common_rate
 
@@ -122,7 +123,8 @@ class Topology:
     station and element of those that outer torques act on, ``rotors`` these elements by name; ``meshes`` are those that
     vary with their phase. ``names`` are those of the unknowns; ``points`` are station and name of what is seen to move:
     each disk where it is, what else is heavy where none is. ``lost`` are stations and the torque [N m] by which what
-    does not pass its power on resists there. What follows from these is found once.
+    does not pass its power on resists there; ``rubs`` are gears that lose power, ``drags`` station and element of those
+    whose oil resists. What follows from these is found once.
     """
 
     stations: tuple[Station, ...]
@@ -138,6 +140,8 @@ class Topology:
     meshes: tuple[Mesh, ...]
     points: tuple[tuple[int, str], ...]
     lost: tuple[tuple[int, float], ...] = ()
+    rubs: tuple[Rub, ...] = ()
+    drags: tuple[tuple[int, int], ...] = ()
 
     @cached_property
     def size(self) -> int:
@@ -380,8 +384,13 @@ def topology(line: Driveline) -> Topology:
     InputError : a joint or a point between two damped shafts has no inertia to carry it, or the line has
         no inertia at all.
     """
-    found = _merge_massless(line, stations_of(line))
+    draft = stations_of(line)
+    found = _merge_massless(line, draft)
     _require_closed(line, found)
+    rubs, drags = lossy_gears(line, draft.coordinates)
+    if rubs and any(c.far is not None for c in found.compliances):
+        refuse_in_loops(line, rubs[0], found.knot)
+    found = replace(found, rubs=rubs, drags=drags) if rubs or drags else found
     return replace(found, lost=tuple(_lost(line, found))) if found.converting else found
 
 

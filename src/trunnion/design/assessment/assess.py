@@ -16,6 +16,7 @@ from trunnion.design.assessment.couplings import coupling_ratings
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.fatigue_life import fatigue_life
 from trunnion.design.assessment.gear_hammer import gear_hammer
+from trunnion.design.assessment.gear_heat import gear_heat
 from trunnion.design.assessment.joint_angles import joint_angles, uniformity
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.result import Assessment, verdict_of
@@ -36,7 +37,8 @@ from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
 OF_RESPONSE = (
-    stated_limits, coupling_ratings, coupling_heat, brake_heat, converter_heat, ship_shafts, gear_hammer, slip_clutches
+    stated_limits, coupling_ratings, coupling_heat, brake_heat, converter_heat, gear_heat, ship_shafts, gear_hammer,
+    slip_clutches,
 )  # fmt: skip
 
 

@@ -8,7 +8,7 @@ a Ratio here, rigid and in contact; a PiecewiseShaft keeps its law of stages.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -21,6 +21,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import ConstantSpeed, Element, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, Joint
+from trunnion.driveline.loss_curves import lost_shares
 from trunnion.driveline.machines import Motor
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.quantities import SPEED, shown
@@ -46,7 +47,8 @@ class ChainStep:
 
     ``speed`` over the input's, on average; ``reach`` [m] is how far along its member the station lies. ``fork_offset``
     is what a shaft adds to the angle of the fork at its far end; ``law`` and ``orders`` are those of a joint, which has
-    no orders where it passes rotation unchanged, and ``cross`` says that it is a Hooke's joint. A Shaft has a
+    no orders where it passes rotation unchanged, and ``cross`` says that it is a Hooke's joint. Gears lose a
+    share of the power that flows to the station, and another of that which comes from it: ``lost``. A Shaft has a
     ``stiffness`` [N m/rad], one with stages its law of ``stages``. ``inertia`` [kg m²], ``load`` [N m],
     ``viscous_load`` and ``quadratic_load`` are all that sits at the station.
     """
@@ -66,6 +68,7 @@ class ChainStep:
     stiffness: float = np.inf
     stages: StageLaw | None = None
     ratio: float = 1.0
+    lost: tuple[float, float] = (0.0, 0.0)
     inertia: float = 0.0
     load: float = 0.0
     viscous_load: float = 0.0
@@ -192,6 +195,8 @@ def chain(
     step_of: list[int] = []
     for station, ratio in zip(stations.stations, stations.speed_ratio, strict=True):
         step_of.append(draft.add(station, ratio, step_of[station.before] if station.before >= 0 else -1))
+    for element, own in zip(line.elements, stations.coordinates, strict=True):
+        draft.lose(element, [step_of[s] for s in own])
     for s, i, number in stations.inertias:
         draft.put(step_of[s], line.elements[i], number)
     members = tuple(member if member.length > 0 else replace(member, length=np.nan) for member in draft.members)
@@ -265,6 +270,17 @@ class _ChainDraft:
                 quadratic_load=here.quadratic_load + load.quadratic,
             )  # fmt: skip
         self.steps[step] = here
+
+    def lose(self, element: Element, own: Sequence[int]) -> None:
+        """What gears lose: their drag at the step in front of them, and at the one that they drive the shares of its
+        power; ``own`` are the steps of the element's coordinates."""
+        here = self.steps[own[0]]
+        self.steps[own[0]] = replace(here, load=here.load + float(getattr(element, "drag_torque", None) or 0.0))
+        if element.losses:
+            turning = [float(self.steps[step].speed) for step in own]
+            shares = lost_shares(element, element.name or element.kind, turning)
+            driven = own[element.losses[0].driven]
+            self.steps[driven] = replace(self.steps[driven], lost=shares)
 
     def _load(self, step: int, rotor: Rotor) -> PowerCurve:
         """What it resists with; of another curve the tangent at the speed of the turn, nothing where none is asked for.

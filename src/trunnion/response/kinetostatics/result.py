@@ -199,7 +199,7 @@ class Kinetostatics(Result):
 
     @property
     def efficiency(self) -> float:
-        """Mean of the power that arrives over mean of the power supplied [-]; 1 without friction."""
+        """Mean of the power that arrives over mean of the power supplied [-], joints alone; 1 without friction."""
         supplied = float(np.mean(self.drive_torque * self.input_speed))
         return 1 - float(np.mean(self.power_loss)) / supplied if supplied else 1.0
 

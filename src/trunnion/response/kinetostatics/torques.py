@@ -70,7 +70,8 @@ def torques(chain: KinematicChain, drive: Drive, motion: Rotations, order: int, 
         elif step.orders:
             torque = jets.multiply(torque, np.stack(through(motion.passed[i][1:], motion.chi[i][:size])))
         elif step.link is LinkKind.RATIO:
-            torque = torque / step.ratio
+            forward, back = step.lost
+            torque = torque * np.where(torque[0] * sense > 0, 1 + forward, 1 - back) / step.ratio
         into[i] = torque
         if parent >= 0:
             out[parent] = out[parent] + torque
