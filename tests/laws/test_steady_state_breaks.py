@@ -6,6 +6,7 @@ Against the equations of motion integrated in time (``oracles.own_shooting``), w
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -29,6 +30,49 @@ def test_a_motion_on_the_flank_of_a_steep_resonance_is_followed_to():
     assert true.found.all()
     assert known.torque == pytest.approx(true.extra, rel=1e-7)
     assert known.observed().torque.mean(axis=1) == pytest.approx(true.mean_torque, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("seed", "speed"),
+    [
+        (221, 84.72009896611688),  # Rigid shafts lead nowhere.
+        (118, 82.89860214093765),  # Of two real multipliers the one beyond 1 is that of the speed.
+        pytest.param(151, 70.32448310607289, marks=pytest.mark.slow),
+        pytest.param(244, 65.66433956131459, marks=pytest.mark.slow),
+        pytest.param(20, 60.04705819682487, marks=pytest.mark.slow),
+    ],
+)
+def test_stability_judges_the_motion_on_a_steep_resonance(seed, speed):
+    line = scanned_line("free", seed)
+    found = tn.stability(line.driveline, speed)
+    true = Shooting(Steady(line)).motions(np.array([speed]))
+    assert true.found.all() and np.abs(true.start).max() > 0.2
+    assert found.extra_torque == pytest.approx(true.extra[0], rel=1e-6)
+    assert found.growth_rate == pytest.approx(growth_of_own(Steady(line), np.array([speed]))[0], rel=2e-5)
+
+
+def refused_between(seed: int, speed: float) -> tuple[float, float]:
+    """Speeds [rad/s] that ``stability`` names when it refuses."""
+    with pytest.raises(tn.ComputationError, match="several periodic motions at") as refused:
+        tn.stability(scanned_line("free", seed).driveline, speed)
+    high, low = (float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:])
+    return low, high
+
+
+def test_stability_names_the_speeds_between_which_a_line_has_several_motions():
+    low, high = refused_between(190, 64.0850750594069)
+    assert low < 64.0850750594069 < high < 1.01 * low
+
+
+@pytest.mark.slow
+def test_at_the_speeds_that_stability_refuses_motions_from_either_side_do_not_meet():
+    low, high = refused_between(190, 64.0850750594069)
+    line = scanned_line("free", 190)
+    for speed in (0.999 * low, 1.001 * high):
+        assert tn.stability(line.driveline, speed).about_steady_state
+    steady = Steady(line)
+    assert not leads_over(steady, low * 0.999, high * 1.001)
+    assert leads_over(steady, high * 1.001, high * 1.01)
 
 
 @pytest.mark.slow

@@ -184,6 +184,20 @@ class LineSystem(Portable):
         """The system with ``torque`` [N m at the input] more from its drives than balances the loads."""
         return self.system.with_fields(numbers_of=partial(self._numbers, drive=torque))
 
+    def drive_numbers(self, table: Array) -> Array:
+        """What one N m of the drives at the input changes of the numbers (case, number): constant loads of stations."""
+        topo, core = self.assembly.topology, kernel()
+        torques = drive_torques(topo, drive_places(topo, self.assembly.packed.column, table), np.ones(len(table)))
+        found = np.zeros((len(table), self._many))
+        stations = core.HEAD + core.PER_STATION * np.arange(len(topo.stations)) + core.LOAD
+        found[:, stations] = torques * np.sign(topo.mean_speeds)
+        return found
+
+    @cached_property
+    def _many(self) -> int:
+        """Numbers of a line."""
+        return len(self.numbers(self.assembly.table(1, 1.0)[0]))
+
     def untwisted(self, table: Array) -> LineCoefficients:
         """Coefficients about zero twist: what the nonlinear equations stand on."""
         return self.assembly.coefficients(table, statically_twisted=False, free_play=True)

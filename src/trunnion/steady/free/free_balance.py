@@ -22,9 +22,7 @@ from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
-from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
@@ -140,7 +138,7 @@ class SteadyStates:
     @cached_property
     def _drive(self) -> Array:
         """What one N m of the drives at the input changes of the numbers (case, number)."""
-        return self.balance.drive_of(self.table)
+        return self.balance.line.drive_numbers(self.table)
 
 
 Rows = Callable[[Array], Array]
@@ -173,20 +171,6 @@ class FreeBalance:
         other = copy(self)
         other.rows = rows
         return other
-
-    def drive_of(self, table: Array) -> Array:
-        """What one N m of the drives at the input changes of the numbers (case, number): constant loads of stations."""
-        topo, core = self.assembly.topology, kernel()
-        torques = drive_torques(topo, drive_places(topo, self.assembly.packed.column, table), np.ones(len(table)))
-        found = np.zeros((len(table), self._many))
-        stations = core.HEAD + core.PER_STATION * np.arange(len(topo.stations)) + core.LOAD
-        found[:, stations] = torques * np.sign(topo.mean_speeds)
-        return found
-
-    @cached_property
-    def _many(self) -> int:
-        """Numbers of a line."""
-        return len(self.line.numbers(self.assembly.table(1, 1.0)[0]))
 
     def numbers(self, table: Array, co: LineCoefficients) -> Array:
         """What the compiled equations read (case, number)."""

@@ -12,23 +12,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import unexcited
-from trunnion.equations.line_system import line_system
+from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.linear import line_matrices
 from trunnion.equations.linear_clutches import with_mean_clutches
 from trunnion.equations.steady_base import refuse_dragged, require_balance
 from trunnion.errors import ComputationError
 from trunnion.modes.mode_content import ModeMotion, floquet_pair
 from trunnion.numerics.integration.integration import integrate
+from trunnion.results.speeds import show_speed
+from trunnion.steady.free.periodic_steady_states import SEVERAL, SteadyStatesBySpeed, breaks
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit
 
 SAMPLES = 256
 PER_CYCLE = 8
 """Samples at least per cycle of the highest mode."""
+FAR = 0.05
+"""Distance from rigid shafts [rad] beyond which a motion is followed from speeds beside its own."""
+ASIDE = 0.1
+"""Share of the speed by which those differ from it."""
 
 
 @dataclass(frozen=True)
@@ -86,15 +94,56 @@ def periodic_steady_state(line: Driveline, speed: float, *, tolerance: float = T
     Raises
     ------
     InputError : torques that do not balance.
-    ComputationError : no motion found.
+    ComputationError : no motion found, or several at this speed.
     """
     prepared = line_system(assemble(with_mean_clutches(assemble(unexcited(line)), speed)), speed, linearised=True)
     refuse_dragged(prepared.assembly)
     require_balance(prepared.assembly, prepared.assembly.table(1, speed))
-    if prepared.assembly.topology.free:
-        orbit = kept_speed_orbit(prepared, tolerance=tolerance)
-    else:
-        orbit = periodic_orbit(prepared.system, start=prepared.twisted(), tolerance=tolerance)
+    start = prepared.twisted()
+    orbit = _closed(prepared, start, 0.0, tolerance)
+    if not orbit.outcome.ok or _far(prepared, orbit, start):
+        orbit = _followed(line, prepared, speed, tolerance) or orbit
+        if not orbit.outcome.ok:
+            orbit = _closed(prepared, start, 0.0, tolerance, settle=True)
     if not orbit.outcome.ok:
         raise ComputationError(f"no periodic motion of the line was found to judge: {orbit.outcome}")
     return PeriodicSteadyState(orbit, prepared.assembly, speed)
+
+
+def _closed(line: LineSystem, start: Array, extra: float, tolerance: float, *, settle: bool = False) -> PeriodicOrbit:
+    if line.assembly.topology.free:
+        return kept_speed_orbit(line, start, tolerance=tolerance, settle=settle, extra=extra)
+    return periodic_orbit(line.system, start=start, tolerance=tolerance, settle=settle)
+
+
+def _far(line: LineSystem, orbit: PeriodicOrbit, start: Array) -> bool:
+    """Whether a motion is so far from rigid shafts that others may have the same speed."""
+    n = line.assembly.topology.size
+    angle, rate = (float(np.abs(part).max()) for part in np.split((orbit.start - start)[: 2 * n], 2))
+    return max(angle, rate / line.speed) > FAR
+
+
+def _followed(line: Driveline, prepared: LineSystem, speed: float, tolerance: float) -> PeriodicOrbit | None:
+    """The motion that goes on to ``speed`` from slower and from faster ones; None where harmonics do not tell.
+
+    Raises
+    ------
+    ComputationError : the motions fold back, and several have this speed.
+    """
+    curve = SteadyStatesBySpeed(line)
+    if curve.obstacle:
+        return None
+    curve.broken = breaks(curve, speed * np.array([1 - ASIDE, 1.0, 1 + ASIDE]))
+    for one in curve.broken:
+        if one.low < speed < one.high and one.why == SEVERAL:
+            low, at, high = (show_speed(each, speed_unit(line)) for each in (one.low, speed, one.high))
+            raise ComputationError(
+                f"the line has several periodic motions at {at}, none of which can be told to be the one it makes: the "
+                f"one that goes on from slower speeds ends at {high}, the one that goes on from faster speeds at "
+                f"{low}; judge it outside these, or give it more damping"
+            )
+    motions = curve.at_all(np.array([speed]))
+    if not (motions.found[0] and motions.resolved[0]):
+        return None
+    orbit = _closed(prepared, motions.states[0, 0], float(motions.torque[0]), tolerance)
+    return orbit if orbit.outcome.ok else None

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -24,6 +25,7 @@ from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.line_system import LineSystem
 from trunnion.equations.steady_base import require_balance, require_share
 from trunnion.errors import InputError
+from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.steady.shooting.periodic_orbit import (
     LONGEST,
     MOST_STEPS,
@@ -49,12 +51,14 @@ def kept_speed_orbit(
     *,
     tolerance: float = TOLERANCE,
     settle: bool = True,
+    extra: float = 0.0,
     driven: Callable[[float], System] | None = None,
 ) -> PeriodicOrbit:
     """The periodic motion of a free line at its mean speed ``line.speed``; its last value is the torque at the input
     [N m] that its drives give beyond the balance of the loads.
 
-    ``driven`` : torque beyond the balance → system, by default those of ``line`` as described.
+    ``extra`` : a guess of that. ``driven`` : torque beyond the balance → system, by default those of ``line`` as
+    described.
 
     Raises
     ------
@@ -70,7 +74,7 @@ def kept_speed_orbit(
         scale = np.asarray(driving.system.scale)
         return replace(shooting_problem(driving, Phase.fixed(0, float(guess[0]), scale), (torque,)), neutral=neutral)
 
-    return judged(*close(first, fixed, (0.0,), settle=settle))
+    return judged(*close(first, fixed, (extra,), settle=settle))
 
 
 def torque_driven_orbit(line: LineSystem, speed: float, start: Array, *, tolerance: float = TOLERANCE) -> PeriodicOrbit:
@@ -137,9 +141,46 @@ def neutral_motions(line: LineSystem) -> Callable[[System, Array], NeutralDistur
         shift = system.rate_at(0.0, x, system.regime_at(0.0, x)) + moved
         if steady:
             return NeutralDisturbances(np.stack([shift, faster], axis=1))
-        return NeutralDisturbances(shift[:, None], None if by_speed else faster)
+        if by_speed:
+            return NeutralDisturbances(shift[:, None])
+        return NeutralDisturbances(shift[:, None], faster, partial(speed_grows, line, system, x))
 
     return at
+
+
+def speed_grows(line: LineSystem, system: System, x: Array, tangents: Array) -> bool | None:
+    """Whether a change of the mean speed of the closed motion from x does, under torques that stay as they are: a
+    motion grows faster that takes the less torque the faster it is. None where that cannot be computed.
+
+    A motion closes beside it where (Φ − I) dx + ∂P/∂Ω dΩ + ∂P/∂T dT = 0; ``tangents`` : Φ.
+    """
+    speed, labels = system.parameters[SPEED], line.assembly.packed.labels
+    row = np.array([[system.parameters[label] for label in labels]])
+    per_torque, torque = line.drive_numbers(row)[0], SMALL * torque_scale(line)
+
+    def driven(more: float) -> System:
+        return system.with_fields(numbers_of=lambda values: system.numbers + more * per_torque)
+
+    ends = []
+    for beside in (
+        system.with_parameters({SPEED: speed * (1 - BESIDE)}),
+        system.with_parameters({SPEED: speed * (1 + BESIDE)}),
+        driven(-torque),
+        driven(torque),
+    ):
+        run = IntegratedMap.of(beside).run(x[None])
+        if run.end is not IntegrationEnd.REACHED:
+            return None
+        ends.append(run.final[0])
+    by_speed, by_torque = (ends[1] - ends[0]) / (2 * BESIDE * speed), (ends[3] - ends[2]) / (2 * torque)
+    n = len(x)
+    whole = np.zeros((n + 1, n + 1))
+    whole[:n, :n], whole[:n, n], whole[n, 0] = tangents - np.eye(n), by_torque * torque, 1.0
+    try:
+        rise = float(np.linalg.solve(whole, np.append(-by_speed, 0.0))[-1])
+    except np.linalg.LinAlgError:
+        return None
+    return rise < 0 if np.isfinite(rise) and rise else None
 
 
 def _any(line: LineSystem, system: System, places: Iterable[int]) -> bool:

@@ -26,7 +26,7 @@ from trunnion.errors import InputError
 from trunnion.numerics.continuation.arclength import CurvePoint, once
 from trunnion.numerics.continuation.newton import Root, solve
 from trunnion.numerics.integration.integration import IntegrationEnd, Trajectory
-from trunnion.numerics.spectrum import along, multipliers, spectral_radius, without
+from trunnion.numerics.spectrum import along, multipliers, real_positive, spectral_radius, without
 from trunnion.results.parameter_names import Names
 from trunnion.results.verdict import Verdict, verdicts
 from trunnion.systems.maps import IntegratedMap, MapEvaluation, PeriodMap, RubbingMap, TimedMap
@@ -168,10 +168,12 @@ class ShootingProblem(Generic[M]):
 @dataclass(frozen=True)
 class NeutralDisturbances:
     """Disturbances of a free–free line: those that come back exactly (n, k), phase first; and where no torque
-    depends on the speed but dampers do, the change of speed (n,), whose multiplier is near 1 and stated by itself."""
+    depends on the speed but dampers do, the change of speed (n,), whose multiplier is stated by itself, and from Φ
+    (n, n) whether that ``grows``, None where it cannot be told."""
 
     returns: Array
     drifts: Array | None = None
+    grows: Callable[[Array], bool | None] = lambda tangents: None
 
 
 class ClassifiedMultipliers(NamedTuple):
@@ -206,7 +208,9 @@ class IntegratedShooting(ShootingProblem[IntegratedMap]):
         values, bound = values[order], bound[order]
         counted, counted_bound, speed = values, bound, np.nan
         if self.neutral is not None:
-            counted, counted_bound, speed = beside_neutral(scaled, error, self.neutral(system, x), basis.T / scale)
+            counted, counted_bound, speed = beside_neutral(
+                scaled, error, self.neutral(system, x), basis.T / scale, run.final[1:].T
+            )
         if isinstance(place, TimedMap) and not rests(place, run):
             one = int(np.argmin(np.abs(counted - 1)))
             counted, counted_bound = np.delete(counted, one), np.delete(counted_bound, one)
@@ -354,11 +358,12 @@ def rests(place: IntegratedMap, run: Trajectory) -> bool:
 
 
 def beside_neutral(
-    scaled: Array, error: float, neutral: NeutralDisturbances, units: Array
+    scaled: Array, error: float, neutral: NeutralDisturbances, units: Array, tangents: Array
 ) -> tuple[Complex, Array, float]:
     """The multipliers to judge, their bounds, and the one of the line's speed where that is not judged with them.
 
-    ``units`` (m, n) : takes a disturbance of the states to the coordinates in which ``scaled`` (m, m) stands.
+    ``units`` (m, n) : takes a disturbance of the states to the coordinates in which ``scaled`` (m, m) stands;
+    ``tangents`` : Φ (n, n).
     """
     aside = units @ neutral.returns
     missed = float(np.linalg.norm(scaled @ aside[:, :1] - aside[:, :1]) / np.linalg.norm(aside[:, :1]))
@@ -368,7 +373,8 @@ def beside_neutral(
     values, bound = multipliers(rest, np.array(error))
     if neutral.drifts is None or not aside.shape[1]:
         return values, bound, np.nan
-    place = along(rest, (units @ neutral.drifts) @ basis)
+    several = int(real_positive(values).sum()) > 1
+    place = along(rest, (units @ neutral.drifts) @ basis, neutral.grows(tangents) if several else None)
     return np.delete(values, place), np.delete(bound, place), float(values[place].real)
 
 
