@@ -53,7 +53,7 @@ def shares_of(misfit: Misfit, values: Array) -> Array:
 def descend(misfit: Misfit, share: Array, angle: float, held: Flags) -> FitPoint:
     """Levenberg and Marquardt's descent within the bounds; parameters ``held`` (free,) stay."""
     count, damping = len(misfit.free), 1e-3
-    residual, slope = misfit.linear(values_at(misfit, share), angle)
+    residual, slope = misfit.linear(values_at(misfit, share), angle, both=False)
     best, settled = float(residual @ residual), False
     for _ in range(ROUNDS):
         keep_time()
@@ -72,7 +72,7 @@ def descend(misfit: Misfit, share: Array, angle: float, held: Flags) -> FitPoint
             step[moving] = -np.linalg.solve(normal + damping * np.diag(scale), part.T @ residual)
             there = np.clip(share + step[:count], 0.0, 1.0)
             turned = angle + (step[count] if len(step) > count else 0.0)
-            found, steeper = misfit.linear(values_at(misfit, there), turned)
+            found, steeper = misfit.linear(values_at(misfit, there), turned, both=False)
             value = float(found @ found)
             if np.isfinite(value) and value < best:
                 improved = True

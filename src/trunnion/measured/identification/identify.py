@@ -104,7 +104,7 @@ def identify(
         raise InputError(
             f"has {misfit.count} numbers for {len(space.free)} parameters", key="data", remedy="track more orders"
         )
-    before = knowable(misfit)
+    before = knowable(misfit, around=False)
     advance(0.1)
     start = shares_of(misfit, np.array([one.nominal for one in space.free]))
     minima = search(misfit, start, seed)
@@ -175,11 +175,10 @@ def _profiled(
     for _ in range(ANEW):
         scale = max(1.0, best.chi_square / freedom) if chi2.sf(best.chi_square, freedom) < UNLIKELY else 1.0
         slope = misfit.linear(values_at(misfit, best.share), best.angle)[1]
-        spread = np.sqrt(scale * np.diag(covariance_of(slope)))
         found = []
         try:
             for k in range(len(misfit.free)):
-                found.append(profile_interval(misfit, best, k, float(spread[k]), scale))
+                found.append(profile_interval(misfit, best, slope, k, scale))
                 advance((k + 1) / len(misfit.free))
         except BetterFit as better:
             best = better.point

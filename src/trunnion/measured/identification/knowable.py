@@ -107,13 +107,17 @@ def identifiability(
     return knowable(misfit_of(assembly, data, space.free, begin))
 
 
-def knowable(misfit: Misfit, seed: int = 0) -> Knowable:
-    """Fisher's information at the line as it stands and at points within the bounds."""
+def knowable(misfit: Misfit, seed: int = 0, *, around: bool = True) -> Knowable:
+    """Fisher's information at the line as it stands and at points within the bounds.
+
+    around : look at those points in any case, and not only where the line as it stands leaves something unknown.
+    """
     free, assembly = misfit.free, misfit.channels.assembly
     start = shares_of(misfit, np.array([one.nominal for one in free]))
-    around = 0.02 + 0.96 * qmc.Sobol(len(free), seed=seed).random(POINTS)
-    shares = np.concatenate([start[None], around])
-    every = [_covariance(misfit, one) for one in shares]
+    shares, every = start[None], [_covariance(misfit, start)]
+    if around or np.any(np.sqrt(np.diag(every[0])[: len(free)]) > UNKNOWABLE):
+        shares = np.concatenate([shares, 0.02 + 0.96 * qmc.Sobol(len(free), seed=seed).random(POINTS)])
+        every += [_covariance(misfit, one) for one in shares[1:]]
     spread = np.array([np.sqrt(np.diag(one)[: len(free)]) for one in every])
     best = spread.min(axis=0)
     width = np.array([one.high - one.low for one in free])

@@ -108,23 +108,30 @@ class Misfit:
         found = self.residuals(predicted, self.angle(predicted))
         return float(found @ found)
 
-    def linear(self, values: Array, angle: float) -> tuple[Array, Array]:
-        """Residuals (residual,) and their slopes (residual, unknown) over shares of the ranges, and over the angle."""
+    def linear(self, values: Array, angle: float, *, both: bool = True) -> tuple[Array, Array]:
+        """Residuals (residual,) and their slopes (residual, unknown) over shares of the ranges, and over the angle.
+
+        both : whether slopes are by differences to either side; else to one, as descents need them, in fewer lines.
+        """
         moved, ends = [values], []
         for k, one in enumerate(self.free):
             step = STEP * (one.high - one.low)
             low, high = max(values[k] - step, one.low), min(values[k] + step, one.high)
+            if not both:
+                low, high = (values[k], high) if high > values[k] else (low, values[k])
+            places = []
             for end in (low, high):
-                point = values.copy()
-                point[k] = end
-                moved.append(point)
-            ends.append((high - low) / (one.high - one.low))
+                if end != values[k] or both:
+                    point = values.copy()
+                    point[k] = end
+                    moved.append(point)
+                    places.append(len(moved) - 1)
+                else:
+                    places.append(0)
+            ends.append((places, (high - low) / (one.high - one.low)))
         every = self.predicted(np.array(moved))
         orders = self.data.order
-        slopes = [
-            self._weighed(-turned(every[2 + 2 * k] - every[1 + 2 * k], orders, angle)) / width
-            for k, width in enumerate(ends)
-        ]
+        slopes = [self._weighed(-turned(every[b] - every[a], orders, angle)) / width for (a, b), width in ends]
         if self.begin is None:
             slopes.append(self._weighed(-turned(1j * orders[:, None] * every[0], orders, angle)))
         return self.residuals(every[0], angle), np.stack(slopes, axis=1)
