@@ -408,6 +408,7 @@ ANALYSES = (
             "MeasuredComparison.plot_run_up": "trunnion.pictures.measured:on_run_up",
         },
         command="trunnion.cli.measured:compare_measured",
+        view="measured",
     ),
     Analysis(
         "identify",
@@ -458,6 +459,7 @@ VIEWS: Mapping[str, str] = {
     "joints": "trunnion.app.views.joints:JointsView",
     "limits": "trunnion.app.views.limits:LimitsView",
     "motion": "trunnion.app.views.motion:MotionView",
+    "measured": "trunnion.app.views.measured:MeasuredView",
     "studies": "trunnion.app.views.studies:StudiesView",
 }
 """The views of the application, in the order of its page."""

@@ -123,6 +123,8 @@ class Session:
         if self.rest:
             self.rest.cancel()
         self._drop_tasks()
+        for view in self.views.values():
+            view.close()
 
     # -- what the user does ---------------------------------------------------------------------------------------
 

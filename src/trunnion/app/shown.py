@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Sequence
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import asdict, replace
 from io import BytesIO
 from pathlib import Path
@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.driveline.quantities import shown
 from trunnion.errors import ComputationError
+from trunnion.measured.signals.sources import opened
 from trunnion.pictures import design, kinetostatics, orders
 from trunnion.pictures.frequency_response import method_curve
 from trunnion.pictures.modes import growing, mode_shape, multipliers
@@ -170,6 +171,40 @@ def _rule(check: Any) -> str:
     """Name, formula, source and inputs of a check, those that it has."""
     parts = [check.rule.name, check.rule.formula, f"{check.rule.source} ({check.rule.certainty})", check.inputs]
     return "; ".join(part for part in parts if part)
+
+
+def columns(result: Any, path: str) -> Plain:
+    """Columns of a file of signals and how often the first of them was sampled [Hz], 0 where it does not say."""
+    with closing(opened(Path(path))) as source:
+        names = list(source.columns)
+        return {"columns": names, "rate": source.rate(names[0]) or 0.0}
+
+
+def measured(result: Any, channel: str = "") -> Plain:
+    """Measured orders over predicted ones, a sentence on each, and the channels that there are."""
+    every = [(k, c) for c in range(len(result.channels)) for k in range(len(result.order))]
+    of_kind = {
+        kind: [name for name, own in zip(result.channels, result.kinds, strict=True) if own == kind]
+        for kind in ("rotation", "torque")
+    }
+    return {
+        "picture": described(result, "plot")(result, channel=channel),
+        "said": [result.sentence(k, c) for k, c in every],
+        "findings": [str(f) for f in result.findings],
+        "channels": list(result.channels),
+        "references": of_kind["rotation"],
+        "torques": of_kind["torque"],
+    }
+
+
+def measured_campbell(result: Any, channel: str = "") -> Picture:
+    """Measured orders on the Campbell diagram of the line."""
+    return described(result, "plot_campbell")(result, channel=channel)
+
+
+def measured_run_up(result: Any, channel: str = "") -> Picture:
+    """Largest measured torques on the run-up of the line."""
+    return described(result, "plot_run_up")(result, channel=channel)
 
 
 def file(result: Any, ending: str, method: str, options: Plain, columns: tuple[str, ...]) -> bytes:

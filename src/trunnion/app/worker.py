@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import queue
+import shutil
 import signal
 import sys
 import threading
@@ -16,6 +17,7 @@ from collections import OrderedDict, defaultdict
 from collections.abc import Callable
 from typing import IO, Any
 
+from trunnion.app.parts.calls import FOLDERS
 from trunnion.app.parts.jobs import CUT_OFF, Job, Request, WorkerMessage, receive, send
 from trunnion.errors import InputError, InputRemark, TrunnionError
 
@@ -46,6 +48,8 @@ class WorkerLoop:
             try:
                 request: Request = receive(self.inward)
             except CUT_OFF:
+                for folder in FOLDERS:
+                    shutil.rmtree(folder, ignore_errors=True)
                 os._exit(0)  # the server has gone, whatever is being computed
             if request.job is None:
                 self.stopped.add(request.number)

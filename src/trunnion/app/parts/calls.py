@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,19 @@ GIVEN_BY_WORKER = ("progress", "threads")
 
 
 @dataclass(frozen=True)
+class SentFile:
+    """A file that the browser sent, as an argument: read where it is kept, named in Python as the user knows it."""
+
+    name: str
+    path: str
+
+
+@dataclass(frozen=True)
 class Call:
     """``function(*arguments, **keywords)``, the function as "tn.order_response" or "np.linspace".
 
-    Arguments are numbers, texts, tuples of them, ``LINE``, or further calls. ``of``: the call whose result the function
-    is a method of, then named without a library.
+    Arguments are numbers, texts, tuples of them, ``LINE``, files, or further calls. ``of``: the call whose result the
+    function is a method of, then named without a library.
     """
 
     function: str
@@ -36,6 +45,8 @@ class Call:
         library, _, name = self.function.rpartition(".")
         if name.startswith("_") or (self.of is None and library not in LIBRARIES):
             raise ValueError(f"no call of {self.function}")
+        if not given and self._reads_file:
+            return self._read(getattr(LIBRARIES[library], name))
         owner = LIBRARIES[library] if self.of is None else self.of.evaluate(line)
         function = getattr(owner, name)
         arguments = [_value(a, line) for a in self.arguments]
@@ -45,6 +56,19 @@ class Call:
             keywords |= {key: value for key, value in given.items() if key in taken and key in GIVEN_BY_WORKER}
         return function(*arguments, **keywords)
 
+    @property
+    def _reads_file(self) -> bool:
+        return bool(self.arguments) and isinstance(self.arguments[0], SentFile)
+
+    def _read(self, function: Any) -> Any:
+        """What a call reads of a file; the last one is kept, whatever becomes of the line."""
+        if _READ.get("call") != repr(self):
+            _READ.clear()
+            FOLDERS.update(Path(one.path).parent for one in self.arguments if isinstance(one, SentFile))
+            made = function(*(_value(a, None) for a in self.arguments), **self.keywords)
+            _READ.update({"call": repr(self), "result": made})
+        return _READ["result"]
+
     def text(self) -> str:
         """The call as Python."""
         if self == LINE:
@@ -53,6 +77,12 @@ class Call:
         owner = "" if self.of is None else f"{self.of.text()}."
         return f"{owner}{self.function}({', '.join(parts)})"
 
+
+_READ: dict[str, Any] = {}
+"""What was read of a file last, by its call: a recording takes seconds, which a line that is edited need not wait."""
+
+FOLDERS: set[Path] = set()
+"""Where files were that the browser sent: whoever is left of a server that was killed deletes them."""
 
 LINE = Call("line")
 """Stands for the driveline: an argument of calls, and a call where it is shown as it is."""
@@ -114,6 +144,8 @@ def _value(argument: Any, line: Any) -> Any:
     match argument:
         case Call():
             return argument.evaluate(line)
+        case SentFile():
+            return argument.path
         case tuple():
             return tuple(_value(part, line) for part in argument)
         case Mapping():
@@ -125,6 +157,8 @@ def _text(argument: Any) -> str:
     match argument:
         case Call():
             return argument.text()
+        case SentFile():
+            return repr(argument.name)
         case tuple():
             inside = ", ".join(_text(part) for part in argument)
             return f"({inside},)" if len(argument) == 1 else f"({inside})"

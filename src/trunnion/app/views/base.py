@@ -268,6 +268,9 @@ class View(ABC):
     def steps(self, line: Driveline) -> list[ViewStep]:
         """What is computed, in order."""
 
+    def close(self) -> None:  # noqa: B027 - most views keep nothing
+        """The page is gone: let go what was kept for it."""
+
     # -- what they share ------------------------------------------------------------------------------------------
 
     def of(self, variant: str) -> VariantPane[Any]:
