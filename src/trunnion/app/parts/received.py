@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path, PurePosixPath, PureWindowsPath
-from typing import BinaryIO
+from typing import BinaryIO, NoReturn
 
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
@@ -60,8 +60,9 @@ class ReceivedFile:
         self.size, self.taken = size, 0
         self._folder = tempfile.TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
         self.path = Path(self._folder.name, f"signals{ending}")
+        self._stream: BinaryIO | None = None
         try:
-            self._stream: BinaryIO | None = self.path.open("wb")
+            self._stream = self.path.open("wb")
         except OSError:
             self.close()
             raise
@@ -78,7 +79,7 @@ class ReceivedFile:
         ------
         InputError : a chunk that does not follow the one before, or is more than was said; a disk that is full.
         """
-        if self._stream is None or place != self.taken or not isinstance(chunk, bytes | bytearray | memoryview):
+        if self._stream is None or place != self.taken or not isinstance(chunk, bytes | bytearray):
             self._refuse("did not arrive in order", REMEDY)
         if not 0 < len(chunk) <= CHUNK or self.taken + len(chunk) > self.size:
             self._refuse("is not as long as the browser said", REMEDY)
@@ -91,13 +92,13 @@ class ReceivedFile:
         except OSError as error:
             self._refuse(f"cannot be kept ({error.strerror})", "make room on the disk of this machine")
 
-    def _refuse(self, what: str, remedy: str) -> None:
+    def _refuse(self, what: str, remedy: str) -> NoReturn:
         self.close()
         raise InputError(what, key="measured file", value=self.name, remedy=remedy)
 
     def close(self) -> None:
         """Delete it."""
-        if getattr(self, "_stream", None) is not None:
-            self._stream.close()  # type: ignore[union-attr]
+        if self._stream is not None:
+            self._stream.close()
             self._stream = None
         self._folder.cleanup()
