@@ -13,13 +13,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import median_filter
 
-from trunnion.arrays import Array, Flags, Integers
+from trunnion.arrays import Array, Flags, Integers, Places
 
 NEIGHBOURS = 15
 """Gaps whose median is taken for the usual one."""
 SHORT, LONG = 0.55, 1.55
 """Shares of the usual gap below which an edge is double and above which one is missing."""
 MOST_PASSES = 20
+BESIDE = 3
+"""Gaps on either side by which it is judged whether those between are several."""
+SMOOTHER = 0.6
+"""Share of its roughness that a row of gaps may keep where some of them are taken for several."""
 SEVERAL = 5
 """Steps of a gap from which it is counted by what both sides show."""
 LEAST_SIDE = 6
@@ -54,13 +58,54 @@ def mended(times: Array, teeth: int) -> MendedEdges:
             break
         kept[np.flatnonzero(kept)[double]] = False
     gap = np.diff(times[kept])
-    steps = np.ones(len(gap), dtype=np.int64)
-    if len(gap) >= 3:
-        long = gap > LONG * _usual(gap)
-        steps[long] = np.maximum(np.rint(gap[long] / _between(gap, long)), 1).astype(np.int64)
+    steps = _steps(gap)
     doubtful = _recounted(times[kept], steps, teeth)
     number = np.concatenate([[0], np.cumsum(steps)]).astype(np.int64)
     return MendedEdges(kept, number, int((steps - 1).sum()), int((~kept).sum()), doubtful)
+
+
+def _steps(gap: Array) -> Integers:
+    """How many pitches each gap (gap,) spans.
+
+    A shaft that swings far makes gaps as long as where a pulse is missing, but smoothly: a gap is taken for several
+    only where the gaps around it run more smoothly so.
+    """
+    steps = np.ones(len(gap), dtype=np.int64)
+    for _ in range(MOST_PASSES if len(gap) >= 3 else 0):
+        each = gap / steps
+        beside = np.minimum(np.append(np.inf, each[:-1]), np.append(each[1:], np.inf))
+        long = (each > LONG * np.maximum(_usual(each), beside)) | (each > LONG * _smoothly(each))
+        counted = np.ones_like(steps)
+        counted[long] = np.maximum(np.rint(each[long] / _between(each, long)), 1)
+        changed = False
+        for run in _runs(np.flatnonzero(counted > 1)):
+            around = slice(max(int(run[0]) - BESIDE, 0), int(run[-1]) + BESIDE + 1)
+            fewer = np.maximum(counted - (counted < SEVERAL), 1)
+            way = min((counted, fewer), key=lambda one: _roughness(each[around] / one[around]))
+            if _roughness(each[around] / way[around]) < SMOOTHER * _roughness(each[around]):
+                steps[run] *= way[run]
+                changed = True
+        if not changed:
+            break
+    return steps
+
+
+def _smoothly(gap: Array) -> Array:
+    """What the two gaps on either side of each make of it: a cubic through their logarithms; infinite at the ends."""
+    found = np.full(len(gap), np.inf)
+    size = np.log(gap)
+    found[2:-2] = np.exp((4 * (size[1:-3] + size[3:-1]) - size[:-4] - size[4:]) / 6)
+    return found
+
+
+def _roughness(gap: Array) -> float:
+    """Sum of squares of second differences of logarithms."""
+    return float((np.diff(np.log(gap), 2) ** 2).sum())
+
+
+def _runs(places: Places) -> list[Places]:
+    """Places one after another, in groups of neighbours."""
+    return np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if len(places) else []
 
 
 def _recounted(times: Array, steps: Integers, teeth: int) -> tuple[float, ...]:
