@@ -22,7 +22,7 @@ SHORT, LONG = 0.55, 1.55
 MOST_PASSES = 20
 BESIDE = 3
 """Gaps on either side by which it is judged whether those between are several."""
-SMOOTHER = 0.6
+SMOOTHER = 0.8
 """Share of its roughness that a row of gaps may keep where some of them are taken for several."""
 SEVERAL = 5
 """Steps of a gap from which it is counted by what both sides show."""
@@ -74,7 +74,11 @@ def _steps(gap: Array) -> Integers:
     for _ in range(MOST_PASSES if len(gap) >= 3 else 0):
         each = gap / steps
         beside = np.minimum(np.append(np.inf, each[:-1]), np.append(each[1:], np.inf))
-        long = (each > LONG * np.maximum(_usual(each), beside)) | (each > LONG * _smoothly(each))
+        slow = each > LONG * _usual(each)
+        long = slow & (each > LONG * beside)
+        # Between two such gaps one that is as long may be of their kind.
+        long[1:-1] |= slow[1:-1] & long[:-2] & long[2:]
+        long |= each > LONG * _smoothly(each)
         counted = np.ones_like(steps)
         counted[long] = np.maximum(np.rint(each[long] / _between(each, long)), 1)
         changed = False
@@ -149,7 +153,7 @@ def _step_between(before: Array, after: Array, number: Array, beyond: Array, deg
 
 
 def _usual(gap: Array) -> Array:
-    return np.asarray(median_filter(gap, size=min(NEIGHBOURS, len(gap)), mode="nearest"))
+    return np.asarray(median_filter(gap, size=min(NEIGHBOURS, len(gap)), mode="mirror"))
 
 
 def _between(gap: Array, long: Flags) -> Array:
