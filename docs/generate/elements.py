@@ -47,6 +47,7 @@ TABLES = {
     "Slider": "`friction` of a Clutch",
     "TorquePoint": "`curve` of a machine",
     "ConverterPoint": "`curves` of a torque converter",
+    "OilPoint": "`oil` of a viscous damper",
 }
 """Where each further table of a file stands."""
 SHARED = ("type", "name", "after")

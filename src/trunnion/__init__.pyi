@@ -38,6 +38,7 @@ from trunnion.driveline import LevelCrossing as LevelCrossing
 from trunnion.driveline import Limit as Limit
 from trunnion.driveline import LoadCase as LoadCase
 from trunnion.driveline import Motor as Motor
+from trunnion.driveline import OilPoint as OilPoint
 from trunnion.driveline import Operation as Operation
 from trunnion.driveline import PiecewiseShaft as PiecewiseShaft
 from trunnion.driveline import Planetary as Planetary
@@ -85,6 +86,7 @@ from trunnion.driveline.excitation_file import read_excitation as read_excitatio
 from trunnion.driveline.layout import combined_angle as combined_angle
 from trunnion.driveline.layout import layout as layout
 from trunnion.driveline.mean_balance import mean_speeds as mean_speeds
+from trunnion.driveline.oil import read_oil as read_oil
 from trunnion.driveline.parameters import Parameter as Parameter
 from trunnion.driveline.parameters import Term as Term
 from trunnion.driveline.parameters import pack as pack

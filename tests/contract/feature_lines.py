@@ -208,6 +208,12 @@ def damped_by(damper: object) -> Change:
     return behind("hub", damper)
 
 
+def oiled() -> tn.ViscousDamper:
+    """With oil by its complex stiffness over all frequencies that are asked of."""
+    table = [{"frequency": 10.0**k, "stiffness": 3.0 * 2**k, "loss_stiffness": 12.0 * 3**k} for k in range(-2, 8)]
+    return tn.ViscousDamper(ring_inertia=0.03, oil=table, oil_frequency=200.0)
+
+
 def pendulum() -> tn.CentrifugalPendulum:
     """One that counts beside the hub."""
     return tn.CentrifugalPendulum(mass=2.0, radius=0.1, order=2.0, damping=0.05, name="pendulum")
@@ -322,6 +328,9 @@ CHANGES: dict[str, tuple[Change, Change]] = {
         coupled(stiffness=1e4, temperature=350.0, temperatures=[300.0, 360.0], stiffness_factors=[1.0, 0.6]),
     ),
     "viscous damper": (same, damped_by(tn.ViscousDamper(ring_inertia=0.03, damping=4.0, stiffness=900.0))),
+    "oil over frequency": (
+        damped_by(tn.ViscousDamper(ring_inertia=0.03, damping=4.0, stiffness=900.0)), damped_by(oiled())
+    ),
     "damper without a spring": (same, damped_by(tn.ViscousDamper(inertia=0.02, ring_inertia=0.03, damping=4.0))),
     "tuned damper": (same, damped_by(tn.TunedDamper(ring_inertia=0.03, stiffness=2e3, damping=1.0))),
     "centrifugal pendulum": (unbent, lambda line: damped_by(pendulum())(unbent(line))),

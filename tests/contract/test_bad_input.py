@@ -183,6 +183,9 @@ def long_line(inertias: int) -> Driveline:
     return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
 
 
+OIL = [{"frequency": w, "stiffness": 10 * w, "loss_stiffness": 30 * w} for w in (10.0, 100.0)]
+
+
 def toothed(**changes: object) -> GearPair:
     return GearPair(**{"teeth_in": 20, "teeth_out": 40, "module": 0.003, "mesh_stiffness": 1e8} | changes)
 
@@ -1612,6 +1615,63 @@ PYTHON = [
         "Engine.firing_intervals = ['180 deg', '-180 deg', '360 deg', '360 deg']: must not be negative",
         "crank angle from each firing",
     ),
+    (lambda: ViscousDamper(ring_inertia=1), "ViscousDamper.damping: is missing", "45 N*m*s/rad"),
+    (lambda: ViscousDamper(ring_inertia=1, oil=OIL), "ViscousDamper.oil_frequency: is needed with oil", "60 Hz"),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, oil=OIL, oil_frequency=50),
+        "ViscousDamper.damping = 1: conflicts with oil",
+        "leave one of the two out",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, damping=1, oil_frequency=50),
+        "ViscousDamper.oil_frequency = 50: belongs to oil",
+        "or leave it out",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=OIL, oil_frequency=50, oil_temperature=300),
+        "ViscousDamper.oil_temperature = 300: has no temperatures of oil beside it",
+        "leave it out",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=[one | {"temperature": 300} for one in OIL], oil_frequency=50),
+        "ViscousDamper.oil_temperature: is needed with temperatures of oil",
+        "70 degC",
+    ),
+    (
+        lambda: ViscousDamper(
+            ring_inertia=1, oil=[one | {"temperature": 300} for one in OIL], oil_frequency=50, oil_temperature=310
+        ),
+        "ViscousDamper.oil_temperature = 310: lies beyond the temperatures of its oil",
+        "add points",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=OIL, oil_frequency=5),
+        "ViscousDamper.oil: is known from 1.592 Hz to 15.92 Hz, and 0.7958 Hz is asked of",
+        "add points",
+    ),
+    (lambda: ViscousDamper(ring_inertia=1, oil="oil.csv"), "ViscousDamper.oil = 'oil.csv'", "tn.read_oil(path)"),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=OIL[:1]),
+        "ViscousDamper.oil = [{'frequency': 10.0, 'loss",
+        "must have two points",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=OIL[::-1]),
+        "ViscousDamper.oil = [{'frequency': 100.0",
+        "does not rise in frequency",
+    ),
+    (
+        lambda: ViscousDamper(ring_inertia=1, oil=[OIL[0], OIL[1] | {"temperature": 300}]),
+        "ViscousDamper.oil = [{'frequency': 10.0",
+        "has points with and without a temperature; write it at all of them, or at none",
+    ),
+    (lambda: tn.OilPoint(frequency=1, stiffness=1), "oil.loss_stiffness: is missing", "loss_factor = 3.5"),
+    (
+        lambda: tn.OilPoint(frequency=1, stiffness=1, loss_stiffness=1, loss_factor=1),
+        "oil.loss_stiffness = 1: conflicts with loss_factor",
+        "or loss_factor",
+    ),
+    (lambda: tn.OilPoint(frequency=0, stiffness=1, loss_factor=1), "oil.frequency = 0: must be positive", "50 Hz"),
     (lambda: Ratio(ratio=2, efficiency=1.1), "Ratio.efficiency = 1.1: must be above 0, and at most 1", "0.98"),
     (lambda: Ratio(ratio=2, drag_torque=-1), "Ratio.drag_torque = -1: must not be negative", "either direction"),
     (lambda: Ratio(ratio=2, efficiency=0.9, heat_rating=0), "Ratio.heat_rating = 0: must be positive", "W"),

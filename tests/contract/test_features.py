@@ -154,7 +154,7 @@ def test_every_analysis_has_a_row() -> None:
 
 def test_every_field_belongs_to_a_feature() -> None:
     models = [*KINDS.values(), Element, Excitation, tn.TransmissionError, tn.StiffnessVariation, tn.Ripple, tn.Slider]
-    models += [tn.PressureCurve, tn.TorquePoint, tn.ConverterPoint, tn.Sheet]
+    models += [tn.PressureCurve, tn.TorquePoint, tn.ConverterPoint, tn.OilPoint, tn.Sheet]
     models += [tn.Driveline, tn.Limit, Operation, LoadCase, tn.Schedule, tn.SwitchedOff, tn.TitleBlock]
     models += [tn.SNCurve, tn.Duty, tn.SpeedPassage]
     common = set(Element.model_fields)

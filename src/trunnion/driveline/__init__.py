@@ -25,6 +25,7 @@ from trunnion.driveline.gears import GearPair, StiffnessVariation, TransmissionE
 from trunnion.driveline.joints import DoubleCardanJoint, HookeJoint, IdealJoint, TripodJoint
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
+from trunnion.driveline.oil import OilPoint
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
@@ -99,6 +100,7 @@ __all__ = [
     "SlipClutch",
     "TorqueConverter",
     "ConverterPoint",
+    "OilPoint",
     "Ripple",
     "RzeppaJoint",
     "TripodJoint",

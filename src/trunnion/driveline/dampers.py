@@ -2,14 +2,32 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from pydantic import Field, model_validator
+import numpy as np
+from pydantic import Field, PrivateAttr, model_validator
 
 from trunnion.driveline.elements import not_negative, positive
+from trunnion.driveline.oil import POINTS, UNSTATED, Oil, oil_stiffness
 from trunnion.driveline.parts import Dragged, Heavy, Numbers, Part, Sprung
-from trunnion.driveline.quantities import Damping, Inertia, Maybe, Power, Stiffness, optional
+from trunnion.driveline.quantities import (
+    FREQUENCY,
+    TEMPERATURE,
+    Damping,
+    Frequency,
+    Inertia,
+    Maybe,
+    Power,
+    Stiffness,
+    Temperature,
+    optional,
+    shown,
+)
 from trunnion.driveline.shafts import Elastic
+from trunnion.errors import InputError
+
+if TYPE_CHECKING:
+    from trunnion.laws.oil import OilStiffness
 
 
 class Damper(Elastic):
@@ -57,11 +75,18 @@ class ViscousDamper(Damper):
     multiplier of the line is exactly 1 (one eigenvalue 0), which stability, modes and charts set aside. Silicone is a
     little elastic too: at one frequency ν its complex stiffness k′ + iνc′ is a ``stiffness`` k′ and a ``damping`` c′.
 
+    As a maker's sheet has it over frequency and temperature it is ``oil``: forced responses of straight lines have it
+    at the frequency of each order, ``natural_frequencies`` at that of each mode; all else takes it as at
+    ``oil_frequency``, where a spring and a damper are the same, and a remark says how far they part beside it.
+
     Parameters
     ----------
     inertia, ring_inertia, heat_rating : as of a ``Damper``.
     damping : c of the oil [N m s/rad]; ``trunnion.damper_optimum`` finds the best for one mode.
     stiffness : k′ of the oil [N m/rad] at the frequency that matters; none by default.
+    oil : instead of both its complex stiffness, see ``OilPoint``; a CSV file in a description, or ``read_oil(path)``.
+    oil_frequency : at which equations in time take the oil [rad/s].
+    oil_temperature : of the oil [K], where its points state some.
 
     >>> ViscousDamper(ring_inertia=0.12, damping="45 N*m*s/rad").dragged
     True
@@ -69,24 +94,106 @@ class ViscousDamper(Damper):
 
     example: ClassVar[str] = 'ring_inertia = "0.12 kg*m^2" and damping = "45 N*m*s/rad"'
 
-    damping: Damping = Field(description="of the oil")
+    damping: Maybe[Damping] = optional(default=None, description="of the oil")
     stiffness: Maybe[Stiffness] = optional(
         default=None, description="of the oil at the frequency that matters; none by default"
     )
+    oil: Oil = optional(default=(), description="its complex stiffness over frequency, or a CSV file, instead")
+    oil_frequency: Maybe[Frequency] = optional(default=None, description="at which equations in time take the oil")
+    oil_temperature: Maybe[Temperature] = optional(default=None, description="of the oil")
+    _law: Any = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        positive(self, "damping", "stiffness")
+        if not self.oil:
+            for key in ("oil_frequency", "oil_temperature"):
+                if getattr(self, key) is not None:
+                    remedy = f"write {POINTS}, or leave it out"
+                    raise InputError("belongs to oil", key=key, value=getattr(self, key), remedy=remedy)
+            if self.damping is None:
+                raise InputError("is missing", key="damping", remedy=f"write {self.example}")
+            positive(self, "damping", "stiffness")
+            return self
+        for key in ("damping", "stiffness"):
+            if getattr(self, key) is not None:
+                remedy = "leave one of the two out"
+                raise InputError("conflicts with oil", key=key, value=getattr(self, key), remedy=remedy)
+        if self.oil_frequency is None:
+            remedy = 'write the frequency that matters, oil_frequency = "60 Hz", say'
+            raise InputError("is needed with oil", key="oil_frequency", remedy=remedy)
+        heated = self.oil[0].temperature is not None
+        if heated != (self.oil_temperature is not None):
+            problem = "is needed with temperatures of oil" if heated else "has no temperatures of oil beside it"
+            remedy = 'write oil_temperature = "70 degC", say' if heated else "leave it out, or give each point one"
+            raise InputError(problem, key="oil_temperature", value=self.oil_temperature, remedy=remedy)
+        self.complex_stiffness(self.oil_frequency, self.oil_temperature)
         return self
+
+    @property
+    def law(self) -> OilStiffness:
+        """Its complex stiffness."""
+        if self._law is None:
+            self._law = oil_stiffness(self.oil)
+        found: OilStiffness = self._law
+        return found
+
+    def complex_stiffness(self, frequency: Any, temperature: Any) -> Any:
+        """K′ + iK″ [N m/rad] of the oil at frequencies [rad/s] and temperatures [K] that broadcast.
+
+        Raises
+        ------
+        InputError : a frequency or a temperature beyond its points.
+        """
+        at = UNSTATED if temperature is None else temperature
+        found = self.law.at(frequency, at)
+        if np.isnan(found).any():
+            raise self._beyond(*(np.broadcast_to(one, found.shape)[np.isnan(found)][0] for one in (frequency, at)))
+        return found
+
+    def _beyond(self, frequency: float, temperature: float) -> InputError:
+        known = [one.temperature for one in self.law.isotherms]
+        if not known[0] <= temperature <= known[-1]:
+            reach = " to ".join(shown(one, TEMPERATURE) for one in (known[0], known[-1]))
+            return InputError(
+                f"lies beyond the temperatures of its oil, {reach}", key="oil_temperature",
+                value=shown(float(temperature), TEMPERATURE), remedy="add points to the table",
+            )  # fmt: skip
+        reach = " to ".join(shown(one, FREQUENCY, digits=4) for one in self.law.reach(float(temperature)))
+        return InputError(
+            f"is known from {reach}, and {shown(float(abs(frequency)), FREQUENCY, digits=4)} is asked of", key="oil",
+            element=self.name or self.kind, remedy="add points to the table, or narrow the range of speeds",
+        )  # fmt: skip
 
     @property
     def dragged(self) -> bool:
         """Whether no spring holds the ring."""
-        return self.stiffness is None
+        return self.stiffness is None and not self.oil
+
+    def _oil_of(self, number: Numbers) -> Any:
+        temperature = None if self.oil_temperature is None else number("oil_temperature")
+        return self.complex_stiffness(number("oil_frequency"), temperature)
 
     def stiffness_of(self, number: Numbers) -> Any:
-        """As stated, or none."""
+        """As stated, or of the oil at its frequency, or none."""
+        if self.oil:
+            return self._oil_of(number).real
         return 0.0 if self.stiffness is None else number("stiffness")
+
+    def damping_of(self, number: Numbers) -> Any:
+        """As stated, or of the oil at its frequency."""
+        return self._oil_of(number).imag / number("oil_frequency") if self.oil else number("damping")
+
+    @property
+    def apart(self) -> float:
+        """Largest error over the size of the complex stiffness of the spring and damper that stand for the oil, within
+        a factor of √2 of their frequency, or of its points."""
+        assert self.oil_frequency is not None
+        temperature = UNSTATED if self.oil_temperature is None else self.oil_temperature
+        low, high = self.law.reach(temperature)
+        span = np.geomspace(max(low, self.oil_frequency / 2**0.5), min(high, self.oil_frequency * 2**0.5), 65)
+        truth = self.complex_stiffness(span, self.oil_temperature)
+        taken = self.torsional_stiffness + 1j * span * self.damping_coefficient
+        return float(np.abs(taken / truth - 1).max())
 
 
 class TunedDamper(Damper):

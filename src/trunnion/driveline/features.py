@@ -28,7 +28,7 @@ from trunnion.driveline.machines import KLOSS, ElectricMachine
 from trunnion.driveline.parts import Tied
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.planetary import Planetary
-from trunnion.driveline.remarks import DRAGGED, HELD, LAG, SERIES, prescribed_excitations, unlike_in_series
+from trunnion.driveline.remarks import DRAGGED, HELD, LAG, OIL, SERIES, prescribed_excitations, unlike_in_series
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -178,6 +178,13 @@ FEATURES = (
         _where(Coupling, "temperature", lambda one: one.temperatures),
     ),
     Feature("viscous damper", _of("ViscousDamper", *_DAMPER), _kind(ViscousDamper)),
+    Feature(
+        OIL,
+        (
+            *_of("ViscousDamper", "oil", "oil_frequency", "oil_temperature"),
+            *_of("OilPoint", "frequency", "stiffness", "loss_stiffness", "loss_factor", "temperature"),
+        ),
+    ),
     Feature(DRAGGED, (), _dragged),
     Feature("tuned damper", _of("TunedDamper", *_DAMPER), _kind(TunedDamper)),
     Feature(

@@ -36,6 +36,7 @@ from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.excitation_file import read_excitation
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS, Limit
+from trunnion.driveline.oil import read_oil
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import read_pressure
 from trunnion.driveline.quantities import RATIO, SPEED, QuantityKind, written
@@ -396,6 +397,7 @@ TABLES: dict[str, Callable[[Path], tuple[Record, ...]]] = {
     "compression": read_pressure,
     "curve": read_curve,
     "curves": read_converter,
+    "oil": read_oil,
 }
 """What reads the table that a key of an element may name."""
 

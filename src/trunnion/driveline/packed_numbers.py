@@ -10,6 +10,8 @@ UNITS = {
     "loss_factor": "1",
     "relative_damping": "1",
     "temperature": "K",
+    "oil_frequency": "rad/s",
+    "oil_temperature": "K",
     "mass": "kg",
     "loss_factor_frequency": "rad/s",
     "linear_amplitude": "rad",

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from math import inf, isfinite
 
 from trunnion.driveline.chain import ElementChain
+from trunnion.driveline.dampers import ViscousDamper
 from trunnion.driveline.elements import ConstantSpeed, Rotor
 from trunnion.driveline.machines import ElectricMachine
 from trunnion.driveline.parts import Dragged, Sprung
@@ -20,6 +21,7 @@ from trunnion.driveline.vehicle import Tyre, Vehicle
 
 HELD, SERIES = "excitation of a prescribed disk", "unlike damping in series"
 DRAGGED, LAG = "damper without a spring", "lag of a motor"
+OIL = "oil over frequency"
 ALIKE = 1e-9
 """Relative difference of two c/k that counts as none."""
 
@@ -90,6 +92,16 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
                 LAG,
                 f"{name}: its torque lags above {corner}, as forced responses of straight lines and transients have "
                 "it; elsewhere its slope is taken as quasi-static, which holds well below that",
+            )
+
+    for name, element in zip(line.names, line.elements, strict=True):
+        if isinstance(element, ViscousDamper) and element.oil_frequency is not None:
+            at, apart = shown(element.oil_frequency, FREQUENCY, digits=4), element.apart
+            yield (
+                OIL,
+                f"{name}: forced responses of straight lines and natural_frequencies have its oil at their own "
+                f"frequencies; all else has a spring and a damper as it is at {at}, up to {100 * apart:.2g} % off "
+                "within a factor of 1.4 of that",
             )
 
     for name, tyre, vehicle in _rolling(line):

@@ -18,6 +18,7 @@ from trunnion.driveline.gears import StiffnessVariation, TransmissionError
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import Limit
 from trunnion.driveline.machines import KLOSS
+from trunnion.driveline.oil import OilPoint
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import FREQUENCY, RATIO, QuantityKind, json_schema_of
@@ -64,6 +65,10 @@ _RULES: dict[str, dict[str, Any]] = {
             "clamping_times": ["clamping_shares"],
             "clamping_shares": ["clamping_times"],
         }
+    },
+    "ViscousDamper": {
+        "oneOf": [{"required": ["damping"]}, {"required": ["oil"]}],
+        "dependentRequired": {"oil": ["oil_frequency"], "oil_frequency": ["oil"], "oil_temperature": ["oil"]},
     },
     "Brake": {"dependentRequired": {"stribeck_speed": ["static_torque"]}},
     "CentrifugalPendulum": {"oneOf": [{"required": ["order"]}, {"required": ["length"]}]},
@@ -214,6 +219,7 @@ def json_schema() -> dict[str, Any]:
             "Slider": _model(Slider),
             "TorquePoint": _model(TorquePoint),
             "ConverterPoint": _model(ConverterPoint),
+            "OilPoint": _model(OilPoint),
         },
     }
 

@@ -7,7 +7,7 @@ evaluates a whole row of points at once.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import groupby
@@ -19,9 +19,11 @@ import numpy as np
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.converter_balance import LOCK, input_speed, open_converter, running_line
 from trunnion.driveline.couplings import Coupling
+from trunnion.driveline.dampers import ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.mean_balance import is_left_free, own_speed
+from trunnion.driveline.oil import UNSTATED
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.pendulums import CentrifugalPendulum, Swinging
 from trunnion.driveline.quantities import SPEED, shown
@@ -31,7 +33,7 @@ from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, frequencies
 from trunnion.equations.converters import placed_converters, require_even
 from trunnion.equations.coupling_tables import table_stiffness
-from trunnion.equations.line_coefficients import LineCoefficients, MeshWave
+from trunnion.equations.line_coefficients import LineCoefficients, MeshWave, OilLink
 from trunnion.equations.loads import exciting_load, mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.sliders import refuse_friction
@@ -519,6 +521,7 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
         across=tuple(
             across for one in placed_converters(assembly.line, topo) for across in one.across(len(table)) if damped
         ),
+        oils=tuple(_oils(assembly, table, stiffness, damping)) if damped else (),
         not_carried=np.zeros_like(mean) if twisted else mean,
         joints=joint_laws(assembly, table),
         shift=shift,
@@ -529,6 +532,16 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
             if mesh.stiffness
         ),
     )
+
+
+def _oils(assembly: Assembly, table: Array, stiffness: Array, damping: Array) -> Iterator[OilLink]:
+    for e, compliance in enumerate(assembly.topology.compliances):
+        place = compliance.shafts[0]
+        damper = assembly.line.elements[place]
+        if isinstance(damper, ViscousDamper) and damper.oil:
+            stated = assembly.packed.column(place, "oil_temperature")
+            temperature = table[:, stated] if stated >= 0 else np.full(len(table), UNSTATED)
+            yield OilLink(e, damper, temperature, stiffness[:, e], damping[:, e])
 
 
 def _static_torque(assembly: Assembly, table: Array, mean: Array) -> Array:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Places
+from trunnion.driveline.dampers import ViscousDamper
 from trunnion.laws.harmonic import Harmonic
 from trunnion.laws.joint import JointLaw
 
@@ -40,6 +42,50 @@ class TorqueLag:
 
 
 @dataclass(frozen=True)
+class OilLink:
+    """Oil in a ``compliance`` by its complex stiffness; ``temperature``, and the ``stiffness`` and ``damping`` that
+    stand for it in equations in time (case,)."""
+
+    compliance: int
+    damper: ViscousDamper
+    temperature: Array
+    stiffness: Array
+    damping: Array
+
+    def added(self, frequency: Array) -> Complex:
+        """What it has beyond those [N m/rad] at ``frequency`` (…, case) [rad/s] of either sign; nothing at rest.
+
+        Raises
+        ------
+        InputError : a frequency beyond its points.
+        """
+        found = np.zeros(frequency.shape, dtype=complex)
+        moves = frequency != 0
+        at, temperature, k, c = (
+            np.broadcast_to(one, frequency.shape)[moves]
+            for one in (frequency, self.temperature, self.stiffness, self.damping)
+        )
+        found[moves] = self.damper.complex_stiffness(at, temperature) - (k + 1j * at * c)
+        return found
+
+    def take(self, rows: Places | slice) -> OilLink:
+        """At some of its cases."""
+        if len(self.temperature) == 1:
+            return self
+        parts = {key: getattr(self, key)[rows] for key in ("temperature", "stiffness", "damping")}
+        return replace(self, **parts)
+
+
+def oil_in_turn(links: Sequence[OilLink], cases: Sequence[int]) -> OilLink:
+    """One damper's oil at so many cases of each."""
+
+    def along(key: str) -> Array:
+        return np.concatenate([np.broadcast_to(getattr(one, key), n) for one, n in zip(links, cases, strict=True)])
+
+    return replace(links[0], **{key: along(key) for key in ("temperature", "stiffness", "damping")})
+
+
+@dataclass(frozen=True)
 class CrossDamping:
     """Torque that resists at station ``on`` by ``slope`` (case,) [N m s/rad] times the speed of station ``by``; where
     the torque of a ``compliance`` is asked for, it counts there."""
@@ -64,7 +110,7 @@ class LineCoefficients:
     compliance is ηk where a loss factor holds at all frequencies: the stiffness is then k + i·loss·sgn(frequency).
     ``waves``: meshes whose stiffness varies about the one given here. ``lags``: of the slopes in ``viscous``, those
     that lag; only forced responses of straight lines have them. ``across``: of torque converters, what their links do
-    not have.
+    not have. ``oils``: dampers whose oil forced responses of straight lines have at their own frequency.
     """
 
     speed: Array
@@ -83,6 +129,7 @@ class LineCoefficients:
     waves: tuple[MeshWave, ...] = ()
     lags: tuple[TorqueLag, ...] = ()
     across: tuple[CrossDamping, ...] = ()
+    oils: tuple[OilLink, ...] = ()
 
     @property
     def straight(self) -> LineCoefficients:

@@ -15,6 +15,7 @@ from trunnion.equations.aligned import UnitMasses, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.features import as_it_operates, left_out
 from trunnion.modes.damped_modes import LineModes, line_modes
+from trunnion.modes.own_frequencies import OwnModes, own_modes
 from trunnion.results.drawing import Figure, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding
@@ -38,6 +39,7 @@ class NaturalFrequencies(Result):
     rigid_motions: int = internal("how many modes twist nothing; the free rotation of the whole line is the first")
     assembly: Assembly = internal("of the line")
     unit: str = internal("that frequencies are printed in, beside Hz")
+    own: OwnModes | None = internal("where the oil of a damper is taken at each mode's own frequency", default=None)
 
     @property
     def rigid_body(self) -> bool:
@@ -90,6 +92,8 @@ class NaturalFrequencies(Result):
     @cached_property
     def modes(self) -> LineModes:
         """Eigenvalues and complex shapes, in coordinates scaled with the roots of the inertias."""
+        if self.own is not None:
+            return self.own.modes
         return line_modes(*_matrices(self.assembly), _loose(self.assembly), self.rigid_motions)
 
     @cached_property
@@ -97,6 +101,8 @@ class NaturalFrequencies(Result):
     def shape(self) -> Array:
         """Rotation of each inertia (rotation, mode) in the undamped modes, the largest entry 1."""
         unit = UnitMasses(self.assembly.aligned.inertia[0])
+        if self.own is not None:
+            return self.own.shape
         shape = unit.rotations(np.linalg.eigh(unit.of_matrix(self.assembly.aligned.stiffness[0]))[1])
         if self.still > 1:
             shape[:, : self.still] = self.assembly.topology.loose
@@ -105,7 +111,8 @@ class NaturalFrequencies(Result):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What of the line is left out."""
-        return left_out("natural_frequencies", self.assembly.line) + as_it_operates(self.assembly.line)
+        own = () if self.own is None else self.own.findings
+        return left_out("natural_frequencies", self.assembly.line) + as_it_operates(self.assembly.line) + own
 
     @property
     def hertz(self) -> Array:
@@ -204,8 +211,9 @@ def natural_frequencies(line: Driveline | Assembly) -> NaturalFrequencies:
     """
     assembly = assemble(line)
     topo = assembly.topology
-    found = frequencies(assembly.aligned, still=topo.still)[0]
-    return NaturalFrequencies(topo.names, found, topo.rigid_count, assembly, speed_unit(assembly.line))
+    own = own_modes(assembly)
+    found = frequencies(assembly.aligned, still=topo.still)[0] if own is None else own.modes.undamped
+    return NaturalFrequencies(topo.names, found, topo.rigid_count, assembly, speed_unit(assembly.line), own)
 
 
 def _matrices(assembly: Assembly) -> tuple[Array, Array, Array]:

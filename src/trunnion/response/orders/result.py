@@ -156,14 +156,23 @@ class OrderResponse(Result):
         v = np.abs(spectrum.angular_frequency)[..., None]
         q = np.abs(spectrum.amplitude[..., spectrum.channels.twist]) ** 2
         damping, loss = spectrum.damping[:, None], spectrum.loss[:, None]
-        return np.asarray(((damping * v**2 + loss * v) * q).sum(axis=1) / 2)
+        lossy = damping * v**2 + loss * v
+        if spectrum.oils:
+            lossy = np.broadcast_to(lossy, q.shape).copy()
+        for oil in spectrum.oils:
+            lossy[..., oil.compliance] += v[..., 0] * oil.added(v[..., 0].T).T.imag
+        return np.asarray((lossy * q).sum(axis=1) / 2)
 
     def heat_parts(self, spring: int) -> Array:
         """Of one spring by order (speed, order) [W^½]: what ``heat`` is the sum of the squares of, orders listed."""
         spectrum = self.spectrum
         v = np.abs(self.angular_frequency)
         damping, loss = spectrum.damping[:, None, spring], spectrum.loss[:, None, spring]
-        return np.asarray(np.sqrt((damping * v**2 + loss * v) / 2) * self.twist[:, :, spring])
+        lossy = damping * v**2 + loss * v
+        for oil in spectrum.oils:
+            if oil.compliance == spring:
+                lossy = lossy + v * oil.added(v.T).T.imag
+        return np.asarray(np.sqrt(lossy / 2) * self.twist[:, :, spring])
 
     @property
     def frequency_factor(self) -> Array:

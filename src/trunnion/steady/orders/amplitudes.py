@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Places
+from trunnion.equations.line_coefficients import OilLink, oil_in_turn
 from trunnion.laws.harmonic import families, forward, turning
 from trunnion.numerics.cycle_extremes import cycle_extremes
 from trunnion.steady.orders.channels import Channels
@@ -79,7 +80,7 @@ class OrderSpectrum:
     order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
     (speed, order, channel) of the deviation from the base motion, base (speed, order, point) [rad] of the base
     motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
-    damping and loss (1 or speed, spring) [N m s/rad, N m/rad].
+    damping and loss (1 or speed, spring) [N m s/rad, N m/rad]; ``oils`` have theirs at the frequency of each order.
     """
 
     speed: Array
@@ -92,13 +93,14 @@ class OrderSpectrum:
     channels: Channels
     damping: Array
     loss: Array
+    oils: tuple[OilLink, ...] = ()
 
     def take(self, rows: Places | slice) -> OrderSpectrum:
         """At some of its speeds."""
         damping, loss = (part[rows] if len(part) > 1 else part for part in (self.damping, self.loss))
         return replace(
             self, speed=self.speed[rows], amplitude=self.amplitude[rows], base=self.base[rows], mean=self.mean[rows],
-            cut_off=self.cut_off[rows], damping=damping, loss=loss,
+            cut_off=self.cut_off[rows], damping=damping, loss=loss, oils=tuple(one.take(rows) for one in self.oils),
         )  # fmt: skip
 
     @property
@@ -211,6 +213,9 @@ def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
         channels=first.channels,
         damping=springs([part.damping for part in parts]),
         loss=springs([part.loss for part in parts]),
+        oils=tuple(
+            oil_in_turn([part.oils[k] for part in parts], speeds) for k in range(min(len(part.oils) for part in parts))
+        ),
     )
 
 

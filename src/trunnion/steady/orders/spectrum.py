@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
@@ -259,7 +259,9 @@ class _SpectrumProblem:
         damping = self.springs.damping.copy()
         damping[:, list(self.topo.converting)] = 0.0  # a part of torques that are no damper's
         springs = (part[rows] if len(part) > 1 else part for part in (damping, self.springs.loss))
-        return total.spectrum(self.numbers[rows, 0], cut_off, *springs)
+        found = total.spectrum(self.numbers[rows, 0], cut_off, *springs)
+        oils = () if self.varies or self.own is not None else self.springs.oils
+        return replace(found, oils=tuple(one.take(rows) for one in oils)) if oils else found
 
     def _solved(self, table: Array) -> tuple[OrderSum, Array]:
         """That sum, and the relative size of the outermost harmonics, (case,)."""
@@ -298,7 +300,7 @@ class _SpectrumProblem:
                 for group, at in zip(groups, nu, strict=True)
             ]
             right = np.stack([force[:, 0] for force, _ in sources])
-            y = respond(topo, matrices, co.loss, nu, right, lags=co.lags, linearised=self.linearised)
+            y = respond(topo, matrices, co.loss, nu, right, lags=co.lags, oils=co.oils, linearised=self.linearised)
             for group, at, x, (_, error) in zip(groups, nu, y, sources, strict=True):
                 seen = motion_channels(topo, x[:, None], matrices.ratio, base.relative)
                 if topo.free:  # driven away by a constant torque, without bound
@@ -474,6 +476,9 @@ class _SpectrumProblem:
         places, v = self.places, nu[..., None]
         k, c, loss = (part[:, None, :] for part in (co.stiffness, co.damping, co.loss))
         seen[..., places.torque] = (k + 1j * v * c + 1j * np.sign(v) * loss) * seen[..., places.twist]
+        for oil in () if self.varies or self.own is not None else co.oils:
+            e = oil.compliance
+            seen[..., places.torque.start + e] += oil.added(nu.T).T * seen[..., places.twist.start + e]
         for one in co.across:
             if one.compliance is not None:
                 turned = seen[..., places.deviation] @ self.topo.turning[one.by]

@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.aligned import at_rest, rigid_rotation
-from trunnion.equations.line_coefficients import TorqueLag
+from trunnion.equations.line_coefficients import OilLink, TorqueLag
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
@@ -40,13 +40,14 @@ def straight_response(
     right: Complex,
     *,
     lags: Sequence[TorqueLag] = (),
+    oils: Sequence[OilLink] = (),
     linearised: bool = False,
 ) -> Complex:
     """Y (order, case, n) [rad] of torques ``right`` (order, case, n) at ``frequency`` (order, case) [rad/s].
 
-    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad], ``lags`` of what they have as damping. NaN where
-    the line resonates without damping. Where a free–free line is driven away, the deviations are those beside what
-    it turns as a whole.
+    ``matrices`` at one time, ``loss`` (case, compliance) [N m/rad], ``lags`` of what they have as damping, ``oils`` of
+    dampers. NaN where the line resonates without damping. Where a free–free line is driven away, the deviations are
+    those beside what it turns as a whole.
     With ``linearised`` to first order about the first case: Y₀ + A₀⁻¹(g − A Y₀).
     """
     orders, cases, n = right.shape
@@ -64,9 +65,10 @@ def straight_response(
         if place >= 0:
             own[place] += topo.relative_ratios[lag.station] ** 2 * lag.added(frequency)
     for e, (far, near) in enumerate(topo.ends):
-        if not loss[:, e].any():
+        oil = [one.added(frequency) for one in oils if one.compliance == e]
+        if not loss[:, e].any() and not oil:
             continue
-        lossy, ratio = 1j * loss[:, e] * sign, matrices.ratio[:, 0, e]
+        lossy, ratio = 1j * loss[:, e] * sign + sum(oil), matrices.ratio[:, 0, e]
         if far >= 0:
             own[far] += lossy
         if near >= 0:
@@ -98,6 +100,7 @@ def coupled_response(
     right: Complex,
     *,
     lags: Sequence[TorqueLag] = (),
+    oils: Sequence[OilLink] = (),
     linearised: bool = False,
 ) -> Complex:
     """The same as ``straight_response`` where masses couple unknowns: dense, order by order and speed by speed."""
@@ -109,6 +112,9 @@ def coupled_response(
     for lag in lags:
         turning = topo.turning[lag.station]
         matrix = matrix + lag.added(frequency)[..., None, None] * np.outer(turning, turning)
+    for oil in oils:
+        twist = topo.elongations[oil.compliance]
+        matrix = matrix + oil.added(frequency)[..., None, None] * np.outer(twist, twist)
     if not linearised:
         return _one_by_one(matrix, right)
     # To first order about the first case, whose matrix stands for all.
