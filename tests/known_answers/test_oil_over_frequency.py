@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import fsolve
 
@@ -142,8 +143,52 @@ def test_temperatures_and_a_table_beside_the_file(tmp_path: Path) -> None:
     assert tn.loads(tn.dumps(middle)).elements[1] == middle.elements[1]
 
 
+def test_motions_in_time_have_a_maxwell_element() -> None:
+    """Shaken at its frequency the settled twist is that of the oil; and the element's own equations, integrated."""
+    speed = 2 * np.pi * 60.0 / 3
+    subject = line(oil())
+    maxwell = subject.elements[1].maxwell
+    run = tn.simulate(subject, 0.6, speed=speed, tolerance=1e-10)
+    names = list(run.shafts)
+    assert "oil of damper" in names and "damper" in names
+    w, at = 3 * speed, run.time > 0.5
+    both = run.twist[at, names.index("oil of damper")] + run.twist[at, names.index("damper")]
+    wave = np.stack([np.cos(w * run.time[at]), np.sin(w * run.time[at]), np.ones(at.sum()), run.time[at]], axis=1)
+    parts = np.linalg.lstsq(wave, both, rcond=None)[0]
+    y = 80.0 * dense(w, own(w))
+    assert np.hypot(*parts[:2]) == pytest.approx(abs(y[1] - y[0]), rel=0.01)
+    k, c = maxwell.stiffness, maxwell.damping
+    assert 1 / (1 / k + 1 / (1j * w * c)) == pytest.approx(complex(own(w)), rel=1e-12)
+
+    def rates(t: float, z: np.ndarray) -> list[float]:
+        hub, between, ring, far, v_hub, v_between, v_ring, v_far = z
+        spring, drag = k * (hub - between), c * (v_between - v_ring)
+        shaft = SHAFT * (far - hub) + 4.0 * (v_far - v_hub)
+        push = 80.0 * np.cos(3 * speed * t + 0.4 + 3 * hub)
+        return [
+            v_hub, v_between, v_ring, v_far, (push + shaft - spring) / HUB, (spring - drag) / maxwell.oil_inertia,
+            drag / RING, -shaft / FAR,
+        ]  # fmt: skip
+
+    alone = solve_ivp(rates, (0, 0.05), np.zeros(8), method="LSODA", rtol=1e-10, atol=1e-13)
+    short = tn.simulate(subject, 0.05, speed=speed, tolerance=1e-10, times=[0.05])
+    assert short.twist[-1, names.index("damper")] == pytest.approx(alone.y[2, -1] - alone.y[1, -1], rel=1e-5)
+    assert short.twist[-1, names.index("shaft")] == pytest.approx(alone.y[3, -1] - alone.y[0, -1], rel=1e-5)
+
+
+def test_a_start_from_rest_drags_the_ring_along() -> None:
+    """Nothing holds the ring for good: after a blow both come to one speed, by their momentum."""
+    hub, damper, shaft, far = line(oil()).elements
+    free = tn.Driveline([hub.but(excitation=(), drive_share=None), damper, shaft, far])
+    blow = tn.AppliedTorque(on="Disk 1", time=[0.0, 0.01], torque=[300.0, 0.0], between="steps", hold=True)
+    run = tn.transient(free, 1.0, torque=[blow], speed=20.0)
+    assert run.energy.error < 1e-6
+    gained = 300.0 * 0.01 / (HUB + RING + FAR)
+    assert run.speed[-1] == pytest.approx(np.full(run.speed.shape[1], 20.0 + gained), rel=2e-3)
+
+
 def test_what_its_points_do_not_reach() -> None:
     with pytest.raises(InputError, match="damper.oil: is known from 20 Hz to 900 Hz, and 9.549 Hz is asked of"):
         tn.order_response(line(oil()), [20.0])
-    with pytest.warns(InputRemark, match="as it is at 60 Hz, up to"):
+    with pytest.warns(InputRemark, match="in series, up to [0-9.]+ % off within"):
         line(oil()).replace("damper", ring_inertia=0.2)

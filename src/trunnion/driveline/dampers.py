@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-import numpy as np
 from pydantic import Field, PrivateAttr, model_validator
 
 from trunnion.driveline.elements import not_negative, positive
@@ -76,8 +75,9 @@ class ViscousDamper(Damper):
     little elastic too: at one frequency ν its complex stiffness k′ + iνc′ is a ``stiffness`` k′ and a ``damping`` c′.
 
     As a maker's sheet has it over frequency and temperature it is ``oil``: forced responses of straight lines have it
-    at the frequency of each order, ``natural_frequencies`` at that of each mode; all else takes it as at
-    ``oil_frequency``, where a spring and a damper are the same, and a remark says how far they part beside it.
+    at the frequency of each order, ``natural_frequencies`` at that of each mode. ``simulate`` and ``transient`` have a
+    Maxwell element, spring and damper in series; all else a spring and a damper side by side. Both are the oil at
+    ``oil_frequency``, and a remark says how far they part from it beside that.
 
     Parameters
     ----------
@@ -146,8 +146,9 @@ class ViscousDamper(Damper):
         """
         at = UNSTATED if temperature is None else temperature
         found = self.law.at(frequency, at)
-        if np.isnan(found).any():
-            raise self._beyond(*(np.broadcast_to(one, found.shape)[np.isnan(found)][0] for one in (frequency, at)))
+        beyond = self.law.beyond(frequency, at)
+        if beyond is not None:
+            raise self._beyond(*beyond)
         return found
 
     def _beyond(self, frequency: float, temperature: float) -> InputError:
@@ -184,16 +185,69 @@ class ViscousDamper(Damper):
         return self._oil_of(number).imag / number("oil_frequency") if self.oil else number("damping")
 
     @property
-    def apart(self) -> float:
-        """Largest error over the size of the complex stiffness of the spring and damper that stand for the oil, within
-        a factor of √2 of their frequency, or of its points."""
+    def apart(self) -> tuple[float, float]:
+        """Largest errors over the size of the complex stiffness of a spring and a damper that stand for the oil, side
+        by side and as a Maxwell element, within a factor of √2 of their frequency, or of its points."""
         assert self.oil_frequency is not None
-        temperature = UNSTATED if self.oil_temperature is None else self.oil_temperature
-        low, high = self.law.reach(temperature)
-        span = np.geomspace(max(low, self.oil_frequency / 2**0.5), min(high, self.oil_frequency * 2**0.5), 65)
-        truth = self.complex_stiffness(span, self.oil_temperature)
-        taken = self.torsional_stiffness + 1j * span * self.damping_coefficient
-        return float(np.abs(taken / truth - 1).max())
+        temperature, series = UNSTATED if self.oil_temperature is None else self.oil_temperature, self.maxwell
+        return self.law.apart(
+            self.oil_frequency, temperature, (self.torsional_stiffness, self.damping_coefficient),
+            (series.stiffness, series.damping, series.oil_inertia),
+        )  # fmt: skip
+
+    @property
+    def maxwell(self) -> MaxwellDamper:
+        """The damper with its oil as a Maxwell element, which at ``oil_frequency`` has its complex stiffness: with
+        x = K′/K″ a spring k = K′(1 + x²)/x² and a damper c = kx/ω in series."""
+        assert self.oil_frequency is not None
+        k, w = complex(self.complex_stiffness(self.oil_frequency, self.oil_temperature)), self.oil_frequency
+        x = k.real / k.imag
+        spring = k.real * (1 + x * x) / (x * x)
+        between = min(spring / (FAST * w) ** 2, LIGHT * self.ring_inertia)
+        return MaxwellDamper(
+            inertia=self.inertia, ring_inertia=self.ring_inertia, stiffness=spring, damping=spring * x / w,
+            oil_inertia=between, name=self.name, after=self.after,
+        )  # fmt: skip
+
+
+FAST, LIGHT = 20.0, 1e-3
+"""Frequency of the oil between spring and damper on its spring, over that at which it is taken, at least; its largest
+inertia over that of the ring."""
+
+
+class MaxwellDamper(Damper):
+    """A viscous damper as motions in time have it: spring and damper in series, the oil between them light."""
+
+    springs: ClassVar[tuple[str, ...]] = ("oil of", "")
+
+    stiffness: Stiffness = Field(description="of the spring")
+    damping: Damping = Field(description="of the damper behind it")
+    oil_inertia: Inertia = Field(description="between them")
+
+    @property
+    def kind(self) -> str:
+        """As it was described."""
+        return ViscousDamper.__name__
+
+    @property
+    def dragged(self) -> bool:
+        """No spring holds the ring."""
+        return True
+
+    def parts(self) -> tuple[Part, ...]:
+        """A housing where it has an inertia of its own, the spring, the oil behind it, the damper, the ring."""
+        housing = (Heavy(of="housing of"),) if self.inertia is not None else ()
+        return (*housing, Sprung(), Heavy(1, of="oil of"), Dragged(1), Heavy(2, of="ring of"))
+
+    def inertias(self, number: Numbers) -> tuple[Any, ...]:
+        """Of the housing, the oil and the ring."""
+        return (
+            *((number("inertia"),) if self.inertia is not None else ()), self.oil_inertia, number("ring_inertia")
+        )  # fmt: skip
+
+    def links(self, number: Numbers) -> tuple[tuple[Any, Any], ...]:
+        """The spring, and the damper."""
+        return (number("stiffness"), 0.0), (0.0, number("damping"))
 
 
 class TunedDamper(Damper):

@@ -92,7 +92,7 @@ class OilPoint(Record):
     @property
     def loss(self) -> float:
         """K″ [N m/rad]."""
-        return float(self.loss_stiffness if self.loss_factor is None else self.loss_factor * self.stiffness)
+        return float((self.loss_stiffness or 0.0) if self.loss_factor is None else self.loss_factor * self.stiffness)
 
 
 _READ = listed(OilPoint, "point", f"write {POINTS}, or the name of a CSV file")

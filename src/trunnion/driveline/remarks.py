@@ -100,8 +100,9 @@ def remarks(line: ElementChain) -> Iterator[tuple[str, str]]:
             yield (
                 OIL,
                 f"{name}: forced responses of straight lines and natural_frequencies have its oil at their own "
-                f"frequencies; all else has a spring and a damper as it is at {at}, up to {100 * apart:.2g} % off "
-                "within a factor of 1.4 of that",
+                f"frequencies; all else as it is at {at}, simulate and transient a spring and a damper in series, up "
+                f"to {100 * apart[1]:.2g} % off within a factor of 1.4 of that, the rest side by side, "
+                f"{100 * apart[0]:.2g} % off",
             )
 
     for name, tyre, vehicle in _rolling(line):

@@ -71,6 +71,7 @@ _LISTS = {
     **dict.fromkeys(("excitation", "transmission_error", "stiffness_variation", "ripple", "gas_torque"), "harmonic"),
     "friction": "slider",
     **dict.fromkeys(("pressure", "compression"), "curve"),
+    **dict.fromkeys(("oil", "curves"), "point"),
 }
 """Lists of tables, and what one of them is."""
 

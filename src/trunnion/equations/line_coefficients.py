@@ -72,8 +72,9 @@ class OilLink:
         """At some of its cases."""
         if len(self.temperature) == 1:
             return self
-        parts = {key: getattr(self, key)[rows] for key in ("temperature", "stiffness", "damping")}
-        return replace(self, **parts)
+        return replace(
+            self, temperature=self.temperature[rows], stiffness=self.stiffness[rows], damping=self.damping[rows]
+        )
 
 
 def oil_in_turn(links: Sequence[OilLink], cases: Sequence[int]) -> OilLink:
@@ -82,7 +83,7 @@ def oil_in_turn(links: Sequence[OilLink], cases: Sequence[int]) -> OilLink:
     def along(key: str) -> Array:
         return np.concatenate([np.broadcast_to(getattr(one, key), n) for one, n in zip(links, cases, strict=True)])
 
-    return replace(links[0], **{key: along(key) for key in ("temperature", "stiffness", "damping")})
+    return replace(links[0], temperature=along("temperature"), stiffness=along("stiffness"), damping=along("damping"))
 
 
 @dataclass(frozen=True)

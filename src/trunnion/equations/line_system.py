@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.driveline import quantities
+from trunnion.driveline.dampers import ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
@@ -437,15 +438,15 @@ def line_system(
     linearised: bool = False,
 ) -> LineSystem:
     """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
-    leave). Its slip clutches stick, or slip beyond their capacity where ``slips``; its centrifugal pendulums are rings
-    on springs, or swing along their paths where they ``swing``. Unless it is only to be ``linearised`` about its
-    motion, torques that act by their tangents are said.
+    leave; oil over frequency is then a Maxwell element). Its slip clutches stick, or slip beyond their capacity where
+    ``slips``; its centrifugal pendulums are rings on springs, or swing along their paths where they ``swing``. Unless
+    it is only to be ``linearised`` about its motion, torques that act by their tangents are said.
 
     Raises
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = released(assemble(line).at(speed), slips=slips, swing=swing)
+    assembly = released(assemble(_in_series(line) if leaves else line).at(speed), slips=slips, swing=swing)
     refuse_second_speed(assembly)
     if assembly.topology.knotted:
         require_tree(assembly, "nonlinear equations do")
@@ -457,6 +458,16 @@ def line_system(
         at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
         warnings.warn(InputRemark(f"{name}: equations of motion have its {what} at {at} of the input"), stacklevel=2)
     return LineSystem(assembly, float(speed), leaves)
+
+
+def _in_series(line: Driveline | Assembly) -> Driveline | Assembly:
+    """The line with the oil of its dampers as Maxwell elements; itself without any."""
+    described = line if isinstance(line, Driveline) else line.stated or line.line
+    oils = {i: one for i, one in enumerate(described.elements) if isinstance(one, ViscousDamper) and one.oil}
+    if not oils:
+        return line
+    elements = tuple(oils[i].maxwell if i in oils else one for i, one in enumerate(described.elements))
+    return described.model_copy(update={"elements": elements})
 
 
 def refuse_second_speed(assembly: Assembly) -> None:

@@ -81,6 +81,30 @@ class OilStiffness:
         storage, loss = np.exp(logs[..., 0]), np.exp(logs[..., 1])
         return np.asarray(storage + 1j * np.sign(f) * loss)
 
+    def beyond(self, frequency: Any, temperature: Any) -> tuple[float, float] | None:
+        """The first frequency and temperature that its points do not reach; None where they reach all."""
+        unknown = np.isnan(self.at(frequency, temperature))
+        if not unknown.any():
+            return None
+        first, at = (np.broadcast_to(one, unknown.shape)[unknown][0] for one in (frequency, temperature))
+        return float(first), float(at)
+
+    def apart(
+        self,
+        frequency: float,
+        temperature: float,
+        side_by_side: tuple[float, float],
+        series: tuple[float, float, float],
+    ) -> tuple[float, float]:
+        """Largest errors over its size, within a factor of √2 of a frequency or of its points, of a spring and a damper
+        (k, c) side by side, and of those in series with an inertia between (k, c, J)."""
+        low, high = self.reach(temperature)
+        span = np.geomspace(max(low, frequency / 2**0.5), min(high, frequency * 2**0.5), 65)
+        truth, (k, c), (spring, damper, between) = self.at(span, temperature), side_by_side, series
+        error = np.abs((k + 1j * span * c) / truth - 1)
+        other = np.abs(1 / (1 / spring + 1 / (1j * span * damper)) / truth - 1) + span**2 * between / spring
+        return float(np.nanmax(error)), float(np.nanmax(other))
+
     def reach(self, temperature: float) -> tuple[float, float]:
         """Lowest and highest frequency [rad/s] known at a temperature."""
         near = [one for one in self.isotherms if one.temperature == temperature] or list(self._beside(temperature))

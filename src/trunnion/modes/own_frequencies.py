@@ -57,8 +57,10 @@ class _Search:
         co, topo = self.assembly.coefficients(table, any_frequency=True), self.assembly.topology
         matrices = loaded_matrices(topo, co, np.zeros(1))
         unit = UnitMasses(matrices.inertia[0])
-        three = (unit.of_matrix(part[0]) for part in (matrices.damping, matrices.stiffness, matrices.loss))
-        found = line_modes(*three, unit.of_rotations(topo.loose), topo.rigid_count)
+        damping, stiffness, loss = (
+            unit.of_matrix(part[0]) for part in (matrices.damping, matrices.stiffness, matrices.loss)
+        )
+        found = line_modes(damping, stiffness, loss, unit.of_rotations(topo.loose), topo.rigid_count)
         aligned = aligned_matrices(topo, co)
         shape = unit.rotations(np.linalg.eigh(UnitMasses(aligned.inertia[0]).of_matrix(aligned.stiffness[0]))[1])
         if topo.still > 1:
