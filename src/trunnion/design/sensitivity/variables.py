@@ -13,6 +13,7 @@ from functools import cached_property
 from math import ceil, exp, floor, isfinite, log, log10, pi
 
 from trunnion.driveline.driveline import Driveline, hooke_joints
+from trunnion.driveline.elements import Disk
 from trunnion.driveline.parameters import PackedLine, pack
 from trunnion.driveline.quantities import DEGREE
 from trunnion.results.fields import internal, labelled, variable
@@ -121,7 +122,10 @@ class Design:
 
     @cached_property
     def variables(self) -> tuple[DesignVariable, ...]:
-        """Every stiffness, inertia, damping, joint angle and phase that is not zero and can matter."""
+        """Every stiffness, inertia, damping, joint angle and phase that is not zero and can matter.
+
+        Harmonics of one cylinder come from one pressure: their phases are not turned one by one.
+        """
         return tuple(self._variables())
 
     def changed(self, variable: DesignVariable, value: float) -> Driveline | None:
@@ -145,6 +149,11 @@ class Design:
         bent, angles = any(angle for _, angle in joints), {f"{name}.angle" for name, _ in joints}
         excited = sum(label.endswith((" amplitude", " quadratic_amplitude")) for label in self.packed.labels)
         sources = excited + len(joints)
+        cylinders = {
+            name
+            for name, one in zip(self.line.names, self.line.elements, strict=True)
+            if isinstance(one, Disk) and one.firing_angles
+        }
         for column, (path, unit) in enumerate(zip(self.packed.labels, self.packed.units, strict=True)):
             value, key = float(self.packed.values[column]), path.rpartition(".")[2]
             scale = scale_of(key)
@@ -153,6 +162,8 @@ class Design:
             if scale is Scale.BEND and path not in angles:
                 continue
             if scale is Scale.PHASE and not (bent if key in ("fork_offset", "plane") else sources > 1):
+                continue
+            if scale is Scale.PHASE and path.rpartition(".")[0] in cylinders:
                 continue
             if scale is not None:
                 yield DesignVariable(path, column, value, unit, scale)
