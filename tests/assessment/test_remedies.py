@@ -13,7 +13,9 @@ from typer.testing import CliRunner
 
 import trunnion as tn
 from trunnion.cli import app
+from trunnion.design.assessment.assess import checks_of, subject_of
 from trunnion.design.assessment.check import Status
+from trunnion.design.remedies.trials import TrialLines
 from trunnion.design.sensitivity.variables import Design, Scale
 
 J1, J2, K, C, T = 0.2, 0.8, 1e4, 2.0, 100.0
@@ -317,3 +319,28 @@ def test_remedies_of_bent_free_lines_are_those_of_the_whole_judgement():
         assert check.value == pytest.approx(remedy.value, rel=5e-3)
         worse = {c.name for c in after.checks if c.status is Status.EXCEEDED}
         assert worse <= {c.name for c in found.assessment.checks if c.status is Status.EXCEEDED}
+
+
+def test_phases_of_one_cylinder_are_not_turned_one_by_one():
+    """Its harmonics come from one pressure; that of a propeller's blades, beside it, may be turned on the shaft."""
+    gas = [{"order": order, "amplitude": 100.0, "phase": 0.1 * order} for order in (0.5, 1, 1.5)]
+    engine = tn.Engine(firing_order="1-3-2", throw_inertia=0.1, throw_stiffness=1e6, gas_torque=gas, name="engine")
+    blades = tn.Disk(inertia=1.0, name="propeller", excitation=[{"order": 4, "amplitude": 10.0, "phase": 0.2}])
+    line = tn.Driveline([engine, tn.Shaft(stiffness=1e4, name="shaft"), blades])
+    assert [v.path for v in Design(line).variables if v.scale is Scale.PHASE] == ["propeller.excitation 1 phase"]
+
+
+def test_what_some_speeds_show_to_be_exceeded_is_exceeded():
+    """The first look over the speeds spares the search, and never contradicts it."""
+    line = two_mass()
+    subject = subject_of(line, (LOW, HIGH), None, None)
+    name = "max torque of shaft"
+    trials = TrialLines(subject, checks_of(subject), Design(line), checks_of(subject))
+    stiffness = next(v for v in trials.design.variables if v.path == "shaft.stiffness")
+    seen = {True: 0, False: 0}
+    for size in np.linspace(-0.7, 0.7, 29):
+        tried, anew = (trials.quick(stiffness, stiffness.at(size)), trials.whole(stiffness, stiffness.at(size)))
+        surely, exceeded = tried.surely_exceeds(name), anew.checks[name].exceeded
+        assert not surely or exceeded
+        seen[surely] += 1
+    assert min(seen.values()) > 3

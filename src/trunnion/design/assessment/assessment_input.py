@@ -29,7 +29,7 @@ from trunnion.laws.harmonic import turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import response_of_spectrum, steady_states_of
 from trunnion.response.orders.result import OrderResponse
-from trunnion.response.ranges.largest import Largest, first_speeds, search, sharpened, thinned
+from trunnion.response.ranges.largest import PASSED, Largest, first_speeds, search, sharpened, thinned
 from trunnion.results.verdict import Verdict
 from trunnion.results.words import Words
 from trunnion.steady.orders.spectrum import order_spectrum
@@ -50,16 +50,21 @@ value that is larger by more than this factor at the end has no bound there."""
 @dataclass(frozen=True)
 class SearchEffort:
     """How closely a range is searched: speeds of the even grid, and the share of a largest value that may be missing;
-    for lines of which every speed takes a motion of its own, ``costly`` speeds of the even grid."""
+    for lines of which every speed takes a motion of its own, ``costly`` speeds of the even grid; the share of a speed
+    at which a limit is ``passed`` that may be missing; whether the mode that leads is ``named``."""
 
     points: int
     tolerance: float
     costly: int
+    passed: float = PASSED
+    named: bool = True
 
 
 WHOLE = SearchEffort(65, 1e-6, 33)
 QUICK = SearchEffort(25, 1e-4, 9)
 """To look around."""
+TRIAL = SearchEffort(25, 1e-4, 9, 1e-3, named=False)
+"""To look around among many lines, of which few are looked at again."""
 OF_OWN_MOTIONS = 3e-6
 """Share of a value that may be missing because an periodic steady state, about which it is computed, is known no more
 closely."""
@@ -199,7 +204,8 @@ class LoadCaseResponse:
             return self.known
         try:
             if self.given:
-                return self._judged(self.respond(np.array(self.given)))
+                spectrum = self.respond(np.array(self.given)).spectrum
+                return self._judged(response_of_spectrum(self.assembly, spectrum))
             found = self.searched
             if found.ended:
                 self.end(OutOfTime(found.ended))
@@ -232,21 +238,45 @@ class LoadCaseResponse:
         pieces = self.stable_pieces
         if not pieces:
             raise ComputationError(self.gaps[0].why if self.gaps else UNSTABLE)
-        met = resonances(self.span)
         quantities = [one.quantity for one in self.measures]
-        first = first_speeds(pieces, met, self.effort.points)
+        first = self._first_speeds
         if self.costly and not self.rough:
             around = search(self.assembly, replace(self, rough=True).respond, first, quantities, tolerance=0.01)
             first = thinned(around, pieces, quantities, self.effort.costly)
-        return search(self.assembly, self.respond, first, quantities, tolerance=self.effort.tolerance)
+        return search(
+            self.assembly, self.respond, first, quantities,
+            tolerance=self.effort.tolerance, passed=self.effort.passed, known=self.__dict__.get("first_look"),
+        )  # fmt: skip
+
+    @property
+    def _first_speeds(self) -> list[Array]:
+        return first_speeds(self.stable_pieces, resonances(self.span), self.effort.points)
+
+    @cached_property
+    def first_look(self) -> OrderResponse | None:
+        """The response at the speeds at which the search begins, without remarks: no value is smaller than there. None
+        where there is none, or every speed takes a motion of its own."""
+        if self.given or self.known is not None or self.costly or not self.stable_pieces:
+            return None
+        try:
+            return self.respond(np.concatenate(self._first_speeds))
+        except (InputError, ComputationError):  # as the search then says
+            return None
+
+    def surely_exceeds(self, name: str) -> bool:
+        """Whether the first look shows already that the check called ``name`` is exceeded."""
+        measure = next((one for one in self.measures if one.name == name), None)
+        if measure is None or (seen := self.first_look) is None:
+            return False
+        return bool(np.any(measure.shares(seen) > 1))
 
     def respond(self, speeds: Array) -> OrderResponse:
-        """The response at ``speeds`` [rad/s], its verdicts not judged."""
+        """The response at ``speeds`` [rad/s], its verdicts not judged, without remarks."""
         table = self.span.table(speeds) if self.span.put else None
         spectrum = order_spectrum(
             self.assembly, speeds, table=table, rough=self.rough, motions=None if self.rough else self.motions
         )
-        return response_of_spectrum(self.assembly, spectrum)
+        return response_of_spectrum(self.assembly, spectrum, remarked=False)
 
     def largest(self, measure: Measure) -> LargestShare:
         """Where a measure comes nearest to its limit, or goes farthest beyond it."""
@@ -476,7 +506,7 @@ def cause(case: LoadCaseResponse, at: int, size: Array) -> Cause | None:
     """Which order leads at speed number ``at``, of amplitudes ``size`` (order,), and the mode that it is nearest to; no
     such question where one only looks around."""
     response = case.response
-    if case.rough or response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
+    if case.rough or not case.effort.named or response is None or not len(size) or not np.nanmax(size, initial=0.0) > 0:
         return None
     k = int(np.nanargmax(size))
     order, extra = float(response.order[k]), float(response.frequency[k])

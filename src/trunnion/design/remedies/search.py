@@ -201,12 +201,12 @@ class RemedySearch:
     def _satisfies(self, name: str, variable: DesignVariable, size: float) -> bool:
         """Whether a change of signed ``size`` reaches a goal, as far as one sees when looking around."""
         after = self._quick(variable, size)
-        return after is not None and self._reached(name, after)
+        return after is not None and not after.surely_exceeds(name) and self._reached(name, after)
 
     def _helps(self, name: str, variable: DesignVariable, size: float) -> bool:
         """The same, and breaks nothing."""
         after = self._quick(variable, size)
-        return after is not None and self._reached(name, after) and not self.trials.broken(name, after)
+        return after is not None and self._satisfies(name, variable, size) and not self.trials.broken(name, after)
 
     def _reached(self, name: str, after: TrialLine) -> bool:
         check = self.trials.check(name, after)

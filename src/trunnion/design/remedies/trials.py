@@ -13,7 +13,7 @@ from dataclasses import replace
 
 from trunnion.design.assessment.assess import OF_RESPONSE, of_line, prepare
 from trunnion.design.assessment.assessment_input import (
-    QUICK,
+    TRIAL,
     WHOLE,
     AssessmentInput,
     LoadCaseResponse,
@@ -64,6 +64,11 @@ class TrialLine:
             found = weighed(GROUPS[number](self.subject), self.subject.line.operation)
             self._found[number] = {check.name: check for check in found}
         return self._found[number]
+
+    def surely_exceeds(self, name: str) -> bool:
+        """Whether some speeds show already that a check of the response is exceeded, before its largest value is
+        searched for."""
+        return any(case.surely_exceeds(name) for case in self.subject.cases)
 
     def in_turn(self, first: int) -> Iterator[Checks]:
         """The groups one by one, that with the number ``first`` before the others."""
@@ -150,7 +155,7 @@ class TrialLines:
         return replace(subject, line=line, cases=cases, naming=False)
 
     def _looked_at(self, line: Driveline) -> TrialLine:
-        subject = self._asked(line, QUICK)
+        subject = self._asked(line, TRIAL)
         cases = tuple(case for case in subject.cases if case.name in self.cases) or subject.cases[:1]
         if self.costly:
             cases = tuple(replace(case, rough=True) for case in cases)

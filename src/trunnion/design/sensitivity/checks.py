@@ -194,7 +194,7 @@ def _speed_by_speed(
     for i, speed in enumerate(speeds.tolist()):
         one = at_speed(subject, case, speed)
         if not isinstance(answer, str):
-            known = response_of_spectrum(case.assembly, answer.spectrum.take(slice(i, i + 1)))
+            known = response_of_spectrum(case.assembly, answer.spectrum.take(slice(i, i + 1)), remarked=False)
             one = replace(one, cases=(replace(one.cases[0], known=known),))
         yield speed, one
 

@@ -68,7 +68,7 @@ class SpectrumSlope:
 
     def response(self, assembly: Assembly, share: float) -> OrderResponse:
         """The same as the response of ``assembly``, the line there."""
-        return response_of_spectrum(assembly, self.moved(share))
+        return response_of_spectrum(assembly, self.moved(share), remarked=False)
 
     @cached_property
     def pace(self) -> float:

@@ -133,10 +133,11 @@ def response_of_table(assembly: Assembly, table: Array) -> OrderResponse:
     return replace(found, stress_factor=np.full_like(found.stress_factor, np.nan))
 
 
-def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum) -> OrderResponse:
-    """The response that holds a ``spectrum``; its verdicts are not judged."""
+def response_of_spectrum(assembly: Assembly, spectrum: OrderSpectrum, *, remarked: bool = True) -> OrderResponse:
+    """The response that holds a ``spectrum``; its verdicts are not judged. Not ``remarked``: its numbers alone, for
+    searches that ask for hundreds."""
     failed = np.full(len(spectrum.speed), Verdict.FAILED, dtype=np.int8)
-    return _result(assembly, spectrum, lambda: failed, None)
+    return _result(assembly, spectrum, lambda: failed, None, remarked=remarked)
 
 
 def _positive(values: Any, key: str, remedy: str) -> Array:
@@ -154,7 +155,12 @@ def _listed(orders: Iterable[float] | None) -> Array | None:
 
 
 def _result(
-    assembly: Assembly, spectrum: OrderSpectrum, judged: Callable[[], Codes], wanted: Array | None
+    assembly: Assembly,
+    spectrum: OrderSpectrum,
+    judged: Callable[[], Codes],
+    wanted: Array | None,
+    *,
+    remarked: bool = True,
 ) -> OrderResponse:
     places, topo = spectrum.channels, assembly.topology
     size = np.abs(spectrum.amplitude[..., places.torque])
@@ -170,6 +176,7 @@ def _result(
         missing = apart.min(axis=1, initial=np.inf) > NEAR_ENOUGH
         picked = np.where(missing, -1, nearest)
     amplitude, base = _picked(spectrum.amplitude, picked), _picked(spectrum.base, picked)
+    unexcited = order[picked < 0] if wanted is not None else np.zeros(0)
     return OrderResponse(
         speed=spectrum.speed,
         order=order,
@@ -185,7 +192,7 @@ def _result(
         stress_factor=_stress_factor(assembly),
         spectrum=spectrum,
         judged=judged,
-        remarks=tuple(_remarks(assembly, spectrum, order[picked < 0] if wanted is not None else np.zeros(0))),
+        remarks=tuple(_remarks(assembly, spectrum, unexcited)) if remarked else (),
         unit=speed_unit(assembly.line),
         limits=_limits(assembly),
         rated=tuple(has_rating(assembly, c) for c in range(len(topo.compliances))),

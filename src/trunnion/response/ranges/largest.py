@@ -153,24 +153,27 @@ def search(
     *,
     tolerance: float = TOLERANCE,
     rounds: int = MOST_ROUNDS,
+    passed: float = PASSED,
+    known: OrderResponse | None = None,
 ) -> Largest:
     """The largest values of ``quantities`` over pieces that begin with the speeds ``first``.
 
-    ``respond`` : the response at speeds (speed,), not judged.
+    ``respond`` : the response at speeds (speed,), not judged. ``passed`` : how closely the speeds are located at which
+    a level is passed, as a share. ``known`` : the response at ``first``, where it is known already.
 
     Raises
     ------
     InputError, ComputationError : as of ``respond``. OutOfTime : the time was up before the first speeds were known.
     """
     seen = _SearchedRanges(assembly, respond, quantities)
-    seen.look([np.asarray(part) for part in first])
+    seen.look([np.asarray(part) for part in first], known)
     try:
         for _ in range(rounds):
             wanted = seen.wanted(tolerance)
             if not sum(map(len, wanted)):
                 break
             seen.look(wanted)
-        seen.close_in()
+        seen.close_in(passed)
     except OutOfTime as error:
         found = seen.largest(tolerance)
         return replace(found, error=np.full(len(found.value), inf), ended=error.why)
@@ -188,15 +191,15 @@ class _SearchedRanges:
         self.values = np.zeros((0, len(quantities)))
         self.piece = np.zeros(0, dtype=np.intp)
 
-    def look(self, wanted: Sequence[Array]) -> None:
-        """Take in the speeds ``wanted`` of each piece."""
+    def look(self, wanted: Sequence[Array], known: OrderResponse | None = None) -> None:
+        """Take in the speeds ``wanted`` of each piece, where they are ``known`` as they are."""
         speeds = np.concatenate(list(wanted))
         piece = np.repeat(np.arange(len(wanted)), [len(part) for part in wanted])
-        new = self.respond(speeds)
+        new = known or self.respond(speeds)
         values = np.stack([q.values(new) for q in self.quantities], axis=1) if self.quantities else self.values[:0]
         parts = [new.spectrum] if self.response is None else [self.response.spectrum, new.spectrum]
         together, order = joined(parts)
-        self.response = response_of_spectrum(self.assembly, together)
+        self.response = response_of_spectrum(self.assembly, together, remarked=False)
         self.values = np.concatenate([self.values, values.reshape(len(speeds), -1)])[order]
         self.piece = np.concatenate([self.piece, piece])[order]
 
@@ -219,10 +222,12 @@ class _SearchedRanges:
                     found[k].append(one.of(one.height >= least).over(top))
         return [self._apart(_together(part), run) for part, run in zip(found, self._runs, strict=True)]
 
-    def close_in(self) -> None:
+    def close_in(self, passed: float) -> None:
         """Look where quantities pass their levels, until that is located."""
         while True:
-            wanted = [self._apart(_together([self._passes(q, run) for q in self._levels]), run) for run in self._runs]
+            wanted = [
+                self._apart(_together([self._passes(q, run, passed) for q in self._levels]), run) for run in self._runs
+            ]
             if not sum(map(len, wanted)):
                 break
             self.look(wanted)
@@ -231,12 +236,12 @@ class _SearchedRanges:
     def _levels(self) -> list[int]:
         return [q for q, quantity in enumerate(self.quantities) if np.isfinite(quantity.level)]
 
-    def _passes(self, q: int, run: slice) -> PossiblePeaks:
+    def _passes(self, q: int, run: slice, passed: float) -> PossiblePeaks:
         """Middles between neighbours of which one lies above the level and the other does not."""
         assert self.response is not None
         x, v = self.response.speed[run], self.values[run, q]
         above = ~(v <= self.quantities[q].level)
-        here = np.flatnonzero((above[1:] != above[:-1]) & (x[1:] - x[:-1] > PASSED * x[1:]))
+        here = np.flatnonzero((above[1:] != above[:-1]) & (x[1:] - x[:-1] > passed * x[1:]))
         return PossiblePeaks((x[here] + x[here + 1]) / 2, np.ones(len(here)), x[here + 1] - x[here])
 
     def _top(self, q: int) -> float:
@@ -280,7 +285,8 @@ class _SearchedRanges:
                 more = np.max(np.concatenate(hidden), initial=value[q]) - value[q]
                 bend = max(self._bend(q, run, place) for run in self._runs)
                 error[q] = max(more, bend, tolerance / 4 * value[q])  # less than that is not looked for
-        return Largest(self.response, at.astype(np.intp), value, error)
+        response = response_of_spectrum(self.assembly, self.response.spectrum)
+        return Largest(response, at.astype(np.intp), value, error)
 
     def _bend(self, q: int, run: slice, place: int) -> float:
         """By how much the top at ``place`` may be low, if it lies in this piece."""
