@@ -3,7 +3,8 @@
     PYTHONPATH=src:tests/app python benchmarks/app_latency.py [STARTER] [REPEATS]
 
 Needs the extra ``app``, playwright and Chromium. Times are from the key press, the click or the start of the command to
-the changed page; each line names the load of the machine, since the server, its workers and the browser share it.
+the changed page; each line names the load of the machine, since the server, its workers and the browser share it. Below
+stands the mean processor time of the server and of its workers (Linux), which other work does not lengthen much.
 """
 
 from __future__ import annotations
@@ -51,14 +52,37 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "line.toml"
         path.write_text(starter(name), encoding="utf-8")
-        begins = [first_page(str(path)) for _ in range(max(3, repeats // 5))]
-        report(f"{name}: start of the command to the first page, the browser's own start included", begins)
+        begins, spent = zip(*(first_page(str(path)) for _ in range(max(3, repeats // 5))), strict=True)
+        every = (sum(one[0] for one in spent), sum(one[1] for one in spent))
+        report(f"{name}: start of the command to the first page, the browser's own start included", list(begins), every)
         measure(name, str(path), repeats)
     report("a job that does not listen, cancelled, to the end of its process", asyncio.run(ends(max(3, repeats // 4))))
 
 
-def first_page(file: str) -> float:
-    """Seconds from the command to its first page."""
+Spent = tuple[float, float]
+"""Seconds of processor time: of the server, of its workers."""
+
+
+def processor(server: Any) -> Spent:
+    """Processor time so far; nothing where the system does not say it."""
+    tick = os.sysconf("SC_CLK_TCK") if hasattr(os, "sysconf") else 1
+    own, workers = 0.0, 0.0
+    for place in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            name, _, fields = place.read_text().rpartition(")")
+        except OSError:
+            continue  # ended meanwhile
+        number, numbers = int(place.parent.name), fields.split()
+        seconds = (int(numbers[11]) + int(numbers[12])) / tick
+        if number == server.process.pid:
+            own = seconds + (int(numbers[13]) + int(numbers[14])) / tick  # with those that have ended
+        elif int(numbers[1]) == server.process.pid:
+            workers += seconds
+    return own, workers
+
+
+def first_page(file: str) -> tuple[float, Spent]:
+    """Seconds from the command to its first page, and what the server and its workers had spent by then."""
     begin = time.perf_counter()
     server = start_server(file)
     try:
@@ -66,12 +90,12 @@ def first_page(file: str) -> float:
             browser = driver.chromium.launch(executable_path=browser_path(), args=["--no-sandbox"])
             page = opened(browser)
             page.goto(server.address)
-            page.get_by_label("Begin with").wait_for()
-            taken = time.perf_counter() - begin
+            page.get_by_text("The line ›").wait_for()
+            taken, spent = time.perf_counter() - begin, processor(server)
             browser.close()
     finally:
         server.stop()
-    return taken
+    return taken, spent
 
 
 def opened(browser: Any) -> Any:
@@ -89,20 +113,31 @@ def measure(name: str, file: str, repeats: int) -> None:
             page.goto(f"{server.address}?view=orders")
             page.wait_for_selector("[data-state=idle]")
             slide(page, repeats // 4 + 1)
-            report(f"{name}: number typed to updated orders view, all four pictures", slide(page, repeats))
+            spent, taken = during(server, lambda: slide(page, repeats))
+            report(f"{name}: number typed to updated orders view, all four pictures", taken, spent)
             page.goto(f"{server.address}?view=stability")
             page.wait_for_selector("[data-chart=chart]")
             page.wait_for_selector("[data-state=idle]")
             charts(page, repeats // 4 + 1)
-            coarse, full = zip(*charts(page, repeats), strict=True)
+            spent, taken = during(server, lambda: charts(page, repeats))
+            coarse, full = zip(*taken, strict=True)
             report(f"{name}: number typed to updated 16 × 12 chart", list(coarse))
-            report(f"{name}: number typed to updated 60 × 60 chart", list(full))
-            report(f"{name}: click in the chart to the multipliers there", clicks(page, repeats))
+            report(f"{name}: number typed to updated 60 × 60 chart, all that the view computes", list(full), spent)
+            spent, taken = during(server, lambda: clicks(page, repeats))
+            report(f"{name}: click in the chart to the multipliers there", taken, spent)
             page.goto(f"{server.address}?view=stability&line={pack(laborious())}")
             report("a chart of minutes, Cancel pressed to the page saying so", cancels(page, max(3, repeats // 4)))
             browser.close()
     finally:
         server.stop()
+
+
+def during(server: Any, act: Callable[[], list[Any]]) -> tuple[Spent, list[Any]]:
+    """What was spent while something was done, and what that gave."""
+    before = processor(server)
+    found = act()
+    after = processor(server)
+    return (after[0] - before[0], after[1] - before[1]), found
 
 
 def slide(page: Any, repeats: int) -> list[float]:
@@ -213,10 +248,15 @@ def finished(page: Any, before: int) -> None:
     page.locator(f"[data-done='{before + 1}']").wait_for()
 
 
-def report(what: str, seconds: list[float]) -> None:
+def report(what: str, seconds: list[float], spent: Spent | None = None) -> None:
+    """One line; ``spent`` by all times together."""
     middle, late = np.percentile(seconds, [50, 95])
     load = f"load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores"
     print(f"{what}: median {1e3 * middle:.0f} ms, 95th percentile {1e3 * late:.0f} ms ({len(seconds)} times, {load})")
+    if spent is not None:
+        server, workers = (1e3 * one / len(seconds) for one in spent)
+        both = server + workers
+        print(f"    processor time each: server {server:.0f} ms, workers {workers:.0f} ms, both {both:.0f} ms")
     sys.stdout.flush()
 
 
