@@ -344,7 +344,7 @@ def test_equal_within_one_degree_up_to_rounding() -> None:
 # ---- What is shipped -------------------------------------------------------------------------------------------------
 
 
-LONG = ("four-wheel-drive", "passenger-car", "rolling-mill-strip")
+LONG = ("dumper", "four-wheel-drive", "passenger-car", "rolling-mill-strip")
 
 
 @pytest.mark.parametrize(

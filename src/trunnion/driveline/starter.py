@@ -15,6 +15,7 @@ STARTERS = {
     "two-stroke": "six-cylinder engine that drives its propeller directly, with a barred speed range",
     "rolling-mill": "stand of a strip mill: pinion stand, two spindles, rolls in a loop that the strip closes",
     "passenger-car": "four-cylinder engine with dual-mass flywheel, gearbox, differential, tyres and car",
+    "dumper": "engine, torque converter, gearbox and axle with their losses, tyres and a loaded vehicle",
     "truck": "one-piece propeller shaft with final drive, axle shafts and vehicle",
 }
 """Name and one line about each."""
