@@ -185,6 +185,11 @@ WRONG = (
     ({"channel": [{"column": "flat", "kind": "pulses", "pulses_per_turn": 30}]}, "flat.column: does not move"),
     ({"channel": [{"column": "holes", "kind": "other"}]}, "holes.values: has no number in 3 samples, the first"),
     ({"channel": [{"column": "holes", "kind": "pulses", "pulses_per_turn": 3}]}, "holes.column: has samples that are"),
+    ({"channel": [{"column": "gauge", "keep_rate": "5 m"}]}, "channels channel 1.keep_rate = '5 m'"),
+    ({"channel": [{"column": "gauge", "keep_rate": 0}]}, "channels channel 1.keep_rate = 0: must be positive"),
+    ({"channel": [{"column": "pickup", "kind": "pulses", "pulses_per_turn": 30, "keep_rate": 9}]},
+     "channels channel 1.keep_rate = 9: belongs to a sampled signal"),
+    ({"channel": [{"column": "holes", "keep_rate": 4000}]}, "holes.column: has samples that are not numbers, "),
     ({"channel": [{"column": "pickup", "kind": "pulses", "pulses_per_turn": 300}]}, "pickup.times = 449: holds less"),
 )  # fmt: skip
 
@@ -229,6 +234,29 @@ def test_a_clipped_signal_is_said() -> None:
     (finding,) = tn.Measurement([gauge]).findings
     assert str(finding).startswith("caution: gauge is clipped: ") and "false harmonics" in str(finding)
     assert not tn.Measurement([tn.SampledSignal(TORQUE, RATE)]).findings
+
+
+@pytest.mark.parametrize("chunk", [40_000, 4096, 97])
+def test_a_signal_that_is_thinned_while_it_is_read(chunk: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A slow wave stays, at the right moments; a fast one that would fold back onto it goes; cut anywhere."""
+    from trunnion.measured.signals import sources
+
+    monkeypatch.setattr(sources, "CHUNK", chunk)
+    file = tmp_path / "run.h5"
+    slow, fast = 3.0 * np.sin(2 * np.pi * 130 * TIME), 40.0 * np.sin(2 * np.pi * 3870 * TIME)
+    with h5py.File(file, "w") as stream:
+        stream.create_dataset("gauge", data=slow + fast).attrs["rate"] = RATE
+        stream.create_dataset("flat", data=np.clip(slow, -9, 2.5)).attrs["rate"] = RATE
+    wanted = {"kind": "torque", "unit": "N*m", "keep_rate": "4 kHz"}
+    read = tn.read_measurement(file, {"channel": [{"column": one, **wanted} for one in ("gauge", "flat")]})
+    gauge = read.sampled[0]
+    assert gauge.rate == 4000.0 and 5900 < len(gauge.values) <= 6000
+    assert np.abs(gauge.values - 3.0 * np.sin(2 * np.pi * 130 * gauge.times)).max() < 1e-4
+    # What a filter hides is said before.
+    clipped = np.clip(slow, -9, 2.5) == 2.5
+    inner = int((clipped[:-2] & clipped[1:-1] & clipped[2:]).sum())
+    (said,) = read.remarks
+    assert said.startswith(f"flat is clipped: {inner} samples (") and "false harmonics" in said
 
 
 @pytest.mark.slow

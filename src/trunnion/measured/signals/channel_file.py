@@ -25,6 +25,7 @@
     unit = "kN*m"                     # of the values after scale and offset
     scale = 0.25                      # value = scale * column + offset
     offset = 0.0
+    keep_rate = "5 kHz"               # of the file's samples so many are kept, filtered; default all of them
     at = "front tube"
 
     [[channel]]
@@ -62,6 +63,7 @@ TYPES: Mapping[str, tuple[type, ...]] = {
     "column": (str, int), "name": (str,), "kind": (str,), "at": (str,), "unit": (str,), "edge": (str,),
     "clock": (str,), "scale": (int, float), "offset": (int, float), "level": (int, float), "reversed": (bool,),
     "pulses_per_turn": (int,), "pitch_error": (int, float, str), "radius": (int, float, str), "gravity": (bool,),
+    "keep_rate": (int, float, str),
 }  # fmt: skip
 
 
@@ -84,6 +86,7 @@ class ColumnDescription:
     clock: str = ""
     radius: float = 0.0
     gravity: bool = True
+    keep_rate: float = 0.0
 
     @property
     def label(self) -> str:
@@ -180,7 +183,20 @@ def _column(given: Mapping[str, Any], where: str) -> ColumnDescription:
             raise InputError(
                 "must be positive", element=where, key="radius", value=given["radius"], remedy='write "80 mm", say'
             )
+    if "keep_rate" in found:
+        stated = found["keep_rate"]
+        try:
+            found["keep_rate"] = parse(stated, FREQUENCY) / TURN if isinstance(stated, str) else float(stated)
+        except InputError as error:
+            raise error.but(element=where, key="keep_rate") from None
+        if not found["keep_rate"] > 0:
+            raise InputError("must be positive", element=where, key="keep_rate", value=stated, remedy="in Hz")
     made = ColumnDescription(**found)
+    if made.keep_rate and made.kind in ("pulses", "edges"):
+        raise InputError(
+            "belongs to a sampled signal", element=where, key="keep_rate", value=given["keep_rate"],
+            remedy="leave it out: of pulses only their edges are kept",
+        )  # fmt: skip
     if made.kind != "acceleration":
         for key in ("radius", "gravity"):
             if key in given:

@@ -23,7 +23,10 @@ from trunnion.measured.signals.channel_file import (
 from trunnion.measured.signals.edges import rising_edges
 from trunnion.measured.signals.measurement import Channel, Measurement, PulseTrain, SampledSignal, even_times
 from trunnion.measured.signals.sources import SignalSource, column_of, opened
+from trunnion.measured.signals.thinning import HALF_TAPS, thinned_chunks
 from trunnion.numerics.memory import require_memory
+from trunnion.results.counts import counted
+from trunnion.results.units import figures
 
 
 def read_measurement(
@@ -83,12 +86,17 @@ def _measurement(file: Path, source: SignalSource, description: FileDescription)
     if description.time is not None:
         column = column_of(source, description.time, "time")
         times = even_times(np.concatenate(list(source.chunks(column))), column)
-    found = [_channel(source, one, description, times) for one in description.columns]
-    return Measurement(found, file.name)
+    remarks: list[str] = []
+    found = [_channel(source, one, description, times, remarks) for one in description.columns]
+    return Measurement(found, file.name, tuple(remarks))
 
 
 def _channel(
-    source: SignalSource, one: ColumnDescription, stated: FileDescription, times: tuple[float, float] | None
+    source: SignalSource,
+    one: ColumnDescription,
+    stated: FileDescription,
+    times: tuple[float, float] | None,
+    remarks: list[str],
 ) -> Channel:
     column = column_of(source, one.column, one.label)
     if one.kind == "edges":
@@ -106,7 +114,12 @@ def _channel(
     if one.kind == "pulses":
         edges = rising_edges(source.chunks(column), rate, one.level, one.label, falling=one.edge == "falling")
         return _train(edges + start, one)
-    values = (_whole(source.chunks(column), one) * one.scale + one.offset) * one.unit_size
+    factor = int(rate // one.keep_rate) if one.keep_rate else 1
+    chunks = source.chunks(column)
+    if factor > 1:
+        chunks = thinned_chunks(_sound(chunks, source.chunks(column), rate, one, remarks), factor)
+        start, rate = start + HALF_TAPS * factor / rate, rate / factor
+    values = (_whole(chunks, one) * one.scale + one.offset) * one.unit_size
     return SampledSignal(
         values, rate, one.label, one.kind, one.at, start=start, clock=one.clock, gravity=one.once_a_turn
     )
@@ -119,12 +132,44 @@ def _train(edges: Array, one: ColumnDescription) -> PulseTrain:
     )  # fmt: skip
 
 
+def _sound(
+    chunks: Iterator[Array], again: Iterator[Array], rate: float, one: ColumnDescription, remarks: list[str]
+) -> Iterator[Array]:
+    """The chunks; what a filter would hide of them is refused or said: samples that are no numbers, clipped ones.
+
+    again : the same chunks, looked at before, for the largest and smallest value.
+    """
+    ends = np.array([[part.min(), part.max()] for part in again if len(part)])
+    low, high = (float(ends[:, 0].min()), float(ends[:, 1].max())) if len(ends) else (0.0, 0.0)
+    done, flat, row = 0, 0, np.zeros(2, dtype=bool)
+    for part in chunks:
+        bad = ~np.isfinite(part)
+        if bad.any():
+            at = (done + int(np.argmax(bad))) / rate
+            raise InputError(
+                f"has samples that are not numbers, the first at {at:.6g} s", element=one.label, key="column",
+                remedy="cut the gap out, or read the parts on either side",
+            )  # fmt: skip
+        row = np.append(row[-2:], (part == low) | (part == high)) if high > low else np.zeros(2, dtype=bool)
+        flat += int((row[:-2] & row[1:-1] & row[2:]).sum())
+        done += len(part)
+        yield np.asarray(part, dtype=float)
+    if flat:
+        share = figures(100 * flat / done, 2)
+        remarks.append(
+            f"{one.label} is clipped: {counted(flat, 'sample')} ({share} %) stand at its largest or smallest value; "
+            "its orders are too small and have false harmonics."
+        )
+
+
 def _whole(chunks: Iterator[Array], one: ColumnDescription) -> Array:
     parts: list[Array] = []
     for part in chain(chunks):
         parts.append(np.asarray(part, dtype=float))
         held = 16.0 * sum(map(len, parts))
-        require_memory(held, element=one.label, key="column", value=one.column, remedy="record it at a lower rate")
+        require_memory(
+            held, element=one.label, key="column", value=one.column, remedy='keep fewer samples: keep_rate = "5 kHz"'
+        )
     if not sum(map(len, parts)):
         raise InputError("holds no samples", element=one.label, key="column", value=one.column, remedy="record again")
     return np.concatenate(parts)

@@ -11,8 +11,8 @@ from trunnion.arrays import Array
 from trunnion.driveline.arguments import one_number, whole_number
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import TURN, PulseTrain, SampledSignal
+from trunnion.measured.signals.thinning import thinned
 from trunnion.measured.tracking.rotation import MeasuredRotation
-from trunnion.measured.tracking.track import thinned
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable

@@ -136,7 +136,7 @@ def _of(train: PulseTrain) -> tuple[Array, float, float, float, list[float]]:
             remedy=f"record at least {2 * WINDOW}",
         )  # fmt: skip
     teeth = train.pulses_per_turn
-    pattern = np.zeros(teeth)
+    pattern, every_tooth, every_angle = np.zeros(teeth), train.tooth, train.angle
     # What a window's cubic takes of the pattern comes back in a few rounds.
     for _ in range(ROUNDS):
         residual: list[Array] = []
@@ -144,9 +144,9 @@ def _of(train: PulseTrain) -> tuple[Array, float, float, float, list[float]]:
         part: list[Flags] = []
         speeds: list[float] = []
         for place, (first, last) in enumerate(windows):
-            times, numbers = train.times[first:last], train.tooth[first:last]
+            times, numbers = train.times[first:last], every_tooth[first:last]
             middle, half = (times[0] + times[-1]) / 2, (times[-1] - times[0]) / 2
-            angle = train.angle[first:last]
+            angle = every_angle[first:last]
             y = angle - angle[0] + pattern[numbers]
             found = fitted(y, (times - middle) / half, angle, np.zeros(0), SMOOTH, 0)
             if found is None:

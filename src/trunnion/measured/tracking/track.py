@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
-from scipy.signal import firwin, kaiser_beta, upfirdn
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.arguments import numbers, whole_number
@@ -17,6 +16,7 @@ from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import TURN, Channel, Measurement, PulseTrain, SampledSignal
+from trunnion.measured.signals.thinning import thinned
 from trunnion.measured.tracking.clocks import ClockCorrection, clock_correction
 from trunnion.measured.tracking.pitch import PitchErrors
 from trunnion.measured.tracking.places import speed_ratios
@@ -47,8 +47,6 @@ LEAKS = 0.05
 HIGHEST = 24.0
 OVERSAMPLED = 16.0
 """Samples per cycle of the highest order that a sampled signal keeps."""
-HALF_TAPS, STOPPED = 9, 125.0
-"""Half the length of the filter before samples are left out, in samples that stay, and its damping [dB]."""
 SAME_RATIO = 5e-4
 TOO_LONG = 0.01
 """Share of the largest amplitude that windows may miss beside a resonance before that is said."""
@@ -333,7 +331,8 @@ class _Tracking:
         return windows, fits, trend
 
     def _own_pattern(self, train: PulseTrain, places: list[tuple[int, int]], residuals: list[Array]) -> Array:
-        tooth = np.concatenate([train.tooth[first:last] for first, last in places])
+        of_edge = train.tooth
+        tooth = np.concatenate([of_edge[first:last] for first, last in places])
         means = tooth_means(np.concatenate(residuals), tooth, train.pulses_per_turn)[0]
         return -np.asarray(np.nan_to_num(means - np.nanmean(means)))
 
@@ -554,23 +553,6 @@ def counted_ratio(train: PulseTrain, main: PulseTrain) -> float:
     ratio = float(turned[0] / turned[1])
     simple = Fraction(ratio).limit_denominator(60)
     return float(simple) if abs(float(simple) / ratio - 1) < SAME_RATIO else ratio
-
-
-def thinned(signal: SampledSignal, rate: float) -> SampledSignal:
-    """The same at fewer samples, ``rate`` a second at least [Hz], what would fold back filtered away.
-
-    Up to a quarter of the new rate it passes to 1e-6; what folds back onto that is damped as far. The ends, which the
-    filter does not see whole, are cut.
-    """
-    factor = int(signal.rate // rate)
-    half = HALF_TAPS * factor
-    if factor < 2 or len(signal.values) < 4 * half:
-        return signal
-    taps = firwin(2 * half + 1, 1.0 / factor, window=("kaiser", kaiser_beta(STOPPED)))
-    values = upfirdn(taps, np.asarray(signal.values, dtype=float), 1, factor)
-    whole = values[2 * HALF_TAPS : (len(signal.values) - 1) // factor + 1]
-    start = signal.start + HALF_TAPS * factor / signal.rate
-    return replace(signal, values=whole, rate=signal.rate / factor, start=start)
 
 
 def standing_out(train: PulseTrain, pattern: Array, turns: int) -> list[tuple[float, float]]:

@@ -21,8 +21,8 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import numbers, one_number
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import TURN, SampledSignal
+from trunnion.measured.signals.thinning import thinned
 from trunnion.measured.tracking.rotation import MeasuredRotation
-from trunnion.measured.tracking.track import thinned
 from trunnion.numerics.memory import require_memory
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.result import Result
