@@ -10,6 +10,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq, fsolve
 
 import trunnion as tn
+from trunnion.laws.converter import balances
 
 SHEET = [
     (0.0, 2.1, 4.2e-3), (0.3, 1.75, 4.2e-3), (0.5, 1.5, 4.1e-3), (0.7, 1.22, 3.7e-3), (0.85, 1.0, 3e-3),
@@ -214,3 +215,47 @@ def test_a_pump_torque_at_a_reference_speed_is_a_capacity() -> None:
     points = [{"speed_ratio": v, "torque_ratio": m, "pump_torque": k * 200.0**2} for v, m, k in SHEET]
     same = tn.TorqueConverter(curves=points, reference_speed=200.0)
     assert_allclose(same.capacities, K, rtol=1e-14)
+
+
+def test_two_balances_of_the_turbine_that_lie_close() -> None:
+    """A load whose peak rises past the turbine's torque over 0.3 % of its speed: all three balances, found by hand."""
+    pump, at = 200.0, 130.0
+    beside = float(TORQUE_RATIO(at / pump) * CAPACITY(at / pump)) * pump**2
+    points = [(0.0, 20.0), (at - 1, beside - 6.0), (at, beside + 0.02), (at + 1, beside - 6.0), (400.0, beside)]
+    load = tn.Fan(inertia=1.0, curve=[{"speed": w, "torque": m} for w, m in points])
+    curve = PchipInterpolator(*np.array(points).T)
+
+    def lacks(w: float) -> float:
+        return float(curve(w) - TORQUE_RATIO(w / pump) * CAPACITY(w / pump) * pump**2)
+
+    fine = np.linspace(1.0, 0.999 * pump, 400001)
+    values = curve(fine) - TORQUE_RATIO(fine / pump) * CAPACITY(fine / pump) * pump**2
+    known = [brentq(lacks, fine[i], fine[i + 1], xtol=1e-14) for i in np.flatnonzero(values[:-1] * values[1:] < 0)]
+    assert len(known) == 3 and known[1] - known[0] < 0.003 * at
+    found = list(balances(converter().law, [(1.0, load.load)], pump))
+    assert_allclose([ratio * pump for ratio, _ in found], known, rtol=1e-10)
+    assert [lasts for _, lasts in found] == [True, False, True]
+
+
+def test_two_balances_of_a_line_that_lie_between_two_scanned_speeds() -> None:
+    """A motor whose torque dips below what the pump takes between two of its points: both sides of the dip."""
+    plain = line(engine={}).but(elements=[tn.Disk(inertia=0.3, name="engine"), *line().elements[1:]])
+    ratio = balanced(200.0, 60.0, 0.02)
+    needed = torques(200.0, ratio * 200.0)[0]
+    for width in (3.0, 1.0):
+        points = [(0.0, 400.0), (200 - width, needed + 15), (200.0, needed - 0.05), (200 + width, needed + 15)]
+        points += [(260.0, needed), (400.0, 0.0)]
+        motor = tn.Motor(inertia=0.3, name="engine", curve=[{"speed": w, "torque": m} for w, m in points])
+        found = tn.mean_speeds(plain.but(elements=[motor, *plain.elements[1:]]))
+        curve = PchipInterpolator(*np.array(points).T)
+
+        def lacks(w: float, curve: PchipInterpolator = curve) -> float:
+            return torques(w, balanced(w, 60.0, 0.02) * w)[0] - float(curve(w))
+
+        fine = np.union1d(np.linspace(195.0, 205.0, 401), np.linspace(205.0, 300.0, 96))
+        values = np.array([lacks(w) for w in fine])
+        known = [brentq(lacks, fine[i], fine[i + 1], xtol=1e-13) for i in np.flatnonzero(values[:-1] * values[1:] < 0)]
+        assert len(known) == 3
+        near = [one for one in found if one.speed > 195.0]
+        assert_allclose([one.speed for one in near], known, rtol=1e-8)
+        assert [one.stable for one in near] == [True, False, True]

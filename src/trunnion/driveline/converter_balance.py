@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
+from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import brentq
 
+from trunnion.arrays import Array
 from trunnion.driveline.chain import ElementChain
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.loss_curves import behind, with_losses
@@ -160,7 +163,8 @@ def running_line(line: Driveline, speed: float) -> Driveline:
 
 
 SCANNED = 400
-"""Input speeds of a free–free line with a converter, by equal ratios, between which balances are looked for."""
+"""Input speeds of a free–free line with a converter, by equal ratios, between which balances are looked for, beside the
+knots of its curves."""
 
 
 def converter_balances(line: ElementChain, place: int, low: float, high: float) -> tuple[TorqueBalance, ...]:
@@ -178,6 +182,7 @@ def converter_balances(line: ElementChain, place: int, low: float, high: float) 
     before = set(range(len(line.elements))) - behind(line, place)
     others = [(abs(float(ratios[i])), curve) for i, curve in with_losses(line, sorted(before))]
 
+    @cache
     def run_at(speed: float) -> ConverterRun | None:
         lasting = [ratio for ratio, lasts in balances(law, loads, own * speed) if lasts]
         return law.at(lasting[-1], own * speed) if lasting else None
@@ -189,15 +194,34 @@ def converter_balances(line: ElementChain, place: int, low: float, high: float) 
             return float("nan")
         return own * run.pump_torque + sum(ratio * float(load.value(ratio * speed)) for ratio, load in others)
 
-    highest = min([high, *(load.range[1] / ratio for ratio, load in others if ratio)])
-    at = np.geomspace(low, highest, SCANNED)
-    value = np.array([left(float(one)) for one in at])
-    found = []
-    for i in np.flatnonzero(value[:-1] * value[1:] < 0):
-        speed = float(brentq(left, at[i], at[i + 1], xtol=1e-13 * at[i], rtol=4 * np.finfo(float).eps))
+    def slope(speed: float) -> float:
+        """By the speed of the input [N m s/rad]; NaN likewise."""
         run = run_at(speed)
-        if run is not None:
-            slope = own**2 * pump_slope(law, loads, run)
-            slope += sum(ratio**2 * float(load.slope(ratio * speed)) for ratio, load in others)
-            found.append(TorqueBalance(speed, slope))
-    return tuple(found)
+        if run is None:
+            return float("nan")
+        own_part = own**2 * pump_slope(law, loads, run)
+        return own_part + sum(ratio**2 * float(load.slope(ratio * speed)) for ratio, load in others)
+
+    highest = min([high, *(load.range[1] / ratio for ratio, load in others if ratio)])
+    knots = [knot / ratio for ratio, load in others if ratio for knot in load.knots]
+    at = np.union1d(np.geomspace(low, highest, SCANNED), [one for one in knots if low < one < highest])
+    return tuple(TorqueBalance(speed, slope(speed)) for speed in _crossings(at, left, slope))
+
+
+def _crossings(at: Array, left: Callable[[float], float], slope: Callable[[float], float]) -> Iterator[float]:
+    """Zeros of a function between some places (place,): where it changes its sign from one to the next, and where it
+    turns round between them, beyond zero and back."""
+    value, rise = (np.array([one(float(place)) for place in at]) for one in (left, slope))
+    for i in range(len(at) - 1):
+        ends = [float(at[i]), float(at[i + 1])]
+        if value[i] * value[i + 1] > 0 and value[i] * rise[i] < 0 < value[i + 1] * rise[i + 1]:
+            top = _zero(slope, *ends)
+            if left(top) * value[i] < 0:
+                yield from (_zero(left, ends[0], top), _zero(left, top, ends[1]))
+        elif value[i] * value[i + 1] < 0 or value[i + 1] == 0:
+            yield _zero(left, *ends)
+
+
+def _zero(of: Callable[[float], float], low: float, high: float) -> float:
+    """Between two places where a function has unlike signs."""
+    return float(brentq(of, low, high, xtol=1e-13 * low, rtol=4 * np.finfo(float).eps))

@@ -12,20 +12,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq
 
 from trunnion.arrays import Array
+from trunnion.laws.balance import balances as all_balances
 from trunnion.laws.torque_curve import TorqueCurve
 
-BETWEEN = 48
-"""Places between two points of the curves, where balances are looked for."""
-ROUNDING = 1e-13
-"""Share of the largest torque that counts as none."""
-EXACT = 1e-14
-"""Of a ratio of speeds."""
+STANDS = 1e-6
+"""Share of the highest ratio of speeds below which no balance is looked for: the turbine stands."""
 
 
 @dataclass(frozen=True)
@@ -125,40 +122,47 @@ STANDING = ConverterRun(1.0, 0.0, 0.0, 0.0, (0.0, 0.0), (0.0, 0.0))
 """Pump and turbine at rest."""
 
 
+@dataclass(frozen=True)
+class TurbineCurve:
+    """What the turbine takes off its loads over its own speed, −h(ω_t/ω_p) ω_p² at one speed of the pump [rad/s]."""
+
+    curves: ConverterCurves
+    pump_speed: float
+
+    @property
+    def range(self) -> tuple[float, float]:
+        """The speeds of its points."""
+        return self.curves.ratios[0] * self.pump_speed, self.curves.ratios[-1] * self.pump_speed
+
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Likewise."""
+        return tuple(ratio * self.pump_speed for ratio in self.curves.ratios)
+
+    def _ratio(self, speed: Any) -> Array:
+        first, last = self.curves.ratios[0], self.curves.ratios[-1]
+        return np.clip(np.asarray(speed) / self.pump_speed, first, last)
+
+    def value(self, speed: Any) -> Array:
+        """Torque [N m]."""
+        return np.asarray(-self.curves.turbine(self._ratio(speed)) * self.pump_speed**2)
+
+    def slope(self, speed: Any) -> Array:
+        """Its derivative by the speed of the turbine [N m s/rad]."""
+        ratio = self._ratio(speed)
+        k, m = self.curves.capacity, self.curves.torque_ratio
+        return np.asarray(-(m(ratio, 1) * k(ratio) + m(ratio) * k(ratio, 1)) * self.pump_speed)
+
+
 def balances(
     curves: ConverterCurves, loads: Sequence[tuple[float, TorqueCurve]], pump_speed: float
 ) -> Iterator[tuple[float, bool]]:
-    """Ratios of speeds above 0, rising, at which the turbine carries its ``loads`` at a speed of the pump, and whether
-    each lasts: a turbine that turns a little faster is braked. Each load goes with the ratio of its shaft's speed to
-    the turbine's."""
-
-    def left(ratio: Array | float) -> Array:
-        turbine = np.asarray(ratio) * pump_speed
-        resists = sum((r * load.value(r * turbine) for r, load in loads), np.zeros_like(turbine))
-        return np.asarray(curves.turbine(ratio) * pump_speed**2 - resists)
-
-    knots = {v for v in curves.ratios if v > 0} | {
-        knot / (r * pump_speed)
-        for r, load in loads
-        for knot in load.knots
-        if 0 < knot < curves.ratios[-1] * r * pump_speed
-    }
-    ends = sorted({max(curves.ratios[0], 0.0), *knots})
-    at = np.unique(np.concatenate([np.linspace(a, b, BETWEEN + 1) for a, b in zip(ends, ends[1:], strict=False)]))
-    value = left(at)
-    value[np.abs(value) <= ROUNDING * np.nanmax(np.abs(value), initial=0.0)] = 0.0
-    for i in range(len(at) - 1):
-        here, there = float(value[i]), float(value[i + 1])
-        if not (np.isfinite(here) and np.isfinite(there)) or here * there > 0 or there == 0 and i + 2 < len(at):
-            continue
-        if here == 0:
-            root = float(at[i])
-        elif there == 0:
-            root = float(at[i + 1])
-        else:
-            root = float(brentq(lambda v: float(left(v)), at[i], at[i + 1], xtol=EXACT, rtol=4 * np.finfo(float).eps))
-        if root > 0:
-            yield root, _slope(curves, loads, pump_speed, root) < 0
+    """All ratios of speeds above 0, rising, at which the turbine carries its ``loads`` at a speed of the pump, and
+    whether each lasts: a turbine that turns a little faster is braked. Each load goes with the ratio of its shaft's
+    speed to the turbine's."""
+    own = TurbineCurve(curves, pump_speed)
+    for one in all_balances([(1.0, own), *loads], STANDS * own.range[1], own.range[1]):
+        yield one.speed / pump_speed, one.stable
 
 
 def _slope(
