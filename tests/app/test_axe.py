@@ -33,15 +33,22 @@ def axe(tmp_path_factory: pytest.TempPathFactory) -> str:
 @pytest.mark.slow
 @pytest.mark.parametrize("view", registry.VIEWS)
 def test_nothing_that_axe_judges_is_violated(look: Look, axe: str, view: str) -> None:
+    """In both themes, with a variant kept."""
     look.page.set_viewport_size({"width": 1440, "height": 900})
     look.at(f"?view={view}&stability.across=8&stability.up=6")
     look.page.get_by_role("button", name="Keep this variant to compare").click()
     look.page.get_by_role("button", name="Drop variant 1").wait_for()
     look.settled_anew()
     look.page.evaluate(axe)
-    found = look.page.evaluate(f"axe.run(document, {{ runOnly: {RULES} }})")
-    assert len(found["passes"]) > LEAST_JUDGED
-    broken = [
-        (one["id"], node["html"][:200], node["failureSummary"]) for one in found["violations"] for node in one["nodes"]
-    ]
+    broken = []
+    for theme in ("light", "dark"):
+        look.page.emulate_media(color_scheme=theme)
+        look.page.wait_for_timeout(300)
+        found = look.page.evaluate(f"axe.run(document, {{ runOnly: {RULES} }})")
+        assert len(found["passes"]) > LEAST_JUDGED
+        broken += [
+            (theme, one["id"], node["html"][:200], node["failureSummary"])
+            for one in found["violations"]
+            for node in one["nodes"]
+        ]
     assert broken == []

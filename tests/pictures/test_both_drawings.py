@@ -180,7 +180,13 @@ def test_a_figure_takes_other_panels_of_its_kind_and_leaves_what_is_alike() -> N
     made.show(panel(Line(X, X, "line", "other"), Level(2.0, "zero")), 300)
     assert made.sources["level lines"].data is before
     np.testing.assert_array_equal(made.sources["lines"].data["ys"][0], X)
-    assert [item.label["value"] for item in made.legend.items] == ["other"]
+    assert made.names == ["other"]
+    entry = made.legend.items[0]
+    made.show(panel(Level(1.0, "zero", "a level"), Line(X, X, "line", "a line"), key=""), 300)
+    assert made.names == [] and not made.legend.visible
+    made.show(panel(Points(X, X, "start", "a mark"), Line(X, X, "line", "a line")), 300)
+    assert made.names == ["a mark", "a line"] and made.legend.items[0] is entry  # no model comes or goes needlessly
+    assert entry.renderers == [made.key_glyphs["mark"]]
     logarithmic = panel(x=Axis(scale="log"))
     assert Drawn.kind_of(logarithmic, 320) != Drawn.kind_of(panel(), 320) == made.kind
 
@@ -193,7 +199,7 @@ def test_rows_of_legends_and_texts_never_become_fewer() -> None:
             item for k in range(count) for item in (Line(X, Y, "line", f"name {k}"), Texts([1.0], [2.0], [f"{k}"]))
         ]
         made.show(panel(*shown), 300)
-        assert [item.index for item in made.legend.items] == list(range(count))
+        assert [item.index for item in made.legend.items if item.visible] == list(range(count))
         for kind in before:
             now = len(made.sources[kind].data["x"])
             assert now >= max(before[kind], count)

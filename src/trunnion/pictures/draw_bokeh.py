@@ -131,6 +131,11 @@ class Drawn:
         self._title(panel.title or panel.remark)
         self._legend(panel)
 
+    @property
+    def names(self) -> list[str]:
+        """What the legend names."""
+        return [item.label["value"] for item in self.legend.items if item.visible]
+
     def narrow(self, narrow: bool) -> None:
         """Half of the page, or all of it."""
         self.is_narrow = narrow
@@ -246,21 +251,27 @@ class Drawn:
         self._fit()
 
     def _legend(self, panel: Panel) -> None:
-        """Every name once."""
+        """Every name once. Entries stay, hidden where there is nothing to say: a document walks through all that stands
+        on its page whenever a model comes or goes."""
         entries = [] if not panel.key else self.entries
-        now = [(item.label["value"], item.index) for item in self.legend.items]
-        names = ["\n".join(wrap(name, WIDE)) for _, name, _ in entries]
-        if now != [(name, k) for k, name in enumerate(names)]:
-            self.legend.items = [
-                LegendItem(label={"value": name}, index=k, renderers=[self.key_glyphs[part] for part in _parts(kind)])
-                for k, (name, (*_, kind)) in enumerate(zip(names, entries, strict=True))
-            ]
+        made = list(self.legend.items)
+        for k, (_, name, kind) in enumerate(entries):
+            words, parts = "\n".join(wrap(name, WIDE)), [self.key_glyphs[part] for part in _parts(kind)]
+            if k == len(made):
+                made.append(LegendItem(label={"value": words}, index=k, renderers=parts))
+            elif made[k].label["value"] != words:
+                made[k].label = {"value": words}
+            _update(made[k], renderers=parts, visible=True)
+        for item in made[len(entries) :]:
+            _update(item, visible=False)
+        if len(made) > len(self.legend.items):
+            self.legend.items = made
         _update(self.legend, title=panel.key_title or None)
         self._fit()
 
     def _fit(self) -> None:
         """Rows of the legend below the picture, which keeps its height and holds every name; lines of the title."""
-        names = [item.label["value"] for item in self.legend.items]
+        names = self.names
         across = 1 if self.is_narrow else min(columns(names, PLACE - self.aside, KEY), IN_A_ROW)
         high = [max(name.count("\n") for name in names[k : k + across]) for k in range(0, len(names), across)]
         rows = len(high) + bool(self.legend.title)
