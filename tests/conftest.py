@@ -42,6 +42,10 @@ STUDIES = {
 LONGEST = [
     *("test_features.py", "test_integration.py", "test_by_hand.py", "test_report.py", "test_charts_hold_their_word.py"),
     *("test_tongues.py", "test_commands.py", "test_process.py", "test_stability_charts.py", "test_random_chains.py"),
+    *("test_boundaries.py", "test_applications.py", "test_stable_limit.py", "test_store.py", "test_windows.py"),
+    *("test_speeds_in_text_and_pictures.py", "test_pool.py", "test_fmu.py", "test_periods_and_verdicts.py"),
+    *("test_tolerance_study.py", "test_hostile_names.py", "test_windows_hold.py", "test_formulas.py"),
+    *("test_captured_run_ups.py", "test_examples.py", "test_sensitivity.py", "test_submission.py"),
 ]
 """Files that take longest, the longest first. The first two need different kernels, so that none is compiled twice."""
 

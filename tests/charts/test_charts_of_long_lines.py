@@ -66,7 +66,8 @@ def test_every_pixel_against_integration() -> None:
     assert 0.02 < unstable.mean() < 0.9 and np.array_equal(unstable, (found.radius > 1).reshape(unstable.shape))
 
 
-@pytest.mark.parametrize("seed", [13, 30])  # the second with a mesh whose stiffness varies
+# the second with a mesh whose stiffness varies
+@pytest.mark.parametrize("seed", [13, pytest.param(30, marks=pytest.mark.slow)])
 def test_errors_of_coarse_charts_hold_and_are_of_use(seed: int) -> None:
     """Every pixel integrated by itself, at random against modes by Hill's blocks; the kernel's own bounds say a hundred
     times as much and more."""

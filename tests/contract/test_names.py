@@ -87,7 +87,9 @@ def test_no_two_classes_share_a_name() -> None:
 
 def test_retired_names_stay_away() -> None:
     retired = set(RETIRED.split())
-    found = {path.relative_to(ROOT).as_posix(): names_in(path) & retired for path in FILES}
+    word = re.compile(rf"\b(?:{'|'.join(retired)})\b")  # few files have one, in a comment mostly: only they are parsed
+    told = [path for path in FILES if word.search(path.read_text(encoding="utf-8"))]
+    found = {path.relative_to(ROOT).as_posix(): names_in(path) & retired for path in told}
     assert not {name: words for name, words in found.items() if words}
     assert not {path.stem for path in FILES} & retired
 

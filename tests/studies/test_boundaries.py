@@ -204,6 +204,7 @@ def test_two_clients(tmp_path, undisturbed, monkeypatch) -> None:
     assert data_of(store) == undisturbed
 
 
+@pytest.mark.slow
 def test_further_halvings_keep_what_is_there(tmp_path, undisturbed, monkeypatch) -> None:
     store = tmp_path / "a.zarr"
     counts = computed(monkeypatch)
@@ -234,15 +235,15 @@ def test_on_workers(tmp_path, undisturbed) -> None:
 def test_a_search_that_needs_too_many_points_says_so(tmp_path) -> None:
     """It has what it came to, to be shown and gone on with."""
     store = tmp_path / "a.zarr"
-    study = asked(store, 5)
-    study["boundary"] |= {"most": 300}
+    study = asked(store, 4)
+    study["boundary"] |= {"most": 150}
     found = tn.study(study, line=line(), workers=0)
-    assert not found.outcome.ok and "needs" in str(found.outcome) and "and 300 are the most" in str(found.outcome)
+    assert not found.outcome.ok and "needs" in str(found.outcome) and "and 150 are the most" in str(found.outcome)
     edge = tn.study_boundary(found)
-    assert 0 < edge.halvings < 5 and not edge.whole and f"{edge.halvings} of 5 halvings so far" in str(edge)
+    assert 0 < edge.halvings < 4 and not edge.whole and f"{edge.halvings} of 4 halvings so far" in str(edge)
     [[_, low, high]] = edge.crossings(STIFFNESS, {INERTIA: 1.0})
     assert low <= LEVEL**2 <= high
-    assert tn.study(asked(store, 5), line=line(), workers=0).outcome.ok
+    assert tn.study(asked(store, 4), line=line(), workers=0).outcome.ok
 
 
 def stability(store: Path, value: str = "unstable", **more: Any) -> dict[str, Any]:

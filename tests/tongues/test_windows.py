@@ -101,7 +101,7 @@ def test_a_region_that_crosses_few_speeds_between_two_rows() -> None:
     assert line.radius(np.array([1.1005]), k2=np.array([(first + second) / 2]))[0] > 1 + 1e-3
 
 
-@pytest.mark.parametrize("rows", [17, pytest.param(33, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("rows", [pytest.param(17, marks=pytest.mark.slow), pytest.param(33, marks=pytest.mark.slow)])
 def test_a_leaning_region_is_followed_to_its_tip(rows: int) -> None:
     """Its ridge leans by more than its width from row to row, so that the stretch about the last row's loses it."""
     line = TwoDisks(2.4188, 0.00932267, 0.476885, 0.3, 0.8158147, 0.00314435, 1.5236)

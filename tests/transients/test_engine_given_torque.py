@@ -154,6 +154,7 @@ def test_a_share_of_what_a_machine_gives_by_its_curve(machine: Any, curve: Any) 
     np.testing.assert_allclose(moving.applied[:, 0], expected, rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_a_least_factor_of_an_engine_scales_what_it_gives_and_not_its_masses() -> None:
     """At twice the factor the run is that of twice the torque; the masses' torque stays."""
     masses = {"reciprocating_mass": 0.5, "stroke": 0.08, "rod_length": 0.15}

@@ -131,6 +131,7 @@ def test_a_lagging_motor_starts_from_rest_through_a_joint_and_play() -> None:
     assert run.energy.error < 1e-9
 
 
+@pytest.mark.slow
 def test_a_passage_with_a_lagging_motor() -> None:
     """Also in the compiled stretches that maps are made of, with a shaft without play."""
     found = tn.passing(with_play(), (0.0, 120.0))
