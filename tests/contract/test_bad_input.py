@@ -1615,6 +1615,14 @@ PYTHON = [
         "Engine.firing_intervals = ['180 deg', '-180 deg', '360 deg', '360 deg']: must not be negative",
         "crank angle from each firing",
     ),
+    (
+        lambda: Driveline(
+            [ConstantSpeed(), Shaft(stiffness=1e4), Disk(inertia=1), planetary(name="set"), Disk(inertia=1)],
+            limits=[tn.Limit(of="set", max_torque=5)],
+        ),
+        "limit of set.max_torque = '5 N*m': needs the elastic teeth of a Planetary",
+        "or limit the shafts on it",
+    ),
     (lambda: ViscousDamper(ring_inertia=1), "ViscousDamper.damping: is missing", "45 N*m*s/rad"),
     (lambda: ViscousDamper(ring_inertia=1, oil=OIL), "ViscousDamper.oil_frequency: is needed with oil", "60 Hz"),
     (

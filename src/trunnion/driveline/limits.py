@@ -29,6 +29,7 @@ from trunnion.driveline.elements import Disk, Element
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.machines import Fan, Generator, Motor, Propeller, Pump
 from trunnion.driveline.pendulums import CentrifugalPendulum
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.quantities import (
     RATIO,
     Acceleration,
@@ -67,9 +68,9 @@ SPRING_KINDS: tuple[type[Element], ...] = (
 """Elements that carry a torque, meshes aside."""
 _TURNING: tuple[type[Element], ...] = (Disk, Vehicle, Motor, Generator, Fan, Pump, Propeller, Brake)
 _MAY_HAVE: dict[str, tuple[type[Element], ...]] = {
-    "max_torque": (*SPRING_KINDS, GearPair),
-    "vibratory_torque": (*SPRING_KINDS, GearPair),
-    "transient_vibratory_torque": (*SPRING_KINDS, GearPair),
+    "max_torque": (*SPRING_KINDS, GearPair, Planetary),
+    "vibratory_torque": (*SPRING_KINDS, GearPair, Planetary),
+    "transient_vibratory_torque": (*SPRING_KINDS, GearPair, Planetary),
     "max_stress": (Shaft,),
     "max_twist": SPRING_KINDS,
     "max_speed_fluctuation": _TURNING,
@@ -91,7 +92,8 @@ class Limit(Addressed):
     Parameters
     ----------
     of : name of the element, or "Shaft *" for all shafts (any kind of element).
-    max_torque : largest |mean + vibratory| torque [N m]; of a mesh, at its driven gear.
+    max_torque : largest |mean + vibratory| torque [N m]; of a mesh, at its driven gear; of a ``Planetary`` with elastic
+        teeth, in its meshes with the sun and with the ring, that of all planets together about their axes.
     vibratory_torque : half of peak-to-peak [N m], borne continuously.
     transient_vibratory_torque : the same, borne for passing quickly: where only the continuous limit is exceeded,
         the speed range is barred.
@@ -210,6 +212,8 @@ def _lacks(element: Element, key: str) -> str | None:
     """Why an element cannot have a limit; None where it can."""
     if not isinstance(element, _MAY_HAVE[key]):
         return f"does not belong to a {element.kind}"
+    if isinstance(element, Planetary) and not element.elastic:
+        return "needs the elastic teeth of a Planetary"
     for needed in _TUBE.get(key, ()):
         if getattr(element, needed, None) is None:
             return f"needs the {needed} of the Shaft"
@@ -221,6 +225,8 @@ def _remedy(element: Element, key: str) -> str:
         kinds = ", ".join(kind.__name__ for kind in _MAY_HAVE[key])
         own = [k for k, kinds_ in _MAY_HAVE.items() if isinstance(element, kinds_)]
         return f"it limits {kinds}" + (f"; a {element.kind} may have {', '.join(own)}" if own else "")
+    if isinstance(element, Planetary):
+        return "write its sun_mesh_stiffness and ring_mesh_stiffness, or limit the shafts on it"
     needed = next(n for n in _TUBE[key] if getattr(element, n, None) is None)
     return {
         "outer_diameter": "describe it by outer_diameter, length and material, or limit its torque",

@@ -6,7 +6,7 @@ import numpy as np
 
 from trunnion.design.assessment.assessment_input import LoadCaseResponse
 from trunnion.design.assessment.check import Check
-from trunnion.design.assessment.measures import spring_of
+from trunnion.design.assessment.measures import springs_of
 from trunnion.design.assessment.parametric import NAME as PARAMETRIC
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.overview_assessment import capital
@@ -69,8 +69,9 @@ def _spring(
     """The spring that the binding check is about, else the most loaded one, and its limits of torque [N m]."""
     stated = [one for one in seen.line.limits_by_element if one.key in OF_TORQUE.values()]
     if check is not None and _of_torque(check):
-        column = spring_of(case.assembly, check.element)
+        own = springs_of(case.assembly, check.element)
+        column = max(own, key=lambda c: float(np.nan_to_num(response.peak_torque[:, c]).max()))
     else:
         column = int(np.argmax(np.nan_to_num(response.vibratory_torque).max(axis=0)))
-    mine = [one for one in stated if spring_of(case.assembly, one.element) == column]
+    mine = [one for one in stated if column in springs_of(case.assembly, one.element)]
     return response.springs[column], {one.key.replace("_", " "): one.value for one in mine}

@@ -92,10 +92,15 @@ def measures(assembly: Assembly) -> Iterator[Measure]:
             yield carried
 
 
-def spring_of(assembly: Assembly, element: str) -> int:
-    """The spring that an element is part of."""
+def springs_of(assembly: Assembly, element: str) -> tuple[int, ...]:
+    """The springs that an element has or is part of."""
     place = assembly.line.index(element)
-    return next(c for c, ends in enumerate(assembly.topology.compliances) if place in ends.shafts)
+    return tuple(c for c, ends in enumerate(assembly.topology.compliances) if place in ends.shafts)
+
+
+def spring_of(assembly: Assembly, element: str) -> int:
+    """The first of them, of most elements the only one."""
+    return springs_of(assembly, element)[0]
 
 
 def required_of(assembly: Assembly, element: str) -> float:
@@ -132,11 +137,10 @@ def limited(assembly: Assembly, limit: OneLimit, table: Array) -> tuple[Values, 
     """Values and amplitudes by order of what is limited."""
     if limit.key in OF_DISKS:
         return _of_disk(limit)
-    c = spring_of(assembly, limit.element)
-    if limit.key in ("vibratory_torque", "transient_vibratory_torque"):
-        return partial(_vibratory, c=c), _of_spring(c)
-    if limit.key == "max_torque":
-        return partial(_peak, c=c), _of_spring(c)
+    c, *others = springs_of(assembly, limit.element)
+    if limit.key in ("vibratory_torque", "transient_vibratory_torque", "max_torque"):
+        of = _peak if limit.key == "max_torque" else _vibratory
+        return _of_either((c, *others), of) if others else (partial(of, c=c), _of_spring(c))
     if limit.key == "max_stress":
         factor = _stress_factors(assembly, table, limit.element)
         return (
@@ -148,6 +152,20 @@ def limited(assembly: Assembly, limit: OneLimit, table: Array) -> tuple[Values, 
         lambda response: response.twist_range.largest[:, c] * share,
         lambda response: response.twist[:, :, c] * share[:, None],
     )
+
+
+def _of_either(springs: tuple[int, ...], of: Callable[..., Array]) -> tuple[Values, Parts]:
+    """The larger of the springs of one element, at each speed."""
+
+    def each(response: OrderResponse) -> Array:
+        return np.stack([of(response, c=c) for c in springs])
+
+    def parts(response: OrderResponse) -> Complex:
+        larger = each(response).argmax(axis=0)
+        torque = response.torque[:, :, list(springs)]
+        return np.asarray(np.take_along_axis(torque, larger[:, None, None], axis=2)[..., 0])
+
+    return lambda response: np.asarray(each(response).max(axis=0)), parts
 
 
 def _of_disk(limit: OneLimit) -> tuple[Values, Parts]:

@@ -59,7 +59,7 @@ def unlimited(assembly: Assembly) -> list[str]:
     rating = ("maximum_torque", "largest_travel")
     rated = {name for name, e in assembly.line.parts if any(getattr(e, key, None) is not None for key in rating)}
     springs = [assembly.line.names[i] for c in assembly.topology.compliances for i in c.shafts]
-    return [name for name in springs if name not in limited | rated]
+    return [name for name in dict.fromkeys(springs) if name not in limited | rated]
 
 
 def _one(subject: AssessmentInput, case: LoadCaseResponse, limit: OneLimit) -> Check:
