@@ -671,7 +671,7 @@ def _bare(line: Driveline, draft: LineStations, group: int) -> InputError:
         problem, remedy = "has no inertia behind it", f"put a Disk behind {element}"
     elif tied:
         problem = "has no inertia rigidly in front of it"
-        remedy = f"put a Disk in front of {element} (half the joint's own inertia is a good start)"
+        remedy = f"put a Disk in front of {element} (half its own inertia is a good start)"
     else:
         problem = "ends where there is no inertia"
         remedy = f"put a Disk behind {element}, or give the tube a density"
