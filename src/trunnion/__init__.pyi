@@ -172,6 +172,7 @@ from trunnion.response.kinetostatics import kinetostatics as kinetostatics
 from trunnion.response.kinetostatics import phase_forks as phase_forks
 from trunnion.response.orders.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
+from trunnion.response.peaks.certify_peaks import certify_peaks as certify_peaks
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep
 from trunnion.response.speed_sweep import sweep_speeds as sweep_speeds
 from trunnion.studies.boundary import study_boundary as study_boundary

@@ -364,6 +364,14 @@ ROWS: dict[str, Row] = {
         said=_SERIES,
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
     ),
+    "proof of peaks": _row(
+        refused={
+            **_UNPROVABLE,
+            "excitation that varies with speed or load": "a curve over the speed is not enclosed",
+        },
+        said=_IN_ROWS,
+        inert={**_TORSION, **_EVEN, **_STICKS},
+    ),
     "whirl": _row(
         refused={CONVERTER: _NO_SPEED[CONVERTER]},
         inert={f.key: _TUBE for f in FEATURES if f.key not in (*_TUBES, CONVERTER)},

@@ -126,6 +126,12 @@ ANALYSES = (
         view="orders",
     ),
     Analysis(
+        "certify_peaks",
+        "Prove how large torque and twist of every spring can be in a range of speeds and tolerances.",
+        features="proof of peaks",
+        command="trunnion.cli.limits:certify_peaks",
+    ),
+    Analysis(
         "coupling_temperatures",
         "Where the temperature of elastic couplings settles by the heat of their damping, if anywhere.",
         features="settled temperatures",

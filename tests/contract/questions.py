@@ -256,6 +256,11 @@ QUESTIONS = {
         lambda: tn.certify_stability(in_rpm(), {ANGLE: 0.01}, speeds=(MIDDLE, MIDDLE * 1.001)),
         quick=("load torque", "stiffness", "ratio", "prescribed far end"),
     ),
+    "certify_peaks": Question(
+        lambda line: tn.certify_peaks(line, {"hub.inertia": 1e-4}, (100.0, 100.001), most_boxes=2),
+        lambda: tn.certify_peaks(in_rpm(), {ANGLE: 0.01}, speeds=(MIDDLE, MIDDLE * 1.001), most_boxes=2),
+        quick=("load torque", "ratio", "excitation by order"),
+    ),
     "tolerance_study": Question(
         lambda line: tn.tolerance_study(line, {"hub.inertia": 0.1}, SPEED, samples=256),
         lambda: tn.tolerance_study(in_rpm(), {ANGLE: 0.05}, speeds=[LOW, HIGH], samples=256),

@@ -39,6 +39,7 @@ LAYERS = (
     {"response/kinetostatics", "response/orders"},
     {"response/ranges"},
     {"response"},
+    {"response/peaks"},
     # What was measured, beside what is computed.
     {"measured/signals"},
     {"measured/tracking"},

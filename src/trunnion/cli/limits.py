@@ -170,3 +170,31 @@ def certify_stability(
         return CommandOutput(found.in_unit(unit))
     tn.dump(found.unstable_line, write, comments_of=file_of_line(file))
     return CommandOutput(found.in_unit(unit), written=[write])
+
+
+@Command("peak certificate", within=True)
+def certify_peaks(
+    line: Line,
+    *,
+    tolerance: Tolerances,
+    speeds: SpeedRange,
+    gap: Annotated[float, NumberBounds(1e-6)] = 0.05,
+    boxes: int = 20_000,
+    write: Annotated[Path | None, OptionReader(place_of_line)],
+    file: Annotated[str, InputAttribute("file")],
+    unit: SpeedUnit,
+    progress: Progress,
+) -> CommandOutput:
+    """Example: trunnion certify-peaks truck.toml -t "front tube.stiffness=5%" --speed 300rpm:600rpm
+
+    --tolerance, -t PARAMETER=SHARE  What scatters: "Shaft 1.stiffness=1%"; default: the file's, or nothing.
+    --gap  Share by which a bound may stand above what was computed, 0.05 for 5 %.
+    --boxes  Largest number of boxes judged; bounds hold all the same, but are wider.
+    --write PATH  Write the line of a counterexample as a driveline file.
+    """
+    given = dict(tolerance) if tolerance else None
+    found = tn.certify_peaks(line, given, speeds, gap=gap, most_boxes=boxes, progress=progress)
+    if write is None or found.line is None:
+        return CommandOutput(found.in_unit(unit))
+    tn.dump(found.line, write, comments_of=file_of_line(file))
+    return CommandOutput(found.in_unit(unit), written=[write])

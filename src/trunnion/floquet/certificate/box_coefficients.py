@@ -43,7 +43,8 @@ class NumberRange:
 class BoxCoefficients:
     """Waves without harmonics: of every compliance, station and joint as ``LineCoefficients`` has them.
 
-    ``over_mass`` : 1/M of unknowns whose tolerance is parametrised by it, by unknown.
+    ``untwisted_shift`` : without static twist. ``over_mass`` : 1/M of unknowns whose tolerance is parametrised by it,
+    by unknown.
     """
 
     speed: Wave
@@ -56,6 +57,7 @@ class BoxCoefficients:
     quadratic: list[Wave]
     tangents: dict[int, Wave]
     shift: list[Wave]
+    untwisted_shift: list[Wave]
     over_mass: dict[int, Wave]
     middle: LineCoefficients
 
@@ -89,7 +91,7 @@ def box_coefficients(
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
     torque = _torques(assembly, speed, constant, viscous, quadratic)
-    shift = waves(co.shift)
+    shift, untwisted_shift = waves(co.shift), waves(co.shift)
     for e, compliance in enumerate(topo.compliances):
         _put_twists(assembly, co, e, compliance.shafts, stiffness[e], torque[e], shift, compliance.number)
     inertia, over_mass = waves(co.inertia), _inverses(assembly, co, ranges, many, last)
@@ -98,7 +100,8 @@ def box_coefficients(
     middle = assembly.coefficients(table[:1])
     return BoxCoefficients(
         speed=speed, stiffness=stiffness, damping=damping, torque=torque, inertia=inertia, constant=constant,
-        viscous=viscous, quadratic=quadratic, tangents=kept_tangents, shift=shift, over_mass=over_mass, middle=middle,
+        viscous=viscous, quadratic=quadratic, tangents=kept_tangents, shift=shift,
+        untwisted_shift=untwisted_shift, over_mass=over_mass, middle=middle,
     )  # fmt: skip
 
 

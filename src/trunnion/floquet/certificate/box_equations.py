@@ -66,13 +66,17 @@ def box_matrix(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence
     ------
     NotEnclosed : so.
     """
-    last = _harmonics_needed(assembly, ranges, speeds)
-    co = box_coefficients(assembly, speeds, ranges, last)
     with np.errstate(all="ignore"):
         try:
-            return _BoxLine(assembly, co, 1 + len(ranges), last).matrix()
+            return box_line(assembly, speeds, ranges).matrix()
         except ZeroDivisionError as error:
             raise NotEnclosed from error
+
+
+def box_line(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> BoxLine:
+    """The numbers of the box of all ``speeds`` and all values of ``ranges``."""
+    last = _harmonics_needed(assembly, ranges, speeds)
+    return BoxLine(assembly, box_coefficients(assembly, speeds, ranges, last), 1 + len(ranges), last)
 
 
 def period_rate(assembly: Assembly) -> float:
@@ -98,8 +102,28 @@ def _harmonics_needed(assembly: Assembly, ranges: Sequence[NumberRange], speeds:
     return min(MOST_HARMONICS, needed[-1] + sum(needed[-2:-1]) // 2 + 2)
 
 
+@dataclass(frozen=True)
+class BoxEntries:
+    """A by row and column, twice the energy of the middle, 1/M by unknown, and the decay (n,) [1/s] by which a
+    turn of a free–free line is set aside: every momentum loses ``aside`` times that of the whole, ρᵀπ."""
+
+    entries: dict[tuple[int, int], Wave]
+    energy: Array
+    light: list[Wave]
+    aside: Array
+
+    def arrays(self, parameters: int, last: int) -> tuple[Complex, Array]:
+        """A (1 + parameters, 2K + 1, D, D) and what that leaves out (D, D)."""
+        size = len(self.energy)
+        parts = np.zeros((1 + parameters, 2 * last + 1, size, size), dtype=complex)
+        rest = np.zeros((size, size))
+        for (i, j), wave in self.entries.items():
+            parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
+        return parts, rest
+
+
 @dataclass
-class _Walk:
+class Walk:
     """By station: angle beyond its mean rotation, speed over the input's and its slope, and the same over its group's
     first station with two slopes."""
 
@@ -112,17 +136,21 @@ class _Walk:
 
 
 @dataclass(frozen=True)
-class _BoxLine:
+class BoxLine:
+    """Waves of the equations of one box."""
+
     assembly: Assembly
     co: BoxCoefficients
     parameters: int
     last: int
 
     def number(self, value: float) -> Wave:
+        """A constant."""
         return affine(value, {}, self.parameters, self.last)
 
-    def walk(self) -> _Walk:
-        topo, co, found = self.assembly.topology, self.co, _Walk()
+    def walk(self) -> Walk:
+        """The motion without vibration."""
+        topo, co, found = self.assembly.topology, self.co, Walk()
         laws = dict(zip(topo.joints, co.middle.joints, strict=True))
         zero, one = self.number(0.0), self.number(1.0)
         for s, station in enumerate(topo.stations):
@@ -148,7 +176,7 @@ class _BoxLine:
                 part.append(value)
         return found
 
-    def _behind_joint(self, found: _Walk, s: int, b: int, law: JointLaw) -> tuple[Wave, ...]:
+    def _behind_joint(self, found: Walk, s: int, b: int, law: JointLaw) -> tuple[Wave, ...]:
         lead = found.lead[b] + self.co.shift[s]
         ratio_to_input = self.assembly.topology.speed_ratio[b]
         rate = period_rate(self.assembly)
@@ -187,8 +215,13 @@ class _BoxLine:
         )
 
     def matrix(self) -> BoxMatrix:
+        """A of the line."""
+        return self._made(self.equations(self.walk()))
+
+    def equations(self, motion: Walk) -> BoxEntries:
+        """A of the line about its ``motion``."""
         co, n = self.co, self.assembly.topology.size
-        motion, zero = self.walk(), self.number(0.0)
+        zero = self.number(0.0)
         mass = [zero] * n
         damping = [[zero] * n for _ in range(n)]
         stiffness = [[zero] * n for _ in range(n)]
@@ -205,9 +238,9 @@ class _BoxLine:
         means = np.array([[one.mean.real for one in row] for row in stiffness])
         energy[:n, :n] = (means + means.T) / 2
         energy[n:, n:] = np.diag([one.mean.real for one in light])
-        return self._made(entries, energy)
+        return BoxEntries(entries, energy, light, np.zeros(n))
 
-    def _free(self, loads: list[list[Wave]], light: list[Wave]) -> BoxMatrix:
+    def _free(self, loads: list[list[Wave]], light: list[Wave]) -> BoxEntries:
         """Of a straight line without a prescribed speed: twists q = Eδ of the springs and momenta,
 
             q̇ = E M⁻¹π,   π̇ = −Eᵀk q − (EᵀcE + loads) M⁻¹π  [− ν M₀ρ (ρᵀπ)/(ρᵀM₀ρ)].
@@ -217,7 +250,7 @@ class _BoxLine:
         as it is.
         """
         topo, co, n = self.assembly.topology, self.co, self.assembly.topology.size
-        waves, twists = self._mesh_waves(), topo.elongations
+        waves, twists = self.mesh_waves(), topo.elongations
         springs = len(twists)
         entries: dict[tuple[int, int], Wave] = {}
         whole = [[loads[i][j] for j in range(n)] for i in range(n)]
@@ -232,23 +265,20 @@ class _BoxLine:
         by_speed = any(part.size for row in loads for part in row)
         turn, heavy = topo.rigid[:, 0], np.array([1 / one.mean.real for one in light])
         fast = float(np.sqrt(max((np.abs(twists) ** 2 * np.diagonal(energy)[:springs, None]).sum(axis=0) / heavy)))
+        aside = np.zeros(n) if by_speed else fast * heavy * turn / (turn @ (heavy * turn))
         for i in range(n):
             for j in range(n):
                 entry = -(whole[i][j] * light[j])
                 if not by_speed:
-                    entry = entry - fast * float(heavy[i] * turn[i] * turn[j] / (turn @ (heavy * turn)))
+                    entry = entry - float(aside[i] * turn[j])
                 if entry.size:
                     entries[springs + i, springs + j] = entry
         # Ratios are exact fractions, of which E and ρ are the nearest numbers.
         entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size) for place, one in entries.items()}
-        return self._made(entries, energy)
+        return BoxEntries(entries, energy, light, aside)
 
-    def _made(self, entries: dict[tuple[int, int], Wave], energy: Array) -> BoxMatrix:
-        size, speed = len(energy), self.co.speed
-        parts = np.zeros((1 + self.parameters, 2 * self.last + 1, size, size), dtype=complex)
-        rest = np.zeros((size, size))
-        for (i, j), wave in entries.items():
-            parts[:, :, i, j], rest[i, j] = wave.parts, wave.rest
+    def _made(self, found: BoxEntries) -> BoxMatrix:
+        speed, energy, (parts, rest) = self.co.speed, found.energy, found.arrays(self.parameters, self.last)
         half = float(speed.parts[1, speed.last].real)
         # Straight joints count in the period and move nothing: every how many harmonics there is one.
         stride = gcd(*np.abs(np.flatnonzero(parts.any(axis=(0, 2, 3))) - self.last).tolist()) or self.last + 1
@@ -256,7 +286,7 @@ class _BoxLine:
         return BoxMatrix(parts, rest * OUTWARD, stride * period_rate(self.assembly), (speed.mean.real, half), energy)
 
     def _put_stations(
-        self, motion: _Walk, mass: list[Wave], damping: list[list[Wave]], stiffness: list[list[Wave]]
+        self, motion: Walk, mass: list[Wave], damping: list[list[Wave]], stiffness: list[list[Wave]]
     ) -> None:
         topo, co = self.assembly.topology, self.co
         for s in range(len(topo.stations)):
@@ -284,9 +314,9 @@ class _BoxLine:
                 damping[i][i] = damping[i][i] + (r * r) * growth
                 stiffness[i][i] = stiffness[i][i] + r1 * carried + r * growth * (r1 * w)
 
-    def _put_compliances(self, motion: _Walk, damping: list[list[Wave]], stiffness: list[list[Wave]]) -> None:
+    def _put_compliances(self, motion: Walk, damping: list[list[Wave]], stiffness: list[list[Wave]]) -> None:
         topo, co = self.assembly.topology, self.co
-        waves = self._mesh_waves()
+        waves = self.mesh_waves()
         for e, (compliance, (far, near)) in enumerate(zip(topo.compliances, topo.ends, strict=True)):
             ref = topo.reference[topo.group_of(compliance.near)]
             k, c, torque = co.stiffness[e], co.damping[e], co.torque[e]
@@ -306,7 +336,8 @@ class _BoxLine:
                 stiffness[far][near] = stiffness[far][near] - k * r - c * r_dot
                 stiffness[near][far] = stiffness[near][far] - k * r
 
-    def _mesh_waves(self) -> dict[int, Wave]:
+    def mesh_waves(self) -> dict[int, Wave]:
+        """Stiffness over its mean of every mesh whose stiffness varies, by compliance."""
         found, rate = dict[int, Wave](), period_rate(self.assembly)
         for mesh in self.co.middle.waves:
             wave = self.number(1.0)

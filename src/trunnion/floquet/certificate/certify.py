@@ -23,11 +23,10 @@ from trunnion.equations.steady_base import has_joint_angles, refuse_dragged, req
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.certificate.box_coefficients import NumberRange
+from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.judge import JudgedBox, judge
 from trunnion.floquet.certificate.requirements import require_linear
-from trunnion.floquet.tolerance.parameter_intervals import table_at
-from trunnion.floquet.tolerance.spread import Spread, Tolerances, read_tolerances
+from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, internal, labelled, variable
 from trunnion.results.finding import Finding
@@ -35,11 +34,6 @@ from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
-
-WIDER = 1e-14
-"""By what share ends of boxes are moved outward."""
-FINEST = 2.0**-40
-"""Share of a side below which a box is not halved further: it stays open."""
 
 
 @labelled
@@ -168,7 +162,7 @@ def certify_stability(
         parameters=tuple(s.label for s in spreads),
         speeds=space.speeds,
         verdict=verdict,
-        undecided_share=_volume(left),
+        undecided_share=volume(left),
         counterexample=found.counterexample,
         boxes=found.judged,
         undecided_low=space.values(left[:, 0]),
@@ -184,68 +178,23 @@ def certify_stability(
     )
 
 
-def _volume(boxes: Array) -> float:
-    return float(np.prod(boxes[:, 1] - boxes[:, 0], axis=1).sum()) if len(boxes) else 0.0
-
-
-@dataclass(frozen=True)
-class _Space:
-    """Boxes (2, 1 + parameters) of shares from 0 to 1: the first of ln(speed), the others of tolerances."""
-
-    assembly: Assembly
-    spreads: tuple[Spread, ...]
-    speeds: tuple[float, float]
-
-    @property
-    def size(self) -> int:
-        """Variables."""
-        return 1 + len(self.spreads)
-
-    def values(self, shares: Array) -> Array:
-        """Speed and parameters (boxes, 1 + parameters) at shares."""
-        low, high = np.log(self.speeds)
-        columns = [np.exp(low + shares[:, 0] * (high - low))]
-        columns += [s.low + shares[:, k] * (s.high - s.low) for k, s in enumerate(self.spreads, start=1)]
-        found = np.stack(columns, axis=1)
-        # The ends themselves, to the last figure.
-        found[:, 0] = np.where(
-            shares[:, 0] <= 0, self.speeds[0], np.where(shares[:, 0] >= 1, self.speeds[1], found[:, 0])
-        )
-        return found
-
-    def span(self, box: Array) -> tuple[float, float]:
-        """Lowest and highest speed of a box, moved outward."""
-        low, high = self.values(box)[:, 0].tolist()
-        return low * (1 - WIDER), high * (1 + WIDER)
-
-    def ranges(self, box: Array) -> list[NumberRange]:
-        """Its tolerances, moved outward."""
-        low, high = self.values(box)
-        wider = WIDER * np.maximum(np.abs(low), np.abs(high))
-        ends = zip(self.spreads, (low - wider)[1:].tolist(), (high + wider)[1:].tolist(), strict=True)
-        return [NumberRange(one.label, one.columns, least, most) for one, least, most in ends]
-
+class _Space(BoxSpace):
     def judged(self, box: Array, *, by_energy: bool = False) -> JudgedBox:
         """The verdict on one box."""
         return judge(self.assembly, self.span(box), self.ranges(box), by_energy=by_energy)
 
     def unstable_at(self, shares: Array) -> tuple[Driveline, dict[str, float]] | None:
         """The line at ``shares`` (variables,) and its numbers, if ``stability`` finds it unstable."""
-        values = self.values(shares[None])[0]
-        line = self.assembly.line
-        if self.spreads:
-            table = table_at(self.assembly, self.spreads, values[None, 1:])
-            line = self.assembly.packed.line_at(table[0])
+        line, speed, known = self.line_at(shares)
         try:
             from trunnion.floquet.stability.stability import stability  # brings the compiler with it
 
-            verdict = stability(line, float(values[0])).verdict
+            verdict = stability(line, speed).verdict
         except ComputationError:  # too stiff to be followed: no counterexample
             return None
         if verdict is not Verdict.UNSTABLE:
             return None
-        names = ("speed", *(s.label for s in self.spreads))
-        return line, dict(zip(names, values.tolist(), strict=True))
+        return line, known
 
 
 @dataclass
@@ -323,20 +272,11 @@ class _BoxSearch:
         return True
 
     def _halve(self, box: Array, blame: Array) -> None:
-        """Across the side that brings most; a side that brings nothing is left, one that is very short too."""
-        sides = box[1] - box[0]
-        worth = np.where(sides > FINEST, blame, -1.0)
-        if not worth.max() > 0:
-            worth = np.where(sides > FINEST, sides, -1.0)
-        if not worth.max() > 0:
+        halves = halved(box, blame)
+        if not halves:
             self._kept.append(box)
-            return
-        along = int(worth.argmax()) if np.ptp(worth[worth > 0]) > 0 else int(np.where(worth > 0, sides, -1.0).argmax())
-        middle = (box[0, along] + box[1, along]) / 2
-        lower, upper = box.copy(), box.copy()
-        lower[1, along] = upper[0, along] = middle
-        self._put(lower)
-        self._put(upper)
+        for one in halves:
+            self._put(one)
 
 
 def proved_over(assembly: Assembly, speeds: tuple[float, float], most_boxes: int) -> bool:

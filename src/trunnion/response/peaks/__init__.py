@@ -1,0 +1,1 @@
+"""Peaks of the steady response, bounded over ranges of speeds and tolerances."""

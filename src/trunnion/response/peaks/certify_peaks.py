@@ -1,0 +1,359 @@
+"""A bound of the torque and twist of every spring over a range of speeds and tolerances: a theorem, not a search.
+
+Each box is enclosed as a whole (``box_peaks``). The box that stands furthest above what is asked for is halved, across
+the side that brings most of that, until every bound is close enough above a torque that some line of the box takes, or
+below a stated limit. A line that exceeds its limit ends the search.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Array, Flags
+from trunnion.driveline.arguments import SpeedEnds, one_number, rising_range, whole_number
+from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import require_steady_base
+from trunnion.errors import ComputationError, InputError
+from trunnion.features import left_out
+from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
+from trunnion.floquet.certificate.certify import require_provable
+from trunnion.floquet.certificate.requirements import require_linear
+from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
+from trunnion.response.orders.response import order_response, torque_limits
+from trunnion.response.peaks.box_peaks import BoxPeaks, box_peaks
+from trunnion.response.peaks.forced_box import require_forcing
+from trunnion.response.speed_sweep import sweep_speeds
+from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
+from trunnion.results.finding import Finding, Gravity
+from trunnion.results.result import Result
+from trunnion.results.units import figures
+from trunnion.results.variables import Attribute, Coordinate, Variable
+from trunnion.steady.orders.forced_response import shaft_names
+from trunnion.waiting import keeps_time, time_is_up, to_the_end
+
+MEASURES = ("vibratory torque", "largest torque", "vibratory twist")
+LIMITED = {"vibratory torque": "vibratory torque", "max torque": "largest torque"}
+"""Measures by the limits that they are compared with."""
+LEAST = 1e-3
+"""What springs carry below this share of the largest is bounded by that."""
+STEADY = "of the steady motion, which the line comes to where it is stable: certify_stability proves that"
+
+
+@labelled
+class PeakCertificate(Result):
+    """What the torque and twist of springs do not exceed in any line within tolerances at any speed of a range.
+
+    Each bound stands beside the largest value that was computed of any line there: the peak lies between both. Infinite
+    where a part of the box stayed open.
+    """
+
+    parameters: tuple[str, ...] = internal("that scatter")
+    speeds: tuple[float, float] = attribute("from one to another", "rad/s")
+    verdict: str = attribute('"proved", "within limits", "counterexample" or "undecided"')
+    vibratory_torque_bound: Array = variable("spring", "N*m", "half of peak to peak, proved not to be exceeded")
+    vibratory_torque: Array = variable("spring", "N*m", "the largest computed")
+    peak_torque_bound: Array = variable("spring", "N*m", "largest |torque|, proved not to be exceeded")
+    peak_torque: Array = variable("spring", "N*m", "the largest computed")
+    vibratory_twist_bound: Array = variable("spring", "rad", "half of peak to peak, proved not to be exceeded")
+    vibratory_twist: Array = variable("spring", "rad", "the largest computed")
+    peak_speed: Array = variable("spring", "rad/s", "at which the largest vibratory torque was computed")
+    springs: tuple[str, ...] = coordinate("spring")
+    gap: float = attribute("asked for between bounds and what was computed, relative")
+    boxes: int = attribute("how many were judged")
+    open_share: float = attribute("of the volume in ln(speed) and shares of tolerances without a bound")
+    counterexample: dict[str, float] | None = internal("values by name of a line that exceeds a limit")
+    exceeded: str = attribute("which limit the counterexample exceeds, in words", default="")
+    units: tuple[str, ...] = internal("of the parameters", default=())
+    unit: str = internal("of speeds in print", default="rad/s")
+    findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
+    ended: str = attribute("what ended the search before it was done, as a clause", default="")
+    line: Driveline | None = internal("the counterexample", default=None)
+
+    def declared(self) -> Iterator[Variable | Attribute]:
+        """The bounds, and the counterexample."""
+        names, known = ["speed", *self.parameters], self.counterexample or {}
+        yield Coordinate("variable", names, "variable")
+        yield Variable("counterexample", np.array([known.get(name, np.nan) for name in names]), "variable")
+        yield from super().declared()
+
+    @property
+    def largest_gap(self) -> float:
+        """By how much bounds of vibratory torque stand above what was computed at most, relative."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            apart = self.vibratory_torque_bound / self.vibratory_torque - 1
+        return float(np.nanmax(apart, initial=0.0))
+
+    def _lines(self) -> Iterator[str]:
+        count = len(self.parameters)
+        many = f"within {count} tolerance{'s' if count > 1 else ''}, " if count else ""
+        what = f"{many}from {self.words.ends(*self.speeds)}"
+        if self.counterexample is not None:
+            values = ", ".join(f"{n} = {v:.9g}" for n, v in self.counterexample.items() if n != "speed")
+            at = self.words.speed(self.counterexample["speed"])
+            which = f"the line with {values}" if values else "the line"
+            yield f"not within limits {what}: at {at} {which} {self.exceeded}"
+        elif self.verdict == "within limits":
+            yield f"proved within limits: every line {what}" if count else f"proved within limits {what}"
+        elif self.open_share >= 1:
+            yield f"undecided {what}: nothing is bounded{f'; {self.ended}' if self.ended else ''}"
+        else:
+            open_part = f"; {100 * self.open_share:.3g} % of the volume is open" if self.open_share else ""
+            ended = f"; {self.ended}" if self.ended else ""
+            word = "peaks are bounded" if self.verdict == "proved" else "undecided"
+            yield f"{word} {what}{open_part}{ended}"
+        for k, name in enumerate(self.springs):
+            bound, known = self.vibratory_torque_bound[k], self.vibratory_torque[k]
+            if not np.isfinite(known):
+                continue
+            proved = f"±{bound:.5g} N m is not exceeded" if np.isfinite(bound) else "no bound"
+            at = f" at {self.words.speed(float(self.peak_speed[k]))}" if known else ""
+            most = f"{self.peak_torque_bound[k]:.5g} N m at most"
+            yield f"  {name}: {proved}, ±{known:.5g} N m reached{at}; in all {most}"
+        yield f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
+
+
+@keeps_time
+def certify_peaks(
+    line: Driveline | Assembly,
+    tolerances: Tolerances | None = None,
+    speeds: SpeedEnds | None = None,
+    *,
+    gap: float = 0.05,
+    most_boxes: int = 20_000,
+    within: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> PeakCertificate:
+    """Prove how large torque and twist of every spring can be in any line within ``tolerances`` at any speed between
+    ``speeds`` [rad/s], or find a line that exceeds a limit of the description.
+
+    Parameters
+    ----------
+    line : whose shafts may branch and close no loop; behind a ConstantSpeed, or with straight joints; in the steady
+        motion of ``order_response``.
+    tolerances : as of ``certify_stability``, None for those of the description, {} for none.
+    speeds : lowest and highest [rad/s]; None for the range of the description.
+    gap : share by which a bound may stand above the largest value computed; of a spring that carries less than a
+        thousandth of another, a thousandth of that is enough.
+    most_boxes : boxes judged before the search ends; bounds hold all the same, but are wider.
+    within : seconds after which it ends, and ``ended`` says so.
+    progress : called as progress(share done).
+
+    Raises
+    ------
+    InputError : the line, or what scatters, is none of these; an amplitude that goes with the speed along a curve.
+
+    Examples
+    --------
+    >>> import trunnion as tn
+    >>> engine = tn.Disk(inertia=0.2, excitation=[{"order": 2, "amplitude": 100.0}])
+    >>> line = tn.Driveline([engine, tn.Shaft(stiffness=1e4, damping=20.0), tn.Disk(inertia=0.8)])
+    >>> proved = tn.certify_peaks(line, {"Shaft 1.stiffness": 0.05}, (60.0, 100.0))
+    >>> print(proved.verdict, bool(proved.vibratory_torque_bound[0] < 1.05 * proved.vibratory_torque[0]))
+    proved True
+    """
+    description = line.line if isinstance(line, Assembly) else line
+    if speeds is None and description.operation is not None:
+        speeds = description.operation.speed_range
+    span = rising_range(speeds)
+    most_boxes = whole_number(most_boxes, "most_boxes", 1)
+    gap = one_number(gap, "gap", "0.05, say")
+    if not 0 < gap < np.inf:
+        raise InputError("must be positive", key="gap", value=gap, remedy="0.05, say")
+    assembly = assemble(line)
+    require_provable(assembly)
+    require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
+    require_forcing(assembly, span)
+    given = assembly.line.tolerances_by_path if tolerances is None else tolerances
+    spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
+    space = BoxSpace(assembly, spreads, span)
+    require_linear(assembly, span, space.ranges(np.array([np.zeros(space.size), np.ones(space.size)])))
+    found = _PeakSearch.of(space, gap, most_boxes, progress or (lambda part: None))
+    found.run()
+    return _certificate(space, found, gap)
+
+
+def _certificate(space: BoxSpace, found: _PeakSearch, gap: float) -> PeakCertificate:
+    assembly = space.assembly
+    springs = shaft_names(assembly)
+    upper, known = found.upper.reshape(3, -1), found.computed.reshape(3, -1)
+    limited = np.isfinite(found.limit)
+    if found.counterexample is not None:
+        verdict = "counterexample"
+    elif found.done:
+        verdict = (
+            "within limits" if limited.any() and np.all(found.upper[limited] <= found.limit[limited]) else "proved"
+        )
+    else:
+        verdict = "undecided"
+    return PeakCertificate(
+        parameters=tuple(s.label for s in space.spreads),
+        speeds=space.speeds,
+        verdict=verdict,
+        vibratory_torque_bound=upper[0],
+        vibratory_torque=known[0],
+        peak_torque_bound=upper[1],
+        peak_torque=known[1],
+        vibratory_twist_bound=upper[2],
+        vibratory_twist=known[2],
+        peak_speed=found.speed[: len(springs)],
+        springs=springs,
+        gap=gap,
+        boxes=found.judged,
+        open_share=found.open_share,
+        counterexample=found.counterexample,
+        exceeded=found.exceeded,
+        units=tuple(s.unit for s in space.spreads),
+        unit=speed_unit(assembly.line),
+        findings=(Finding(Gravity.NOTE, STEADY), *left_out("certify_peaks", assembly.line)),
+        ended=found.ended,
+        line=found.line,
+    )
+
+
+@dataclass
+class _PeakSearch:
+    """Boxes by how far they stand above what is asked; ``limit`` (quantity,) [SI], infinite where none is stated."""
+
+    space: BoxSpace
+    gap: float
+    most: int
+    report_progress: Callable[[float], None]
+    limit: Array
+    computed: Array
+    speed: Array
+    judged: int = 0
+    done: bool = False
+    ended: str = ""
+    counterexample: dict[str, float] | None = None
+    exceeded: str = ""
+    line: Driveline | None = None
+    _todo: list[tuple[float, int, Array, BoxPeaks]] = field(default_factory=list)
+    _kept: list[tuple[Array, Array]] = field(default_factory=list)
+    _count: int = 0
+
+    @classmethod
+    def of(cls, space: BoxSpace, gap: float, most: int, progress: Callable[[float], None]) -> _PeakSearch:
+        names, limits = shaft_names(space.assembly), torque_limits(space.assembly)
+        limit = np.full((len(MEASURES), len(names)), np.inf)
+        for k, name in enumerate(names):
+            for key, value in limits[name].items():
+                if key in LIMITED:
+                    limit[MEASURES.index(LIMITED[key]), k] = value
+        size = limit.size
+        return cls(space, gap, most, progress, limit.ravel(), np.full(size, np.nan), np.full(size, np.nan))
+
+    @property
+    def upper(self) -> Array:
+        """Bounds (quantity,) over everything."""
+        every = [peaks.upper for _, _, _, peaks in self._todo] + [upper for _, upper in self._kept]
+        return np.asarray(np.max(every, axis=0)) if every else np.full(len(self.limit), np.inf)
+
+    @property
+    def open_share(self) -> float:
+        """Of the volume without a bound."""
+        boxes = [box for _, _, box, peaks in self._todo if not np.isfinite(peaks.upper).all()]
+        boxes += [box for box, upper in self._kept if not np.isfinite(upper).all()]
+        return volume(np.array(boxes)) if self._todo or self._kept else 1.0
+
+    def run(self) -> None:
+        """Until every bound is close enough, a line exceeds a limit, or boxes or time are used up."""
+        if ended := time_is_up():
+            self.ended = ended
+            return
+        self._look_around()
+        self._judge(np.array([np.zeros(self.space.size), np.ones(self.space.size)]))
+        while self._todo and self.counterexample is None:
+            if ended := time_is_up():
+                self.ended = ended
+                return
+            _, _, box, peaks = heapq.heappop(self._todo)
+            beyond = self._beyond(peaks)
+            if not beyond.max() > 1:
+                self._kept.append((box, peaks.upper))
+                continue
+            halves = halved(box, peaks.blame[:, int(beyond.argmax())]) if self.judged < self.most else ()
+            if not halves:
+                self._kept.append((box, peaks.upper))
+                if self.judged >= self.most:
+                    self.ended = f"{self.judged} boxes were judged, as many as most_boxes allows"
+                    return
+                continue
+            for half in halves:
+                self._judge(half)
+            self.report_progress(min(self._closed, 0.999))
+        self.done = bool(np.all(self._within(self.upper))) and self.counterexample is None
+
+    def _look_around(self) -> None:
+        """What the line in the middle of the tolerances takes over the range: which boxes matter is known then."""
+        line = self.space.line_at(np.full(self.space.size, 0.5))[0]
+        low, high = self.space.speeds
+        speeds = sweep_speeds(line, low, high) if low < high else np.array([low])
+        try:
+            found = order_response(line, speeds)
+        except ComputationError:
+            return
+        every = np.concatenate([found.vibratory_torque, found.peak_torque, found.vibratory_twist], axis=1)
+        every = np.where(np.isfinite(every), every, -np.inf)
+        at = every.argmax(axis=0)
+        self.computed, self.speed = every[at, np.arange(every.shape[1])], speeds[at]
+
+    @property
+    def _closed(self) -> float:
+        return volume(np.array([box for box, _ in self._kept]))
+
+    def _allowed(self) -> Array:
+        known = np.where(np.isfinite(self.computed), self.computed, 0.0)
+        least = LEAST * known.reshape(len(MEASURES), -1).max(axis=1, initial=0.0)
+        return np.maximum((1 + self.gap) * known, np.repeat(least, len(known) // len(MEASURES)))
+
+    def _within(self, upper: Array) -> Flags:
+        """Whether bounds are below limits, or without one close enough."""
+        return np.asarray(np.where(np.isfinite(self.limit), upper <= self.limit, upper <= self._allowed()))
+
+    def _beyond(self, peaks: BoxPeaks) -> Array:
+        """By what factor a box stands above what is asked (quantity,); 1 where it does not."""
+        target = np.where(np.isfinite(self.limit), self.limit, self._allowed())
+        with np.errstate(invalid="ignore", divide="ignore"):
+            factor = np.where(peaks.upper > target, np.where(target > 0, peaks.upper / target, np.inf), 1.0)
+        return np.asarray(np.nan_to_num(factor, nan=np.inf, posinf=1e300))
+
+    def _judge(self, box: Array) -> None:
+        with to_the_end():  # a box takes tenths of a second at most
+            peaks = box_peaks(self.space.assembly, self.space.span(box), self.space.ranges(box))
+        self.judged += 1
+        middle = box.mean(axis=0)
+        larger = ~(peaks.computed <= self.computed) & np.isfinite(peaks.computed)
+        if larger.any():
+            self.computed = np.where(larger, peaks.computed, self.computed)
+            speed = float(self.space.values(middle[None])[0, 0])
+            self.speed = np.where(larger, speed, self.speed)
+        with np.errstate(invalid="ignore"):
+            over = np.flatnonzero(peaks.computed > self.limit)
+        if len(over):
+            self._refute(middle, int(over[np.argmax(peaks.computed[over] / self.limit[over])]))
+        self._count += 1
+        heapq.heappush(self._todo, (-float(self._beyond(peaks).max()), self._count, box, peaks))
+
+    def _refute(self, middle: Array, quantity: int) -> None:
+        """The line at the middle of a box, if ``order_response`` finds it beyond its limit too."""
+        line, speed, known = self.space.line_at(middle)
+        measure, spring = divmod(quantity, len(self.limit) // len(MEASURES))
+        try:
+            found = order_response(line, speed)
+        except ComputationError:
+            return
+        value = float((found.vibratory_torque, found.peak_torque)[measure][0, spring])
+        limit = float(self.limit[quantity])
+        if not value > limit:
+            return
+        name = shaft_names(self.space.assembly)[spring]
+        self.line, self.counterexample = line, known
+        self.exceeded = (
+            f"takes a {MEASURES[measure]} of {figures(value)} N m in {name}, whose limit is {figures(limit)} N m"
+        )

@@ -1,0 +1,164 @@
+"""Proved peaks against closed forms, and against equations of the tests' own at random lines of the box."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from oracles.dense_scan import Sum
+from oracles.line_equations import WIDEST, Steady
+from oracles.scanned_lines import ScannedLine, scanned_line
+from oracles.steady_orders import response
+
+import trunnion as tn
+from trunnion.response.peaks.certify_peaks import PeakCertificate
+
+TABLED = {"order": 2, "speeds": [5, 500], "amplitudes": [1, 9]}
+K, C, J1, J2, AMPLITUDE = 1e4, 20.0, 0.2, 0.8, 100.0
+
+
+def two_disks(**more: object) -> tn.Driveline:
+    engine = tn.Disk(name="engine", inertia=J1, excitation=[{"order": 2, "amplitude": AMPLITUDE}])
+    shaft = tn.Shaft(name="shaft", stiffness=K, damping=C)
+    return tn.Driveline([engine, shaft, tn.Disk(name="load", inertia=J2)], **more)
+
+
+def torque(stiffness: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    """|f| of the shaft: q̈ (1/(1/J₁ + 1/J₂)) + c q̇ + k q = −A J₂/(J₁ + J₂) e^{2iΩt}."""
+    s, reduced = 2j * speed, J1 * J2 / (J1 + J2)
+    q = AMPLITUDE * J2 / (J1 + J2) / (stiffness + C * s + reduced * s**2)
+    return np.abs((stiffness + C * s) * q)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1])
+def test_a_resonance_in_closed_form(share: float) -> None:
+    """The bound lies above the largest value of a fine grid over speed and stiffness, by less than the gap."""
+    given = {"shaft.stiffness": share} if share else {}
+    found = tn.certify_peaks(two_disks(), given, (60.0, 300.0), gap=0.03)
+    speed, stiffness = np.meshgrid(np.linspace(60, 300, 40_001), K * np.linspace(1 - share, 1 + share, 11))
+    largest = torque(stiffness, speed).max()
+    assert found.verdict == "proved" and found.open_share == 0
+    for bound, computed in (
+        (found.vibratory_torque_bound[0], found.vibratory_torque[0]),
+        (found.peak_torque_bound[0], found.peak_torque[0]),
+    ):
+        assert computed * (1 - 1e-5) <= largest <= bound <= 1.03 * computed * (1 + 1e-12)
+    assert found.vibratory_twist_bound[0] >= largest / abs(K * (1 + share) + 2j * C * 300)
+
+
+def test_limits_and_counterexamples() -> None:
+    """A limit above the peak is proved; one between the nominal peak and that of the stiffest line is refuted by a line
+    that exceeds it, and that line can be loaded."""
+    speeds = (60.0, 300.0)
+    given = {"shaft.damping": 0.3}
+    largest = tn.certify_peaks(two_disks(), {}, speeds, gap=0.02).vibratory_torque[0]
+
+    def judged(limit: float) -> PeakCertificate:
+        limits = (tn.Limit(of="shaft", vibratory_torque=limit),)
+        return tn.certify_peaks(two_disks(limits=limits), given, speeds)
+
+    proved = judged(1.6 * largest)
+    assert proved.verdict == "within limits" and proved.vibratory_torque_bound[0] <= 1.6 * largest
+    assert str(proved).startswith("proved within limits: every line within 1 tolerance, from 60 rad/s to 300 rad/s")
+    refuted = judged(1.1 * largest)
+    assert refuted.verdict == "counterexample" and refuted.line is not None and refuted.counterexample is not None
+    again = tn.order_response(refuted.line, refuted.counterexample["speed"])
+    assert again.vibratory_torque[0, 0] > 1.1 * largest
+    assert "whose limit is" in str(refuted).splitlines()[0]
+    assert float(refuted.data["counterexample"].sel(variable="shaft.damping")) < C
+
+
+def test_what_ends_early_still_holds() -> None:
+    found = tn.certify_peaks(two_disks(), {"shaft.stiffness": 0.05}, (60.0, 300.0), most_boxes=3)
+    assert found.verdict == "undecided" and "as many as most_boxes allows" in found.ended and found.open_share > 0
+    assert np.isinf(found.vibratory_torque_bound[0])
+    none = tn.certify_peaks(two_disks(), {}, (60.0, 300.0), within=1e-9)
+    assert none.verdict == "undecided" and none.open_share == 1 and "nothing is bounded" in str(none)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (two_disks().replace("engine", excitation=[TABLED]), r"engine\.excitation 1"),
+        (two_disks().replace("shaft", damping=0.0, loss_factor=0.1), "shaft"),
+    ],
+)  # fmt: skip
+def test_refusals(given: tn.Driveline, message: str) -> None:
+    with pytest.raises(tn.InputError, match=message):
+        tn.certify_peaks(given, {}, (60.0, 300.0))
+
+
+def test_gaps_are_positive() -> None:
+    with pytest.raises(tn.InputError, match="gap = 0: must be positive"):
+        tn.certify_peaks(two_disks(), {}, (60.0, 300.0), gap=0)
+
+
+def attacked(kind: str, seed: int, boxes: int, points: int) -> tuple[int, float]:
+    """A random box of a random line: how many of its springs are bounded, and how near the tests' own equations come to
+    a bound at random lines and corners; fails where they lie above it."""
+    rng = np.random.default_rng([7, seed])
+    line = scanned_line(kind, seed)
+    description = line.driveline.model_copy(update={"limits": ()})
+    numbers: list[tuple[str, float]] = []
+    for i, (mass, link) in enumerate(zip(line.masses, line.links, strict=True)):
+        numbers.append((f"m{i}.inertia", mass.inertia))
+        if link is not None and link.kind == "shaft":
+            numbers += [(f"s{i}.stiffness", link.stiffness), (f"s{i}.damping", link.damping)]
+            numbers += [(f"j{i}.angle", link.angle)] if link.angle else []
+    picked = [numbers[k] for k in rng.permutation(len(numbers))[: int(rng.integers(0, 4))]]
+    shares = {path: 10 ** rng.uniform(-3, -1.3) for path, _ in picked}
+    middle, wide = rng.uniform(line.low, line.high), 10 ** rng.uniform(-3, -0.7)
+    speeds = middle * (1 - wide), middle * (1 + wide)
+    try:
+        found = tn.certify_peaks(description, shares, speeds, gap=0.1, most_boxes=boxes)
+    except tn.InputError as error:
+        assert any(why in str(error) for why in ("loss", "along a curve", "free–free", "not balance")), error
+        return 0, 0.0
+    best = np.zeros((2, len(found.springs)))
+    for k in range(points):
+        share = rng.uniform(-1, 1, 1 + len(picked))
+        share = np.sign(share) if k % 3 == 0 else share
+        speed = np.array([middle * (1 + wide * share[0])])
+        values = {path: number * (1 + shares[path] * s) for (path, number), s in zip(picked, share[1:], strict=True)}
+        best = np.maximum(best, _values(_changed(line, values), speed))
+    bounds = np.stack([found.vibratory_torque_bound, found.peak_torque_bound])
+    above = best > bounds * (1 + 1e-6) + 1e-9 * best.max()
+    assert not above.any(), (kind, seed, best, bounds)
+    known = np.isfinite(bounds) & (best > 1e-2 * best.max())
+    return int(np.isfinite(bounds[0]).sum()), float((best[known] / bounds[known]).max(initial=0.0))
+
+
+def _changed(line: ScannedLine, values: dict[str, float]) -> ScannedLine:
+    masses, links = list(line.masses), list(line.links)
+    for path, value in values.items():
+        name, key = path.split(".")
+        i = int(name[1:])
+        if name[0] == "m":
+            masses[i] = replace(masses[i], **{key: value})  # type: ignore[arg-type]
+        else:
+            links[i] = replace(links[i], **{key: value})  # type: ignore[arg-type,type-var]
+    return replace(line, masses=tuple(masses), links=tuple(links))
+
+
+def _values(line: ScannedLine, speed: np.ndarray) -> np.ndarray:
+    """Half of peak to peak, and the largest torque, of every spring (2, spring)."""
+    own = response(Steady(line), speed, *WIDEST)
+    found = []
+    for e in range(own.mean_torque.shape[1]):
+        low, high = Sum(own.mean_torque[:, e], {order: part[:, e] for order, part in own.torque.items()}).extremes()
+        found.append([float((high - low)[0] / 2), float(max(abs(low[0]), abs(high[0])))])
+    return np.array(found).T
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("straight", 1), ("bent", 2), ("branched", 4)])
+def test_random_lines_stay_below(kind: str, seed: int) -> None:
+    attacked(kind, seed, 12, 4)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["straight", "bent", "geared", "branched"])
+def test_many_random_lines_stay_below(kind: str) -> None:
+    every = [attacked(kind, seed, 150, 40) for seed in range(10, 35)]
+    bounded = [near for count, near in every if count]
+    assert len(bounded) >= 8 and max(bounded) > 0.95  # some random line comes close to its bound
