@@ -82,6 +82,14 @@ def speed_sweep(shaken: Shaken) -> Iterator[Pair]:
     yield found.twist_amplitude[:, 0], np.abs(shaken.twist([40.0, 180.0]))
 
 
+def certify_peaks(shaken: Shaken) -> Iterator[Pair]:
+    found = tn.certify_peaks(shaken.line(), {}, (SPEED, SPEED * (1 + 1e-9)))
+    yield found.vibratory_torque[0], shaken.swing(SPEED)
+    yield found.vibratory_twist[0], np.abs(shaken.twist(SPEED))
+    bound = found.vibratory_torque_bound[0] / shaken.swing(SPEED)
+    yield 1.0 <= bound < 1.006, True
+
+
 def stability(shaken: Shaken) -> Iterator[Pair]:
     found = tn.stability(shaken.line(), SPEED).response
     assert found is not None
@@ -329,13 +337,15 @@ DRIVEN = (
     lyapunov_sweep, lyapunov_map, poincare_map, bifurcation_diagram, certify_chaos,
 )  # fmt: skip
 """Those of driven lines alone."""
-CONSTANT = (run_up, transient, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep)
+CONSTANT = (
+    run_up, transient, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep, certify_peaks,
+)  # fmt: skip
 """Those of driven lines and constant amplitudes."""
 ELSEWHERE = {"coupling_temperatures", "measure", "compare_measured", "identify"}
 """Of lines with a coupling alone: compared with equations written out in ``known_answers/test_coupling_tables.py``.
 What a bench shows, and what is laid over it, are amplitudes of ``order_response``: compared in ``tests/measured``."""
 CLOSE = {exact_motion: 1e-9, piecewise_orbit: 1e-9, piecewise_branch: 1e-9, sweep: 1e-9} | dict.fromkeys(LINEAR, 1e-8)
-CLOSE |= {assess: 1e-6, sensitivity: 1e-6, simulate: 1e-4, transient: 1e-4, run_up: 1e-3}
+CLOSE |= {assess: 1e-6, sensitivity: 1e-6, simulate: 1e-4, transient: 1e-4, run_up: 1e-3, certify_peaks: 1e-6}
 """Share of the largest of a quantity that it may be off by; the others, and ``simulate``, count the swing of the disk
 that its torque follows, which is of second order."""
 

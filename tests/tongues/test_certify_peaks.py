@@ -115,16 +115,19 @@ def attacked(kind: str, seed: int, boxes: int, points: int) -> tuple[int, float]
     except tn.InputError as error:
         assert any(why in str(error) for why in ("loss", "along a curve", "free–free", "not balance")), error
         return 0, 0.0
-    best = np.zeros((2, len(found.springs)))
+    best, fastest = np.zeros((2, len(found.springs))), np.zeros(len(found.inertias))
     for k in range(points):
         share = rng.uniform(-1, 1, 1 + len(picked))
         share = np.sign(share) if k % 3 == 0 else share
         speed = np.array([middle * (1 + wide * share[0])])
         values = {path: number * (1 + shares[path] * s) for (path, number), s in zip(picked, share[1:], strict=True)}
-        best = np.maximum(best, _values(_changed(line, values), speed))
+        torques, speeds_of = _values(_changed(line, values), speed)
+        best, fastest = np.maximum(best, torques), np.maximum(fastest, speeds_of)
     bounds = np.stack([found.vibratory_torque_bound, found.peak_torque_bound])
     above = best > bounds * (1 + 1e-6) + 1e-9 * best.max()
     assert not above.any(), (kind, seed, best, bounds)
+    assert found.inertias == tuple(f"m{i}" for i in range(len(line.masses)))
+    assert not (fastest > found.speed_fluctuation_bound * (1 + 1e-6) + 1e-9 * fastest.max()).any(), (kind, seed)
     known = np.isfinite(bounds) & (best > 1e-2 * best.max())
     return int(np.isfinite(bounds[0]).sum()), float((best[known] / bounds[known]).max(initial=0.0))
 
@@ -141,14 +144,18 @@ def _changed(line: ScannedLine, values: dict[str, float]) -> ScannedLine:
     return replace(line, masses=tuple(masses), links=tuple(links))
 
 
-def _values(line: ScannedLine, speed: np.ndarray) -> np.ndarray:
-    """Half of peak to peak, and the largest torque, of every spring (2, spring)."""
+def _values(line: ScannedLine, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Half of peak to peak, and the largest torque, of every spring (2, spring); half of peak to peak of speeds."""
     own = response(Steady(line), speed, *WIDEST)
-    found = []
+    found, swings = [], []
     for e in range(own.mean_torque.shape[1]):
         low, high = Sum(own.mean_torque[:, e], {order: part[:, e] for order, part in own.torque.items()}).extremes()
         found.append([float((high - low)[0] / 2), float(max(abs(low[0]), abs(high[0])))])
-    return np.array(found).T
+    for i in range(len(line.masses)):
+        rates = {key: part[:, i] * 1j * (float(key[0]) * speed + key[1]) for key, part in own.rotation.items()}
+        low, high = Sum(np.zeros(1), rates).extremes()
+        swings.append(float((high - low)[0] / 2))
+    return np.array(found).T, np.array(swings)
 
 
 @pytest.mark.parametrize(("kind", "seed"), [("straight", 1), ("bent", 2), ("branched", 4)])

@@ -194,12 +194,12 @@ def _result(
         judged=judged,
         remarks=tuple(_remarks(assembly, spectrum, unexcited)) if remarked else (),
         unit=speed_unit(assembly.line),
-        limits=torque_limits(assembly),
+        limits=_limits(assembly),
         rated=tuple(has_rating(assembly, c) for c in range(len(topo.compliances))),
     )
 
 
-def torque_limits(assembly: Assembly) -> dict[str, dict[str, float]]:
+def _limits(assembly: Assembly) -> dict[str, dict[str, float]]:
     """Limits of torque by spring and name; of shafts in series the smallest."""
     names, found = assembly.line.names, {}
     for spring, compliance in zip(shaft_names(assembly), assembly.topology.compliances, strict=True):

@@ -1,4 +1,4 @@
-"""Peaks of the torque and twist of every spring in one box: no line of it has a larger one.
+"""Peaks of what is asked of a line in one box: no line of it has a larger one.
 
 The responses of all carriers are trigonometric polynomials in the time that the speed counts, linear in the parameters,
 with a bound of what they leave out. A polynomial of degree n that is at most 1 on N even points is at most 1/cos(πn/N)
@@ -35,9 +35,12 @@ MOST_TIMES = 1 << 16
 
 @dataclass(frozen=True)
 class BoxPeaks:
-    """Quantities (3 S,): of every spring half of peak to peak of its torque [N m], the largest |torque| [N m], half of
-    peak to peak of its twist [rad]. ``upper``: no line of the box has more; ``computed``: of its middle, floating
-    point; ``blame`` (1 + ranges, 3 S): what each parameter brings between them."""
+    """Quantities (3 S + P,): of every spring half of peak to peak of its torque [N m], the largest |torque| [N m], half
+    of peak to peak of its twist [rad]; of every point half of peak to peak of its speed [rad/s].
+
+    ``upper`` : no line of the box has more; ``computed`` : of its middle, floating point; ``blame`` (1 + ranges,
+    3 S + P): what each parameter brings between them.
+    """
 
     upper: Array
     computed: Array
@@ -47,10 +50,10 @@ class BoxPeaks:
 def box_peaks(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> BoxPeaks:
     """Of all lines with numbers within ``ranges`` at all ``speeds`` [rad/s]; infinite where nothing is enclosed."""
     springs, many = len(assembly.topology.compliances), 1 + len(ranges)
+    count = 3 * springs + len(assembly.topology.points)
 
     def nothing(blame: Array) -> BoxPeaks:
-        every = np.full(3 * springs, np.inf)
-        return BoxPeaks(every, np.full(3 * springs, np.nan), np.repeat(blame[:, None], 3 * springs, axis=1))
+        return BoxPeaks(np.full(count, np.inf), np.full(count, np.nan), np.repeat(blame[:, None], count, axis=1))
 
     try:
         box = forced_box(assembly, speeds, ranges)
@@ -59,7 +62,7 @@ def box_peaks(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[
     line = modal_forced(box)
     if line is None:
         return nothing(np.ones(many))
-    sums = _Sums.of(box, many)
+    sums = _Sums.of(box, many, springs)
     for carrier in carriers_of(box):
         found = response_of(line, carrier)
         if isinstance(found, NotContracting):
@@ -75,16 +78,17 @@ class _Sums:
 
     rows: int
     many: int
+    springs: int
     amplitude: dict[Fraction, Complex]
     rest: Array
     apart: Array
     blame: Array
 
     @classmethod
-    def of(cls, box: ForcedBox, many: int) -> _Sums:
+    def of(cls, box: ForcedBox, many: int, springs: int) -> _Sums:
         rows, last = box.base.shape[2], box.base.shape[1] // 2
         amplitude: dict[Fraction, Complex] = {}
-        found = cls(rows, many, amplitude, box.base_rest.copy(), np.zeros(rows), np.zeros((many, rows)))
+        found = cls(rows, many, springs, amplitude, box.base_rest.copy(), np.zeros(rows), np.zeros((many, rows)))
         for k in range(-last, last + 1):
             found._put(k * box.rate, box.base[:, k + last])
         return found
@@ -116,7 +120,7 @@ class _Sums:
         degree = max((int(order / step) for order in orders), default=0)
         times = 1 << int(np.ceil(np.log2(max(64, min(PER_CYCLE * degree, MOST_TIMES)))))
         if times < 4 * degree:
-            every = np.full(3 * (self.rows // 2), np.inf)
+            every = np.full(self.rows + self.springs, np.inf)
             return BoxPeaks(every, every, np.ones((self.many, len(every))))
         spectrum = np.zeros((times // 2 + 1, 1 + self.many, self.rows), dtype=complex)
         for order, values in self.amplitude.items():
@@ -127,18 +131,16 @@ class _Sums:
         over = OUTWARD / np.cos(np.pi * degree / times)
         slack = self.rest + self.apart + 1e-13 * sizes
         moved, middle = np.abs(wave[:, 1:]).sum(axis=1), wave[:, 0]
+        # A mean that goes with the parameters is no swing.
+        swinging = np.abs(wave[:, 1:] - wave[:, 1:].mean(axis=0)).sum(axis=1)
         low, high = middle.min(axis=0), middle.max(axis=0)
         centre = (low + high) / 2
-        swing = ((np.abs(middle - centre) + moved).max(axis=0) * over + slack) * OUTWARD
+        swing = ((np.abs(middle - centre) + swinging).max(axis=0) * over + slack) * OUTWARD
         largest = ((np.abs(middle) + moved).max(axis=0) * over + slack) * OUTWARD
-        springs = self.rows // 2
-        torque, twist = slice(None, springs), slice(springs, None)
-        return BoxPeaks(
-            np.concatenate([swing[torque], largest[torque], swing[twist]]),
-            np.concatenate([
-                ((high - low) / 2 + self.apart)[torque],
-                (np.maximum(np.abs(low), np.abs(high)) + self.apart)[torque],
-                ((high - low) / 2 + self.apart)[twist],
-            ]),
-            np.concatenate([self.blame[:, torque], self.blame[:, torque], self.blame[:, twist]], axis=1),
-        )  # fmt: skip
+        torque, others = slice(None, self.springs), slice(self.springs, None)
+        half, most = (high - low) / 2 + self.apart, np.maximum(np.abs(low), np.abs(high)) + self.apart
+
+        def in_order(swings: Array, largest: Array) -> Array:
+            return np.concatenate([swings[..., torque], largest[..., torque], swings[..., others]], axis=-1)
+
+        return BoxPeaks(in_order(swing, largest), in_order(half, most), in_order(self.blame, self.blame))

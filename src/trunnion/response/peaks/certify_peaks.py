@@ -1,14 +1,14 @@
-"""A bound of the torque and twist of every spring over a range of speeds and tolerances: a theorem, not a search.
+"""A bound of what springs carry and of how inertias' speeds swing, over a range of speeds and tolerances: a theorem.
 
 Each box is enclosed as a whole (``box_peaks``). The box that stands furthest above what is asked for is halved, across
-the side that brings most of that, until every bound is close enough above a torque that some line of the box takes, or
+the side that brings most of that, until every bound is close enough above a value that some line of the box takes, or
 below a stated limit. A line that exceeds its limit ends the search.
 """
 
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.arguments import SpeedEnds, one_number, rising_range, whole_number
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import require_steady_base
@@ -25,7 +26,8 @@ from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.certify import require_provable
 from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
-from trunnion.response.orders.response import order_response, torque_limits
+from trunnion.response.orders.response import order_response
+from trunnion.response.orders.result import OrderResponse
 from trunnion.response.peaks.box_peaks import BoxPeaks, box_peaks
 from trunnion.response.peaks.forced_box import require_forcing
 from trunnion.response.speed_sweep import sweep_speeds
@@ -37,9 +39,12 @@ from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
 
-MEASURES = ("vibratory torque", "largest torque", "vibratory twist")
-LIMITED = {"vibratory torque": "vibratory torque", "max torque": "largest torque"}
-"""Measures by the limits that they are compared with."""
+SWING, LARGEST, TWIST, SPEED = "vibratory torque", "largest torque", "vibratory twist", "speed fluctuation"
+UNITS = {SWING: "N m", LARGEST: "N m", TWIST: "rad", SPEED: "rad/s"}
+LIMITED = {
+    "vibratory_torque": SWING, "max_torque": LARGEST, "max_stress": LARGEST, "max_speed_fluctuation": SPEED,
+}  # fmt: skip
+"""Measures by the keys of the limits that they are compared with."""
 LEAST = 1e-3
 """What springs carry below this share of the largest is bounded by that."""
 STEADY = "of the steady motion, which the line comes to where it is stable: certify_stability proves that"
@@ -47,7 +52,8 @@ STEADY = "of the steady motion, which the line comes to where it is stable: cert
 
 @labelled
 class PeakCertificate(Result):
-    """What the torque and twist of springs do not exceed in any line within tolerances at any speed of a range.
+    """What torque and twist of springs, and the speed of inertias, do not exceed in any line within tolerances at any
+    speed of a range.
 
     Each bound stands beside the largest value that was computed of any line there: the peak lies between both. Infinite
     where a part of the box stayed open.
@@ -62,8 +68,11 @@ class PeakCertificate(Result):
     peak_torque: Array = variable("spring", "N*m", "the largest computed")
     vibratory_twist_bound: Array = variable("spring", "rad", "half of peak to peak, proved not to be exceeded")
     vibratory_twist: Array = variable("spring", "rad", "the largest computed")
+    speed_fluctuation_bound: Array = variable("inertia", "rad/s", "half of peak to peak, proved not to be exceeded")
+    speed_fluctuation: Array = variable("inertia", "rad/s", "the largest computed")
     peak_speed: Array = variable("spring", "rad/s", "at which the largest vibratory torque was computed")
     springs: tuple[str, ...] = coordinate("spring")
+    inertias: tuple[str, ...] = coordinate("inertia")
     gap: float = attribute("asked for between bounds and what was computed, relative")
     boxes: int = attribute("how many were judged")
     open_share: float = attribute("of the volume in ln(speed) and shares of tolerances without a bound")
@@ -115,6 +124,9 @@ class PeakCertificate(Result):
             at = f" at {self.words.speed(float(self.peak_speed[k]))}" if known else ""
             most = f"{self.peak_torque_bound[k]:.5g} N m at most"
             yield f"  {name}: {proved}, ±{known:.5g} N m reached{at}; in all {most}"
+        for name, bound, known in zip(self.inertias, self.speed_fluctuation_bound, self.speed_fluctuation, strict=True):
+            if np.isfinite(bound) and known > 0:
+                yield f"  {name}: its speed swings by ±{bound:.4g} rad/s at most, ±{known:.4g} rad/s reached"
         yield f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
 
 
@@ -181,7 +193,8 @@ def certify_peaks(
 def _certificate(space: BoxSpace, found: _PeakSearch, gap: float) -> PeakCertificate:
     assembly = space.assembly
     springs = shaft_names(assembly)
-    upper, known = found.upper.reshape(3, -1), found.computed.reshape(3, -1)
+    ends = [len(springs) * k for k in (1, 2, 3)]
+    upper, known = np.split(found.upper, ends), np.split(found.computed, ends)
     limited = np.isfinite(found.limit)
     if found.counterexample is not None:
         verdict = "counterexample"
@@ -201,8 +214,11 @@ def _certificate(space: BoxSpace, found: _PeakSearch, gap: float) -> PeakCertifi
         peak_torque=known[1],
         vibratory_twist_bound=upper[2],
         vibratory_twist=known[2],
+        speed_fluctuation_bound=upper[3],
+        speed_fluctuation=known[3],
         peak_speed=found.speed[: len(springs)],
         springs=springs,
+        inertias=tuple(name for _, name in assembly.topology.points),
         gap=gap,
         boxes=found.judged,
         open_share=found.open_share,
@@ -218,12 +234,14 @@ def _certificate(space: BoxSpace, found: _PeakSearch, gap: float) -> PeakCertifi
 
 @dataclass
 class _PeakSearch:
-    """Boxes by how far they stand above what is asked; ``limit`` (quantity,) [SI], infinite where none is stated."""
+    """Boxes by how far they stand above what is asked; ``quantities`` by measure and element, ``limit`` (quantity,),
+    infinite where none is stated."""
 
     space: BoxSpace
     gap: float
     most: int
     report_progress: Callable[[float], None]
+    quantities: list[tuple[str, str]]
     limit: Array
     computed: Array
     speed: Array
@@ -239,14 +257,11 @@ class _PeakSearch:
 
     @classmethod
     def of(cls, space: BoxSpace, gap: float, most: int, progress: Callable[[float], None]) -> _PeakSearch:
-        names, limits = shaft_names(space.assembly), torque_limits(space.assembly)
-        limit = np.full((len(MEASURES), len(names)), np.inf)
-        for k, name in enumerate(names):
-            for key, value in limits[name].items():
-                if key in LIMITED:
-                    limit[MEASURES.index(LIMITED[key]), k] = value
-        size = limit.size
-        return cls(space, gap, most, progress, limit.ravel(), np.full(size, np.nan), np.full(size, np.nan))
+        names = shaft_names(space.assembly)
+        found = [(measure, name) for measure in (SWING, LARGEST, TWIST) for name in names]
+        found += [(SPEED, name) for _, name in space.assembly.topology.points]
+        limit, none = stated_limits(space.assembly, found), np.full(len(found), np.nan)
+        return cls(space, gap, most, progress, found, limit, none, none)
 
     @property
     def upper(self) -> Array:
@@ -290,7 +305,7 @@ class _PeakSearch:
         self.done = bool(np.all(self._within(self.upper))) and self.counterexample is None
 
     def _look_around(self) -> None:
-        """What the line in the middle of the tolerances takes over the range: which boxes matter is known then."""
+        """What the line in the middle of the tolerances takes over the range: what matters is known then."""
         line = self.space.line_at(np.full(self.space.size, 0.5))[0]
         low, high = self.space.speeds
         speeds = sweep_speeds(line, low, high) if low < high else np.array([low])
@@ -298,7 +313,7 @@ class _PeakSearch:
             found = order_response(line, speeds)
         except ComputationError:
             return
-        every = np.concatenate([found.vibratory_torque, found.peak_torque, found.vibratory_twist], axis=1)
+        every = _values(found)
         every = np.where(np.isfinite(every), every, -np.inf)
         at = every.argmax(axis=0)
         self.computed, self.speed = every[at, np.arange(every.shape[1])], speeds[at]
@@ -309,8 +324,12 @@ class _PeakSearch:
 
     def _allowed(self) -> Array:
         known = np.where(np.isfinite(self.computed), self.computed, 0.0)
-        least = LEAST * known.reshape(len(MEASURES), -1).max(axis=1, initial=0.0)
-        return np.maximum((1 + self.gap) * known, np.repeat(least, len(known) // len(MEASURES)))
+        measures = np.array([measure for measure, _ in self.quantities])
+        least = np.zeros(len(known))
+        for measure in UNITS:
+            of = measures == measure
+            least[of] = LEAST * known[of].max(initial=0.0)
+        return np.maximum((1 + self.gap) * known, least)
 
     def _within(self, upper: Array) -> Flags:
         """Whether bounds are below limits, or without one close enough."""
@@ -343,17 +362,40 @@ class _PeakSearch:
     def _refute(self, middle: Array, quantity: int) -> None:
         """The line at the middle of a box, if ``order_response`` finds it beyond its limit too."""
         line, speed, known = self.space.line_at(middle)
-        measure, spring = divmod(quantity, len(self.limit) // len(MEASURES))
         try:
-            found = order_response(line, speed)
+            value = float(_values(order_response(line, speed))[0, quantity])
         except ComputationError:
             return
-        value = float((found.vibratory_torque, found.peak_torque)[measure][0, spring])
         limit = float(self.limit[quantity])
         if not value > limit:
             return
-        name = shaft_names(self.space.assembly)[spring]
+        measure, name = self.quantities[quantity]
+        unit = UNITS[measure]
         self.line, self.counterexample = line, known
-        self.exceeded = (
-            f"takes a {MEASURES[measure]} of {figures(value)} N m in {name}, whose limit is {figures(limit)} N m"
-        )
+        self.exceeded = f"has a {measure} of {figures(value)} {unit} in {name}, whose limit is {figures(limit)} {unit}"
+
+
+def _values(found: OrderResponse) -> Array:
+    """Quantities (speed, quantity) of a response."""
+    parts = found.vibratory_torque, found.peak_torque, found.vibratory_twist, found.speed_fluctuation
+    return np.concatenate(parts, axis=1)
+
+
+def stated_limits(assembly: Assembly, quantities: Sequence[tuple[str, str]]) -> Array:
+    """The smallest limit that the description states of every quantity, by measure and element (quantity,); infinite
+    where none. A limit of stress is one of the torque that makes it."""
+    springs = dict(zip((c.shafts for c in assembly.topology.compliances), shaft_names(assembly), strict=True))
+    found = np.full(len(quantities), np.inf)
+    for one in assembly.line.limits_by_element:
+        if one.key not in LIMITED:
+            continue
+        place, value = assembly.line.index(one.element), float(one.value)
+        holder = next((name for shafts, name in springs.items() if place in shafts), one.element)
+        if one.key == "max_stress":
+            shaft = assembly.line.elements[place]
+            value /= float(tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0))  # type: ignore[attr-defined]
+        at = (LIMITED[one.key], holder)
+        if at in quantities:
+            k = quantities.index(at)
+            found[k] = min(found[k], value)
+    return found

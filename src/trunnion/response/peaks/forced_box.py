@@ -54,8 +54,9 @@ class BoxForce:
 @dataclass(frozen=True)
 class ForcedBox:
     """``matrix`` A, whose first harmonic has ``rate`` cycles per turn of the input; ``forces``, the first that of the
-    joints; ``outputs`` C (1 + parameters, 2K + 1, Q, D) with its rest (Q, D), of every spring its torque [N m], then
-    its twist [rad]; ``base`` (1 + parameters, 2K + 1, Q) and its rest (Q,)."""
+    joints; ``outputs`` C (1 + parameters, 2K + 1, Q, D) with its rest (Q, D): of every spring its torque [N m], then
+    its twist [rad], then of every point of ``Topology.points`` its speed [rad/s]; ``base`` (1 + parameters, 2K + 1, Q)
+    and its rest (Q,)."""
 
     matrix: BoxMatrix
     rate: Fraction
@@ -129,7 +130,8 @@ class _ForcedLine:
             *base.values(),
         ]
         stride = _stride([matrix, *(w.parts for w in waves)], line.last)
-        size, count = len(found.energy), 2 * len(line.assembly.topology.compliances)
+        topo = line.assembly.topology
+        size, count = len(found.energy), 2 * len(topo.compliances) + len(topo.points)
         kept = slice(line.last % stride, None, stride)
         speed = line.co.speed
         rate = Fraction(stride) / require_period(line.assembly.line, line.assembly.topology)
@@ -286,6 +288,15 @@ class _ForcedLine:
                 put(e, near, -(k * r + c * r_dot))
                 put(e, n + near, -(c * r * found.light[near]))
                 put(springs + e, near, -r)
+        for k, (s, _) in enumerate(topo.points, start=2 * springs):
+            group = topo.group_of(s)
+            i, ref, r = topo.coordinate[group], topo.reference[group], motion.relative[s]
+            base[k] = motion.speed[s] * co.speed
+            if i < 0:
+                continue
+            put(k, (springs if topo.free else n) + i, r * found.light[i])
+            if not topo.free:
+                put(k, i, motion.relative_slope[s] * motion.speed[ref] * co.speed)
         return rows, base
 
 
