@@ -288,15 +288,15 @@ class _ForcedLine:
                 put(e, near, -(k * r + c * r_dot))
                 put(e, n + near, -(c * r * found.light[near]))
                 put(springs + e, near, -r)
-        for k, (s, _) in enumerate(topo.points, start=2 * springs):
+        for at, (s, _) in enumerate(topo.points, start=2 * springs):
             group = topo.group_of(s)
             i, ref, r = topo.coordinate[group], topo.reference[group], motion.relative[s]
-            base[k] = motion.speed[s] * co.speed
+            base[at] = motion.speed[s] * co.speed
             if i < 0:
                 continue
-            put(k, (springs if topo.free else n) + i, r * found.light[i])
+            put(at, (springs if topo.free else n) + i, r * found.light[i])
             if not topo.free:
-                put(k, i, motion.relative_slope[s] * motion.speed[ref] * co.speed)
+                put(at, i, motion.relative_slope[s] * motion.speed[ref] * co.speed)
         return rows, base
 
 
