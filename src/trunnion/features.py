@@ -367,7 +367,7 @@ ROWS: dict[str, Row] = {
     "proof of peaks": _row(
         refused={
             **_UNPROVABLE,
-            "excitation that varies with speed or load": "a curve over the speed is not enclosed",
+            OIL: "it goes with the frequency along a curve, which is not enclosed",
         },
         said=_IN_ROWS,
         inert={**_TORSION, **_EVEN, **_STICKS},

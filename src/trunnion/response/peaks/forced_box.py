@@ -101,7 +101,15 @@ def require_forcing(assembly: Assembly, speeds: tuple[float, float]) -> None:
                 key=f"excitation {one.number}", value=float(np.abs(size).max()),
                 remedy="state an amplitude, its largest, or a quadratic_amplitude",
             )  # fmt: skip
-    if assembly.coefficients(assembly.table(1, speeds[0])).lags:
+    co = assembly.coefficients(assembly.table(1, speeds[0]))
+    for oil in co.oils:
+        if oil.damper.oil_frequency is not None:
+            raise InputError(
+                "has oil that goes with the frequency along a curve, which is not enclosed",
+                element=assembly.line.names[assembly.topology.compliances[oil.compliance].shafts[0]], key="oil",
+                remedy="state its stiffness and damping at the frequency that matters",
+            )  # fmt: skip
+    if co.lags:
         raise InputError(
             "has torques that lag behind the speed, which are not enclosed", element=assembly.line.names[0],
             remedy="leave out their corner frequencies; order_response counts them",
