@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache, partial
 from math import gcd, lcm
 
 import numpy as np
@@ -18,7 +19,9 @@ from trunnion.arrays import Array, Complex
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.box_equations import NotEnclosed
+from trunnion.floquet.certificate.periodic_lyapunov import modal_box
 from trunnion.floquet.certificate.waves import OUTWARD
+from trunnion.response.peaks.energy_bound import energy_bound
 from trunnion.response.peaks.forced_box import ForcedBox, forced_box
 from trunnion.response.peaks.periodic_enclosure import (
     CarrierResponse,
@@ -59,12 +62,14 @@ def box_peaks(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[
         box = forced_box(assembly, speeds, ranges)
     except NotEnclosed:
         return nothing(np.ones(many))
-    line = modal_forced(box)
-    if line is None:
+    modal = modal_box(box.matrix)
+    line = None if modal is None else modal_forced(box, modal)
+    if modal is None or line is None:
         return nothing(np.ones(many))
+    energy = cache(partial(energy_bound, box.matrix, modal, line.off))
     sums = _Sums.of(box, many, springs)
     for carrier in carriers_of(box):
-        found = response_of(line, carrier)
+        found = response_of(line, carrier, energy)
         if isinstance(found, NotContracting):
             return nothing(found.blame)
         sums.add(found, carrier.order, carrier.frequency, box.rate)

@@ -9,25 +9,27 @@ the error e = w − w̃ solves
 
 In norms by component ‖e_i‖ = Σ_m |e_m,i| this is ‖e‖ ≤ a + G‖e‖ with a matrix G ≥ 0 of bounds. If G contracts, L is
 injective, and so, being of index 0, invertible: there is one periodic solution for every p, and ‖e‖ ≤ (1 − G)⁻¹a
-(Krawczyk's test in the algebra of absolutely convergent Fourier series). f − L w̃ has no term of order 0 or 1 in p but
-rounding and what the window cuts off.
+(Krawczyk's test in the algebra of absolutely convergent Fourier series). Where it does not, ``energy_bound``
+bounds e. f − L w̃ has no term of order 0 or 1 in p but rounding and what the window cuts off.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex
-from trunnion.floquet.certificate.periodic_lyapunov import ModalBox, modal_box
+from trunnion.floquet.certificate.periodic_lyapunov import ModalBox
 from trunnion.floquet.certificate.waves import OUTWARD, UNIT
+from trunnion.response.peaks.energy_bound import EnergyBound
 from trunnion.response.peaks.forced_box import BoxForce, ForcedBox
 
-CUT = 1e-5
-"""Size of a harmonic of the equations, relative to the largest, up to which a window reaches."""
+CUT, FINE = 1e-5, 1e-10
+"""Size of a harmonic of the equations, relative to the largest, up to which a window reaches; and where a Lyapunov
+function bounds its error."""
 WIDEST = 500
 """Unknowns of a window at most."""
 
@@ -79,13 +81,8 @@ class NotContracting:
     blame: Array
 
 
-def modal_forced(box: ForcedBox) -> ModalForced | None:
-    """In modal coordinates of the middle; None where the mean line has no modes that decay."""
-    modal = modal_box(box.matrix)
-    return None if modal is None else _transformed(box, modal)
-
-
-def _transformed(box: ForcedBox, modal: ModalBox) -> ModalForced | None:
+def modal_forced(box: ForcedBox, modal: ModalBox) -> ModalForced | None:
+    """In modal coordinates of the middle; None where they are too skewed."""
     size = len(modal.decay)
     error = 8 * (size + 4) * UNIT
     to, fro = np.abs(modal.to_modes), np.abs(modal.modes)
@@ -117,9 +114,15 @@ def carriers_of(box: ForcedBox) -> list[Carrier]:
     return [Carrier(order, frequency, tuple(members)) for (order, frequency), members in found.items()]
 
 
-def response_of(line: ModalForced, carrier: Carrier) -> CarrierResponse | NotContracting:
-    """The enclosure of what one carrier makes."""
-    return _Window.of(line, carrier).response(carrier.members)
+def response_of(
+    line: ModalForced, carrier: Carrier, energy: Callable[[], EnergyBound | None]
+) -> CarrierResponse | NotContracting:
+    """The enclosure of what one carrier makes; by ``energy`` where harmonics do not contract."""
+    found = _Window.of(line, carrier, CUT).response(carrier.members)
+    if not isinstance(found, NotContracting):
+        return found
+    known = energy()
+    return found if known is None else _Window.of(line, carrier, FINE).by_energy(carrier.members, known) or found
 
 
 @dataclass(frozen=True)
@@ -133,10 +136,10 @@ class _Window:
     frequency: float
 
     @classmethod
-    def of(cls, line: ModalForced, carrier: Carrier) -> _Window:
+    def of(cls, line: ModalForced, carrier: Carrier, cut: float) -> _Window:
         size = np.abs(line.h[0]).sum(axis=(1, 2))
         size[line.last] = 0.0
-        strong = np.flatnonzero(size > CUT * size.max(initial=0.0)) if size.any() else np.array([line.last])
+        strong = np.flatnonzero(size > cut * size.max(initial=0.0)) if size.any() else np.array([line.last])
         margin = int(np.abs(strong - line.last).max()) + (1 if line.last else 0)
         places = [at for _, at in carrier.members]
         most = max(WIDEST // line.h.shape[2], 1)
@@ -147,6 +150,7 @@ class _Window:
         return cls(line, h, order, turn, carrier.frequency)
 
     def response(self, members: Sequence[tuple[BoxForce, int]]) -> CarrierResponse | NotContracting:
+        """The enclosure of what the forces make."""
         line, count, size = self.line, len(self.h), self.line.h.shape[2]
         many, unknowns = len(line.h) - 1, count * size
         matrix = self._matrix()
@@ -165,7 +169,7 @@ class _Window:
             gain = (gain + np.sum(each, axis=0) + norms.through @ line.left_out + norms.outside(self)) * OUTWARD
             grown = _grown(gain)
             if grown is None:
-                return NotContracting(np.array([one.sum() for one in each]) if many else np.ones(0))
+                return NotContracting(np.array([one.sum() for one in each]))
             return self._enclosed(members, inverse, norms, gain, grown)
 
     def _matrix(self) -> Complex:
@@ -217,51 +221,73 @@ class _Window:
         gain: Array,
         grown: Array,
     ) -> CarrierResponse:
-        line, count, last = self.line, len(self.h), self.line.last
-        many, size, inside = len(line.h) - 1, line.h.shape[2], slice(last, last + count)
-        force, force_rest = self._forces(members)
-
-        def solved(right: Complex) -> Complex:
-            return np.asarray((inverse @ right[inside].ravel()).reshape(count, size))
-
-        w = np.zeros((1 + many, count, size), dtype=complex)
-        w[0] = solved(force[0])
-        moved = [self._times(v, w[0]) for v in range(1 + many)]
-        for v in range(1, 1 + many):
-            w[v] = solved(force[v] - moved[v])
-        sizes = np.abs(w).sum(axis=1)
-        whole = sizes.sum(axis=0)
+        last, count = self.line.last, len(self.h)
 
         def through(left: Complex) -> Array:
             """‖T r‖ by component."""
-            found = np.abs(solved(left)).sum(axis=0)
+            found = np.abs(self._solved(inverse, left)).sum(axis=0)
             outer = np.concatenate([left[:last], left[last + count :]])
             return np.asarray(found + (np.abs(outer) * norms.outer).sum(axis=0))
 
-        a = through(force[0] - moved[0])
-        each = np.zeros((many, size))
-        for v in range(1, 1 + many):
-            a = a + through(force[v] - moved[v] - self._times(0, w[v]))
-            each[v - 1] += through(self._times(v, w[v]))
-            for u in range(v + 1, 1 + many):
-                both = through(self._times(v, w[u]) + self._times(u, w[v])) / 2
-                each[v - 1] += both
-                each[u - 1] += both
-        # Rounding of all this, and what the equations and the forces leave out.
-        scale = np.abs(force).sum(axis=(0, 1)) + norms.whole @ whole + np.abs(self.turn).max() * whole * 2
-        rounding = 8 * (2 * last + size + count + 2 * many + 16) * UNIT
-        a = a + norms.through @ (force_rest + line.left_out @ whole + rounding * scale)
+        w, a, each, loose = self._residual(members, inverse, through)
+        a = a + norms.through @ loose
         error = np.maximum(grown @ (a + each.sum(axis=0)), 0.0) * (1 + 1e-9)
         if not np.all(error - gain @ error >= (a + each.sum(axis=0))):  # what solves it but for rounding
             error = error * (1 + 1e-6) + 1e-12 * error.max()
             if not np.all(error - gain @ error >= (a + each.sum(axis=0))):
                 error = np.full_like(error, np.inf)
-        return self._seen(members, w, error, np.abs(grown) @ each.T, sizes)
+        return self._seen(members, w, error, np.abs(grown) @ each.T)
+
+    def by_energy(self, members: Sequence[tuple[BoxForce, int]], energy: EnergyBound) -> CarrierResponse | None:
+        """The same, its error by a Lyapunov function; None where the middle has no solution."""
+        try:
+            inverse: Complex = np.asarray(np.linalg.inv(self._matrix()), dtype=complex)
+        except np.linalg.LinAlgError:
+            return None
+        if not np.isfinite(inverse).all():
+            return None
+        w, a, each, loose = self._residual(members, inverse, lambda left: np.abs(left).sum(axis=0))
+        error = energy.error(a + each.sum(axis=0) + loose)
+        brought = np.array([energy.error(one) for one in each]).T
+        return self._seen(members, w, error, brought)
+
+    def _solved(self, inverse: Complex, right: Complex) -> Complex:
+        count, last = len(self.h), self.line.last
+        return np.asarray((inverse @ right[last : last + count].ravel()).reshape(count, -1))
+
+    def _residual(
+        self, members: Sequence[tuple[BoxForce, int]], inverse: Complex, norm: Callable[[Complex], Array]
+    ) -> tuple[Complex, Array, Array, Array]:
+        """w (1 + parameters, M, D), and what f − L w̃ comes to by component: at the middle, by parameter, and what
+        rounding, the equations and the forces leave out at harmonics that are not known."""
+        line, count = self.line, len(self.h)
+        many, size = len(line.h) - 1, line.h.shape[2]
+        force, force_rest = self._forces(members)
+        w = np.zeros((1 + many, count, size), dtype=complex)
+        w[0] = self._solved(inverse, force[0])
+        moved = [self._times(v, w[0]) for v in range(1 + many)]
+        for v in range(1, 1 + many):
+            w[v] = self._solved(inverse, force[v] - moved[v])
+        whole = np.abs(w).sum(axis=(0, 1))
+        a = norm(force[0] - moved[0])
+        each = np.zeros((many, size))
+        for v in range(1, 1 + many):
+            a = a + norm(force[v] - moved[v] - self._times(0, w[v]))
+            each[v - 1] += norm(self._times(v, w[v]))
+            for u in range(v + 1, 1 + many):
+                both = norm(self._times(v, w[u]) + self._times(u, w[v])) / 2
+                each[v - 1] += both
+                each[u - 1] += both
+        sizes = np.abs(line.h).sum(axis=(0, 1)) * OUTWARD
+        scale = np.abs(force).sum(axis=(0, 1)) + sizes @ whole + np.abs(self.turn).max() * whole * 2
+        rounding = 8 * (2 * line.last + size + count + 2 * many + 16) * UNIT
+        return w, a, each, force_rest + line.left_out @ whole + rounding * scale
 
     def _seen(
-        self, members: Sequence[tuple[BoxForce, int]], w: Complex, error: Array, brought: Array, sizes: Array
+        self, members: Sequence[tuple[BoxForce, int]], w: Complex, error: Array, brought: Array
     ) -> CarrierResponse:
         """The quantities."""
+        sizes = np.abs(w).sum(axis=1)
         line, count, last = self.line, len(self.h), self.line.last
         many, rows = len(line.h) - 1, line.outputs.shape[2]
         parts = np.zeros((1 + many, count + 2 * last, rows), dtype=complex)
@@ -288,13 +314,12 @@ class _Window:
 class _Norms:
     """Of T: ``through`` (D, D), by how much a component's norm feeds another's at most; ``turned`` the same with
     every harmonic times the half width of its frequency; ``tail`` (D,) of all harmonics outside the window;
-    ``outer`` (2K, D) of those beside it; ``whole`` (D, D) sizes of H."""
+    ``outer`` (2K, D) of those beside it."""
 
     through: Array
     turned: Array
     tail: Array
     outer: Array
-    whole: Array
 
     @classmethod
     def of(cls, window: _Window, size: Array) -> _Norms:
@@ -314,7 +339,7 @@ class _Norms:
         scale = np.abs(window.order) * line.speed[1]
         through = summed.max(axis=1) + np.diag(tail)
         turned = (summed * scale[None, :, None]).max(axis=1)
-        return cls(through * OUTWARD, turned * OUTWARD, tail, outer, np.abs(line.h).sum(axis=(0, 1)) * OUTWARD)
+        return cls(through * OUTWARD, turned * OUTWARD, tail, outer)
 
     def by_parameter(self, window: _Window) -> list[Array]:
         """What each parameter brings of G within the window, and of the diagonal outside."""
