@@ -36,6 +36,7 @@ from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
 from trunnion.results.units import figures
 from trunnion.results.variables import Attribute, Coordinate, Variable
+from trunnion.results.words import Words
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
 
@@ -126,7 +127,8 @@ class PeakCertificate(Result):
             yield f"  {name}: {proved}, ±{known:.5g} N m reached{at}; in all {most}"
         for name, bound, known in zip(self.inertias, self.speed_fluctuation_bound, self.speed_fluctuation, strict=True):
             if np.isfinite(bound) and known > 0:
-                yield f"  {name}: its speed swings by ±{bound:.4g} rad/s at most, ±{known:.4g} rad/s reached"
+                most, reached = self.words.speed(float(bound), 4), self.words.speed(float(known), 4)
+                yield f"  {name}: its speed swings by ±{most} at most, ±{reached} reached"
         yield f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
 
 
@@ -370,9 +372,10 @@ class _PeakSearch:
         if not value > limit:
             return
         measure, name = self.quantities[quantity]
-        unit = UNITS[measure]
+        words, unit = Words(speed_unit(line)), UNITS[measure]
+        has, most = (words.speed(one) if measure == SPEED else f"{figures(one)} {unit}" for one in (value, limit))
         self.line, self.counterexample = line, known
-        self.exceeded = f"has a {measure} of {figures(value)} {unit} in {name}, whose limit is {figures(limit)} {unit}"
+        self.exceeded = f"has a {measure} of {has} in {name}, whose limit is {most}"
 
 
 def _values(found: OrderResponse) -> Array:
