@@ -451,8 +451,8 @@ PYTHON = [
     ),
     (
         lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1, 2], "speeds": [1, 2], "torques": [1, 2]}]),
-        "Disk.excitation 1 torques = [1, 2]: conflicts with speeds",
-        "torques",
+        "Disk.excitation 1 amplitudes = [1, 2]: must be 4 quantities, one for each of 2 speeds at each of 2 torques",
+        "",
     ),
     (
         lambda: Disk(inertia=1, excitation=[{"order": 2, "amplitudes": [1], "speeds": [1]}]),

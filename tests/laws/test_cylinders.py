@@ -249,7 +249,10 @@ def test_a_table_beside_the_file(tmp_path):
         ("order,amplitude [N*m]\n2,3\n2,4\n", "table.csv.order 2: stands in several rows"),
         ("order,speed [rpm],amplitude [N*m]\n2,600,4\n", "table.csv.order 2: has one speed only"),
         ("order,speed [rpm],amplitude [N*m]\n2,600,4\n2,600,5\n", "table.csv.order 2: has two rows for one speed"),
-        ("order,speed [rpm],torque [N*m],amplitude [N*m]\n2,1,1,1\n", "table.csv.torque: conflicts with speed"),
+        (
+            "order,speed [rpm],torque [N*m],amplitude [N*m]\n2,600,10,1\n2,900,10,1\n2,600,20,1\n",
+            "table.csv.order 2: has no row at 900 rpm and 20 N*m; give every speed a row at every torque",
+        ),
         ("order,order,amplitude [N*m]\n2,2,1\n", "table.csv.order: stands twice"),
         ("order,amplitude [N*m]\n", "table.csv: has no rows below its first line"),
         ("order,amplitude [N*m]\n-2,3\n", "must be positive"),
@@ -261,6 +264,115 @@ def test_what_is_wrong_with_a_table_is_said_in_one_line(tmp_path, content, messa
     with pytest.raises(tn.InputError) as caught:
         tn.read_excitation(tmp_path / "table.csv")
     assert message in str(caught.value) and "\n" not in str(caught.value)
+
+
+BOTH = """order,speed [rpm],torque [N*m],amplitude [N*m],phase [deg]
+1.5,300,50,40,-30
+1.5,300,400,210,20
+1.5,900,50,60,10
+1.5,900,400,260,75
+1.5,600,50,45,-10
+1.5,600,400,300,40
+"""
+"""Rows in any order."""
+
+
+def fan_line(tmp_path, load=0.05):
+    """An engine of three cylinders whose one gas order goes by speed and load, on a fan."""
+    (tmp_path / "gas.csv").write_text(BOTH, encoding="utf-8")
+    gas = tn.read_excitation(tmp_path / "gas.csv")
+    return tn.Driveline(
+        [
+            tn.Engine(
+                firing_order="1-2-3",
+                throw_inertia=0.2,
+                throw_stiffness=3e5,
+                gas_torque=gas,
+                drive_share=1,
+                name="engine",
+            ),
+            tn.Shaft(stiffness=2e4, damping=6.0, name="shaft"),
+            tn.Disk(inertia=1.1, quadratic_load=load, name="fan"),
+        ]
+    )
+
+
+def test_an_engine_by_speed_and_load_against_a_dense_solve(tmp_path):
+    """Its cylinders are read at their actual speed and share of the load: bilinear by hand, solved as one matrix."""
+    load = 0.1
+    line = fan_line(tmp_path, load)
+    speeds = np.linspace(tn.rpm(400), tn.rpm(880), 7)
+    found = tn.order_response(line, speeds)
+    n, w, torques = np.array([300.0, 600.0, 900.0]) * math.pi / 30, 1.5, (50.0, 400.0)
+    table = np.array(
+        [[40 * np.exp(-1j * np.pi / 6), 45 * np.exp(-1j * np.pi / 18), 60 * np.exp(1j * np.pi / 18)],
+         [210 * np.exp(1j * np.pi / 9), 300 * np.exp(2j * np.pi / 9), 260 * np.exp(1j * 5 * np.pi / 12)]]
+    )  # fmt: skip
+    mass = np.diag([0.2, 0.2, 0.2, 1.1])
+    for i, omega in enumerate(speeds):
+        own = load * omega**2 / 3  # of each cylinder
+        k = np.searchsorted(n, omega) - 1
+        across = (omega - n[k]) / (n[k + 1] - n[k])
+        up = (own - torques[0]) / (torques[1] - torques[0])
+        assert 0 < up < 1
+        low, high = ((1 - across) * row[k] + across * row[k + 1] for row in table)
+        gas = (1 - up) * low + up * high
+        twisted = -own / 3e5 * np.array([0, 1, 3])  # a throw fires at its own angle, behind the mean twist
+        turned = np.exp(1j * w * (twisted - np.radians(240 * np.arange(3))))
+        force = np.append(gas * turned, 0)
+        stiffness, damping = np.zeros((4, 4)), np.zeros((4, 4))
+        for a, (spring, damper) in enumerate([(3e5, 0.0), (3e5, 0.0), (2e4, 6.0)]):
+            pair = np.ix_([a, a + 1], [a, a + 1])
+            stiffness[pair] += spring * np.array([[1, -1], [-1, 1]])
+            damping[pair] += damper * np.array([[1, -1], [-1, 1]])
+        damping[3, 3] += 2 * load * omega
+        nu = w * omega
+        x = np.linalg.solve(stiffness + 1j * nu * damping - nu**2 * mass, force)
+        by_hand = (2e4 + 6j * nu) * (x[3] - x[2])
+        order = found.order.tolist().index(w)
+        ours = found.torque[i, order, found.springs.index("shaft")]
+        assert ours == pytest.approx(by_hand, rel=1e-9)
+
+
+def test_a_table_over_speed_and_load_is_read_inside_it_alone(tmp_path):
+    """Each end is named with its range; the search over the range leaves out what the table does not hold."""
+    line = fan_line(tmp_path)
+    with pytest.raises(
+        tn.InputError, match=r"a table from 300 rpm to 900 rpm and 50 N\*m to 400 N\*m, .* 950 rpm of its"
+    ):
+        tn.order_response(line, [tn.rpm(950)])
+    with pytest.raises(tn.InputError, match=r"50 N\*m to 400 N\*m, which does not cover 27\.416 N\*m"):
+        tn.order_response(line, [tn.rpm(387.3)])
+    limited = tn.Driveline(line.elements, limits=[tn.Limit(of="shaft", max_torque=5e3)])
+    judged = tn.assess(limited, (tn.rpm(450), tn.rpm(860)))
+    check = next(one for one in judged.checks if one.name == "max torque of shaft")
+    assert str(check.status) == "not judged" and "covers 300 rpm to 900 rpm and 50 N*m to 400 N*m" in check.because
+
+
+def test_a_table_over_speed_and_load_is_written_and_read(tmp_path):
+    line = fan_line(tmp_path)
+    assert tn.loads(tn.dumps(line)) == line
+    law = line.as_stated.elements[0].gas_torque[0]
+    assert law.speeds == pytest.approx([10 * math.pi, 20 * math.pi, 30 * math.pi]) and law.torques == (50.0, 400.0)
+    assert law.amplitudes == (40.0, 45.0, 60.0, 210.0, 300.0, 260.0)
+
+
+def test_a_run_follows_a_table_over_speed_and_load_at_its_constant_load(tmp_path):
+    """With a constant load a run through the speeds is that of the table over the speed which this load picks."""
+    (tmp_path / "gas.csv").write_text(BOTH, encoding="utf-8")
+    (both,) = tn.read_excitation(tmp_path / "gas.csv")
+    rows = np.array(both.amplitudes) * np.exp(1j * np.array(both.phases))
+    middle = (rows[:3] + rows[3:]) / 2
+    alone = tn.Excitation(order=1.5, speeds=both.speeds, amplitudes=abs(middle), phases=np.angle(middle))
+    runs = []
+    for law in (both, alone):
+        parts = [
+            tn.Disk(inertia=0.4, load_torque=-225.0, excitation=[law], name="engine"),
+            tn.Shaft(stiffness=2e4, damping=6.0, name="shaft"),
+            tn.Disk(inertia=1.1, load_torque=200.0, name="machine"),
+        ]
+        runs.append(tn.transient(tn.Driveline(parts), 0.3, speed=tn.rpm(400)))
+    assert runs[0].torque[:, 0] == pytest.approx(runs[1].torque[:, 0], rel=1e-9)
 
 
 def test_a_table_that_is_not_there(tmp_path):

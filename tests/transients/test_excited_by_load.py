@@ -107,6 +107,9 @@ def test_what_would_change_is_refused_by_name() -> None:
         tn.InputError, match="engine.excitation 1: goes by the load of its disk, which such a torque gives"
     ):
         tn.transient(by_load, 1.0, torque=driven, speed=SPEED)
+    both = line(speeds=[1.0, 500.0], torques=[0.0, 100.0], amplitudes=[10.0, 20.0, 110.0, 120.0])
+    with pytest.raises(tn.InputError, match="goes by speed and load, and the load of its disk is given here"):
+        tn.transient(both, 1.0, torque=driven, speed=SPEED)
     rubs = [tn.FrictionTorque(on="engine", torque=1.0)]
     with pytest.raises(tn.InputError, match="engine.excitation: has an amplitude that depends on the speed"):
         tn.transient(by_load, 1.0, friction=rubs, speed=SPEED)

@@ -135,8 +135,8 @@ class Engine(Composite):
     rigid : all throws as one inertia.
     bore, stroke, rod_length : of a cylinder, and of its rod between the centres [m].
     reciprocating_mass : of a cylinder: piston, pin and the oscillating part of the rod [kg].
-    gas_torque : harmonics of one cylinder's gas torque on the crank, as the excitation of a Disk; tables over torque
-        are by the mean torque of one cylinder. In a file also the name of a CSV table.
+    gas_torque : harmonics of one cylinder's gas torque on the crank, as the excitation of a Disk; tables over torque,
+        or over speed and torque, are by the mean torque of one cylinder. In a file also the name of a CSV table.
     pressure : or else its absolute pressure over the crank angle, a ``PressureCurve`` for each load, see
         ``read_pressure``. Mean torque and harmonics follow from the exact slider crank; between the loads harmonics are
         linear in the mean torque that a cylinder drives with, and refused beyond them. One curve holds at all loads.

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from cmath import phase
 from functools import cached_property
+from itertools import pairwise
+from math import prod
 from typing import Annotated, ClassVar, Self
 
 from pydantic import BeforeValidator, model_validator
@@ -40,8 +43,8 @@ class Excitation(Record):
 
     Several orders together are an engine-order table. A is stated in one of four ways: as one
     ``amplitude``; by the square of the disk's speed; as a ``share`` of the mean torque there, as of blades and motors;
-    or as a table over the disk's speed or the mean torque it drives with. Between the points of a table A e^{i phase}
-    is linear. Speeds and torques beyond its ends are refused.
+    or as a table over the disk's speed, the mean torque it drives with, or both. Between the points of a table
+    A e^{i phase} is linear, over both bilinear. Speeds and torques beyond its ends are refused.
 
     Parameters
     ----------
@@ -51,9 +54,9 @@ class Excitation(Record):
     phase : at zero rotation and time [rad].
     quadratic_amplitude : A over the square of the disk's mean speed [N m s²/rad²], as of oscillating masses.
     share : A over the size of the mean torque on its disk or machine, drive or load.
-    speeds : of the disk [rad/s], rising: where the table has its points; or else
+    speeds : of the disk [rad/s], rising: where the table has its points; or else, or besides
     torques : mean torque that the disk drives with [N m], rising.
-    amplitudes : A at these points [N m].
+    amplitudes : A at these points [N m]; over both, all speeds at the first torque, then all at the next.
     phases : at these points [rad], added to ``phase``; 0 by default.
 
     >>> firing = Excitation(order=2, amplitude="60 N*m", phase="90 deg")
@@ -76,7 +79,7 @@ class Excitation(Record):
         default=(), description="of the disk, where a table of amplitudes has its points"
     )
     torques: Annotated[Several[Torque], BeforeValidator(_LISTS)] = optional(
-        default=(), description="mean torques that the disk drives with, instead of speeds"
+        default=(), description="mean torques that the disk drives with, instead of speeds or besides"
     )
     amplitudes: Annotated[Several[Torque], BeforeValidator(_LISTS)] = optional(
         default=(), description="at the points of the table"
@@ -114,34 +117,48 @@ class Excitation(Record):
         return self
 
     def _check_table(self) -> None:
-        points, over = self.points, "torques" if self.torques else "speeds"
         if not self.amplitudes:
             lone = next((key for key in ("speeds", "torques", "phases") if getattr(self, key)), None)
             if lone:
                 raise InputError("has no amplitudes beside it", key=lone, remedy='write amplitudes = ["40 N*m", ...]')
             return
-        if bool(self.speeds) == bool(self.torques):
-            problem = "conflicts with speeds" if self.speeds else "is needed with amplitudes"
+        if not self.axes:
             remedy = 'give speeds = ["600 rpm", "1800 rpm"], say, or torques'
-            raise InputError(problem, key="torques" if self.speeds else "speeds", remedy=remedy)
-        if len(points) < 2:
-            remedy = "write amplitude for what is constant"
-            raise InputError("must have two points at least", key=over, value=list(points), remedy=remedy)
+            raise InputError("is needed with amplitudes", key="speeds", remedy=remedy)
+        for over, points in self.axes:
+            if len(points) < 2:
+                remedy = "write amplitude for what is constant"
+                raise InputError("must have two points at least", key=over, value=list(points), remedy=remedy)
+        counts = [len(points) for _, points in self.axes]
         for key in ("amplitudes", "phases"):
             values = getattr(self, key)
-            if values and len(values) != len(points):
-                raise InputError(
-                    f"must be {len(points)} quantities, one for each of {over}", key=key, value=list(values)
-                )
-        if any(b <= a for a, b in zip(points, points[1:], strict=False)):
-            raise InputError("must rise", key=over, value=list(points), remedy="sort them; each once")
+            if values and len(values) != prod(counts):
+                each = f"each of {self.axes[0][0]}"
+                if len(counts) == 2:
+                    each = f"each of {counts[0]} speeds at each of {counts[1]} torques"
+                raise InputError(f"must be {prod(counts)} quantities, one for {each}", key=key, value=list(values))
+        for over, points in self.axes:
+            if any(b <= a for a, b in pairwise(points)):
+                raise InputError("must rise", key=over, value=list(points), remedy="sort them; each once")
         if self.speeds and self.speeds[0] < 0:
             raise InputError("must not be negative", key="speeds", value=self.speeds[0], remedy="turning counts as is")
 
     @property
-    def points(self) -> tuple[float, ...]:
-        """Where its table has its points: speeds [rad/s] or torques [N m]; empty without a table."""
-        return self.speeds or self.torques
+    def axes(self) -> tuple[tuple[str, tuple[float, ...]], ...]:
+        """What its table goes over, "speeds" or "torques", and the points [rad/s], [N m]; none without a table."""
+        stated = (("speeds", self.speeds), ("torques", self.torques))
+        return tuple((over, points) for over, points in stated if points)
+
+    def at_torque(self, torque: float) -> Self:
+        """Of a table over both the one over speeds at a mean torque [N m] within it."""
+        import numpy as np
+
+        phases = np.array(self.phases) if self.phases else np.zeros(len(self.amplitudes))
+        rows = (np.array(self.amplitudes) * np.exp(1j * phases)).reshape(len(self.torques), -1)
+        found = [
+            np.interp(torque, self.torques, row.real) + 1j * np.interp(torque, self.torques, row.imag) for row in rows.T
+        ]
+        return self.but(torques=(), amplitudes=tuple(map(abs, found)), phases=tuple(map(phase, found)))
 
     @property
     def stated_as(self) -> str:
@@ -162,8 +179,10 @@ class Excitation(Record):
     @property
     def covers(self) -> str:
         """The range of its table in words."""
-        kind, unit = (SPEED, "rpm") if self.speeds else (TORQUE, None)
-        return f"{shown(self.points[0], kind, unit)} to {shown(self.points[-1], kind, unit)}"
+        kinds = {"speeds": (SPEED, "rpm"), "torques": (TORQUE, None)}
+        return " and ".join(
+            f"{shown(points[0], *kinds[over])} to {shown(points[-1], *kinds[over])}" for over, points in self.axes
+        )
 
 
 _READ = listed(Excitation, "harmonic torque")

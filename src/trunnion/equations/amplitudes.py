@@ -3,7 +3,7 @@ it, or from a table."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,28 +35,41 @@ def amplitude(law: Excitation, number: Array, running: Running) -> Complex:
     return np.asarray(number * LAWS[law.stated_as](law, running)).astype(complex)
 
 
-def where(law: Excitation, running: Running) -> Array:
-    """Where the table of ``law`` is read (case,): at speeds [rad/s] or torques [N m]."""
-    return running.torque() if law.torques else running.speed
+def where(law: Excitation, running: Running) -> list[tuple[tuple[float, ...], Array]]:
+    """All that the table of ``law`` goes over: points, and where it is read (case,), speeds [rad/s], torques [N m]."""
+    return [(points, running.torque() if over == "torques" else running.speed) for over, points in law.axes]
 
 
-def beyond(law: Excitation, place: Array) -> Flags:
-    """Which places (case,) lie beyond the ends of its table."""
-    slack = BEYOND * max(abs(point) for point in law.points)
-    return np.asarray(~((place >= law.points[0] - slack) & (place <= law.points[-1] + slack)))
+def beyond(points: Sequence[float], place: Array) -> Flags:
+    """Which places (case,) lie beyond the ends of what a table goes over."""
+    slack = BEYOND * max(abs(point) for point in points)
+    return np.asarray(~((place >= points[0] - slack) & (place <= points[-1] + slack)))
 
 
 def _shape(law: Excitation, running: Running) -> Complex:
-    """A e^{iφ} of a table over its largest |A|, linear between its points."""
-    place, points = where(law, running), np.array(law.points)
-    if np.any(beyond(law, place)):
-        apart = np.maximum(points[0] - place, place - points[-1])
-        worst = place[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
-        asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if law.speeds else f"{worst:.5g} N*m"
-        problem = f"is a table from {law.covers}, which does not cover {asked}"
-        raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
-    phases = np.array(law.phases) if law.phases else np.zeros(len(points))
+    """A e^{iφ} of a table over its largest |A|, linear between its points; over two axes bilinear."""
+    read = where(law, running)
+    for (over, points), (_, place) in zip(law.axes, read, strict=True):
+        if np.any(beyond(points, place)):
+            apart = np.maximum(points[0] - place, place - points[-1])
+            worst = place[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
+            asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if over == "speeds" else f"{worst:.5g} N*m"
+            problem = f"is a table from {law.covers}, which does not cover {asked}"
+            raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
+    phases = np.array(law.phases) if law.phases else np.zeros(len(law.amplitudes))
     values = np.array(law.amplitudes) * np.exp(1j * phases) / (law.largest or 1.0)
+    (points, place), *second = read
+    if not second:
+        return _line(place, points, values)
+    (others, load), by_load = second[0], values.reshape(-1, len(points))
+    after = np.clip(np.searchsorted(others, load), 1, len(others) - 1)
+    share = np.clip((load - np.take(others, after - 1)) / (np.take(others, after) - np.take(others, after - 1)), 0, 1)
+    rows = np.stack([_line(place, points, row) for row in by_load], axis=1)
+    case = np.arange(len(rows))
+    return np.asarray((1 - share) * rows[case, after - 1] + share * rows[case, after])
+
+
+def _line(place: Array, points: Sequence[float], values: Complex) -> Complex:
     return np.asarray(np.interp(place, points, values.real) + 1j * np.interp(place, points, values.imag))
 
 

@@ -116,8 +116,9 @@ class DiskTorque(LineHarmonic):
             raise error.but(element=self.name, key=f"excitation {self.number}") from None
         return np.asarray(size * np.exp(1j * phase) * self.cylinders)
 
-    def place(self, assembly: Assembly, table: Array) -> Array:
-        """Where the table of its amplitude is read (case,): at speeds [rad/s] or torques [N m] of its disk."""
+    def places(self, assembly: Assembly, table: Array) -> list[tuple[tuple[float, ...], Array]]:
+        """Points of the table of its amplitude, and where it is read (case,): at speeds [rad/s] or torques [N m] of its
+        disk, or both."""
         return where(self.law, self._running(assembly, table))
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
@@ -198,7 +199,7 @@ def _disk_torques(assembly: Assembly, row: Array | None = None) -> tuple[DiskTor
         disk = packed.line.elements[place]
         assert isinstance(disk, Rotor)
         for i, law in enumerate(disk.excitation, start=1):
-            keys = ("amplitude" if law.points else law.stated_as, "phase", "frequency")
+            keys = ("amplitude" if law.axes else law.stated_as, "phase", "frequency")
             columns = tuple(packed.column(place, f"excitation {i} {key}") for key in keys)
             number, phase, frequency = (float(row[column]) if column >= 0 else 0.0 for column in columns)
             order = Fraction(str(law.order or 0)) * abs(topo.speed_ratio[s])

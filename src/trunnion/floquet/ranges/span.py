@@ -163,23 +163,24 @@ class Span:
                 stage = np.where(own == 0, law.stage(np.zeros(len(speed))), law.stage_under(own))
                 parts.append(stage[:, None].astype(float))
         tables = self._tables(table)
-        parts += [np.searchsorted(law.points, place)[:, None].astype(float) for law, _, place in tables]
+        parts += [np.searchsorted(points, place)[:, None].astype(float) for _, _, points, place in tables]
         return np.concatenate(parts, axis=1)
 
-    def _tables(self, table: Array) -> Iterator[tuple[Excitation, str, Array]]:
-        """Every excitation that acts and has a table, its disk, and where the rows of ``table`` read it (case,); of
-        those of a disk whose tables have the same points one."""
+    def _tables(self, table: Array) -> Iterator[tuple[Excitation, str, tuple[float, ...], Array]]:
+        """Of every excitation that acts and has a table, its disk, the points and where the rows of ``table`` read it
+        (case,); of those of a disk whose tables have the same points one."""
         read = {
-            (one.element, one.law.points, bool(one.law.torques)): one
+            (one.element, one.law.axes): one
             for one in reversed(disk_torques(self.assembly))
-            if one.law.points and not one.prescribed
+            if one.law.axes and not one.prescribed
         }
         for one in reversed(read.values()):
-            yield one.law, one.name, one.place(self.assembly, table)
+            for points, place in one.places(self.assembly, table):
+                yield one.law, one.name, points, place
 
     def _uncovered(self, speed: float) -> str:
         """Why nothing can be computed at a speed; empty where it can."""
-        for law, disk, place in self._tables(self.table(np.array([speed]))):
-            if beyond(law, place)[0]:
+        for law, disk, points, place in self._tables(self.table(np.array([speed]))):
+            if beyond(points, place)[0]:
                 return f"the table of {disk} covers {law.covers}; extend it"
         return ""

@@ -17,7 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
 from trunnion.driveline.machines import Machine
-from trunnion.equations.amplitudes import BEYOND, Running, amplitude
+from trunnion.equations.amplitudes import BEYOND, Running, amplitude, beyond
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import cylinders
 from trunnion.errors import InputError
@@ -55,8 +55,13 @@ def without_varying(
         for number, law in enumerate(rotor.excitation, start=1):
             if law.quadratic_amplitude is not None:
                 torques.append(_by_square(name, rotor, law))
-            elif law.speeds:
+            elif law.speeds and not law.torques:
                 torques += _by_table(name, rotor, law)
+            elif law.speeds and given and not isinstance(rotor, Machine):
+                raise InputError(
+                    "goes by speed and load, and the load of its disk is given here", element=name,
+                    key=f"excitation {number}", remedy="give a table over torques or over speeds alone",
+                )  # fmt: skip
             elif not law.varies or name in rubbed or (given and isinstance(rotor, Machine)):
                 kept.append(law)
             elif given:
@@ -65,6 +70,8 @@ def without_varying(
                 torques.append(of_share(name, rotor, (number, law), _of_machine(line, name, rotor, speed)))
             elif law.share is not None and (load := _own_curve(rotor)) is not None:
                 torques.append(_by_share(name, rotor, law, load))
+            elif law.speeds and _steady(rotor):
+                torques += _by_table(name, rotor, _over_speeds(assembly, name, number, law, speed))
             elif _steady(rotor):
                 kept.append(_at_load(assembly, name, number, law, speed))
             else:
@@ -133,6 +140,15 @@ def _turning(name: str, rotor: Rotor, law: Excitation, factor: float, size: str)
     together = cylinders(rotor, law)
     factor, phase = abs(together) * factor, float(law.phase + np.angle(together))
     return Shaking(on=name, formula=f"({factor!r})*{size}*cos({phase_text(law, phase)})")
+
+
+def _over_speeds(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:
+    """Of a table over speed and load the one over speed, at the load that the disk drives with."""
+    load = float(-assembly.exciting_load(assembly.line.index(name), assembly.table(1, abs(speed)))[0])
+    if beyond(law.torques, np.array([load]))[0]:
+        problem = f"is a table from {law.covers}, which does not cover {load:.5g} N*m"
+        raise InputError(problem, element=name, key=f"excitation {number}", remedy="extend the table")
+    return law.at_torque(load)
 
 
 def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed: float) -> Excitation:
