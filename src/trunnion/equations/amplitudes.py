@@ -57,7 +57,7 @@ def _shape(law: Excitation, running: Running) -> Complex:
             problem = f"is a table from {law.covers}, which does not cover {asked}"
             raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
     phases = np.array(law.phases) if law.phases else np.zeros(len(law.amplitudes))
-    values: Complex = np.array(law.amplitudes) * np.exp(1j * phases) / (law.largest or 1.0)
+    values: Complex = (np.array(law.amplitudes) * np.exp(1j * phases) / (law.largest or 1.0)).astype(complex)
     (points, place), *second = read
     if not second:
         return _line(place, points, values)
