@@ -144,6 +144,23 @@ def test_power_of_two_drives_in_a_planetary_set() -> None:
     assert lost(line) == pytest.approx(sum(powers), rel=1e-9)
 
 
+def test_a_shaft_that_stands_still_on_average_asks_for_nothing_amiss() -> None:
+    """The ring, free on average at rest, on a shaft of its own: the sun's power is the carrier's over η of its path."""
+    gears = tn.Planetary(
+        teeth_sun=30, teeth_ring=72, input="sun", output="carrier", free_speed=0.0, name="set",
+        sun_mesh_efficiency=0.97, ring_mesh_efficiency=0.98,
+    )  # fmt: skip
+    line = tn.Driveline([
+        tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, name="sun shaft"), tn.Disk(inertia=0.05), gears,
+        tn.Disk(inertia=0.1, load_torque=300.0),
+        tn.Disk(inertia=0.1, after="set.ring"), tn.Shaft(stiffness=1e4, name="ring shaft"), tn.Disk(inertia=0.2),
+    ])  # fmt: skip
+    assembly = assemble(line)
+    found = gear_losses(assembly.topology, assembly.packed.column, assembly.table(1, SPEED))
+    assert np.isfinite(found.resists).all()
+    assert (found.friction > 0).all()
+
+
 @pytest.mark.parametrize(("one", "other", "angle"), [(20, 40, 20.0), (25, 25, 20.0), (34, 71, 25.0)])
 def test_friction_along_the_path_of_contact(one: int, other: int, angle: float) -> None:
     """Ohlendorf's formula against the integral of μ F |v_s| over a base pitch, teeth in contact sharing the load."""

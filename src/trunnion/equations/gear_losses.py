@@ -69,7 +69,7 @@ def lost_torques(topo: Topology, column: Column, table: Array, carried: Callable
 
 def _swept(topo: Topology, column: Column, table: Array, felt: Array) -> LostTorques:
     """Losses under torques that resist (case, station), from the ends of the line forward."""
-    turning, sense = topo.mean_speeds, np.sign(topo.mean_speeds)
+    sense = np.sign(topo.mean_speeds)
     asked, lost = felt * sense, np.zeros_like(felt)
     friction, drag = np.zeros((len(table), len(topo.rubs))), np.zeros((len(table), len(topo.drags)))
     for k, (front, place) in enumerate(topo.drags):
@@ -89,8 +89,10 @@ def _swept(topo: Topology, column: Column, table: Array, felt: Array) -> LostTor
         if station.link is LinkKind.SUM:
             for of, share in station.of:
                 asked[:, of] += float(share) * asked[:, s]
-        elif station.link in (LinkKind.SHAFT, LinkKind.JOINT, LinkKind.RATIO):
-            asked[:, station.before] += asked[:, s] * (turning[s] / turning[station.before])
+        elif station.link is LinkKind.RATIO:
+            asked[:, station.before] += asked[:, s] / topo.ratio_values[s]
+        elif station.link in (LinkKind.SHAFT, LinkKind.JOINT):
+            asked[:, station.before] += asked[:, s]
     return LostTorques(lost * sense, friction, drag)
 
 
