@@ -311,3 +311,47 @@ def test_a_free_line_with_a_joint_angle() -> None:
     data = tn.track_orders(run, [1, 2], line=line(2e4), reference="motor")
     found = tn.identify(line(1.7e4), data, {"tube.stiffness": (1.2e4, 3e4)})
     assert found.low[0] < 2e4 < found.high[0] and abs(found.value[0] / 2e4 - 1) < 0.003
+
+
+@pytest.mark.slow
+def test_a_likelihood_that_is_not_gaussian_is_drawn_from() -> None:
+    """Of a small angle order 2 knows the square: its density is that of a square whose root is taken, by quadrature."""
+    line = random_line(np.random.default_rng(11)).replace("joint", angle="0.1 deg")
+    line = line.replace("hub", excitation=[])
+    run = tn.measure(line, (70.0, 300.0), 8.0, {"input": 36, "hub": 36}, jitter=4e-6, pitch_error=0.0)
+    data = tn.track_orders(run, [2], line=line, reference="input")
+    free = {"joint.angle": (0.0, 0.1)}
+    plain = tn.identify(line, data, free, begin=0.0)
+    assert not plain.gaussian[0] and "joint.angle is not Gaussian" in " ".join(map(str, plain.findings))
+    found = tn.identify(line, data, free, begin=0.0, draws=250)
+    assert found.independent > 50 and "hold 95 % of draws" in str(found)
+
+    angles = np.linspace(0.0, 3 * float(found.drawn_high[0]), 120)
+    hub, deviation = (one[found.windows][:, 0, data.column("hub")] for one in (data.amplitude, data.deviation))
+    floor = float(data.floor[0, data.column("hub")] / np.sqrt(2))
+    covariance = np.diag(deviation**2) + floor**2
+    inverse = np.linalg.inv(covariance)
+    misfit = np.empty(len(angles))
+    for k, angle in enumerate(angles.tolist()):
+        off = hub
+        if angle:
+            response = tn.order_response(line.replace("joint", angle=angle), data.speed[found.windows], [2])
+            off = hub - response.rotation[:, 0, response.inertias.index("hub")]
+        misfit[k] = float((off.conj() @ inverse @ off).real)
+    density = np.exp(-(misfit - misfit.min()) / 2)
+    weight = np.append(0.0, np.cumsum(density[1:] + density[:-1]))
+    for share, end in ((0.025, found.drawn_low[0]), (0.975, found.drawn_high[0])):
+        assert np.interp(end, angles, weight / weight[-1]) == pytest.approx(share, abs=0.03)
+
+
+@pytest.mark.slow
+def test_both_signs_are_drawn() -> None:
+    """Rotations do not show the sign of an angle: half of the draws have each."""
+    line = random_line(np.random.default_rng(11))
+    run = tn.measure(line, (70.0, 300.0), 8.0, {"input": 36, "hub": 36}, jitter=2e-6, pitch_error=0.0)
+    data = tn.track_orders(run, [2], line=line, reference="input")
+    found = tn.identify(line, data, {"joint.angle": (-0.3, 0.3)}, draws=120)
+    assert found.twins and (found.draws > 0).mean() == pytest.approx(0.5, abs=0.2)
+    low, high = np.quantile(np.abs(found.draws), (0.025, 0.975))
+    ends = np.sort(np.abs([found.low[0], found.high[0]]))
+    assert np.allclose([low, high], ends, atol=0.4 * (ends[1] - ends[0]) / 2)

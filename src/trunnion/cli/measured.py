@@ -197,6 +197,7 @@ def identify(
     between: Annotated[tuple[float, float] | None, OptionReader(_between)],
     window: Annotated[int, NumberBounds(1, 1000)] = 8,
     tongue_at: Annotated[list[float] | None, OptionReader(_speeds)],
+    draws: Annotated[int, NumberBounds(0, 100_000)] = 0,
     write: Path | None = None,
     channel: str = "",
     asked: Annotated[CommandInput, InputAttribute("itself")],
@@ -213,6 +214,7 @@ def identify(
     --between FIRST:LAST  Part of the recording, times in seconds; default: the longest run-up or run-down.
     --window  Turns of one window.
     --tongue-at SPEED,…  Input speeds at which to give the distance from the nearest instability.
+    --draws STEPS  Where a likelihood is not Gaussian, steps of an ensemble that draws from it, 400 say.
     --write FILE  Write the driveline with the values found.
     --channel  Channel that is drawn; default: the first that moves.
     """
@@ -224,7 +226,7 @@ def identify(
     )  # fmt: skip
     if channel:
         data.column(channel)
-    found = tn.identify(line, data, dict(free), tongue_at=tongue_at or (), progress=progress)
+    found = tn.identify(line, data, dict(free), tongue_at=tongue_at or (), draws=draws, progress=progress)
     if write is not None:
         tn.dump(found.line, write, comments_of=file_of_line(asked.texts["line"]))
 

@@ -32,6 +32,7 @@ from trunnion.measured.identification.profile import (
     profile_interval,
 )
 from trunnion.measured.identification.result import Identification, TongueDistance
+from trunnion.measured.identification.sampling import LikelihoodDraws, gaussian_of, likelihood_draws
 from trunnion.measured.overlay import compare_measured
 from trunnion.measured.predicted import turned
 from trunnion.measured.tracking.result import MeasuredOrders
@@ -46,6 +47,8 @@ ANEW = 6
 """Times that a better fit found on the way may begin anew."""
 UNLIKELY = 1e-3
 """Probability below which noise does not explain the misfit."""
+FEW_DRAWS = 100.0
+"""Independent draws below which the ends of 95 % are rough."""
 ANGLES = "factor of *.angle"
 HIGHEST_FACTOR = 4.0
 DISTANCE_STEP = 0.5
@@ -60,6 +63,7 @@ def identify(
     begin: float | None = None,
     held_out: MeasuredOrders | None = None,
     tongue_at: Sequence[float | str] = (),
+    draws: int = 0,
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Identification:
@@ -74,7 +78,9 @@ def identify(
     held_out : another run, not fitted, on which the line found is tried.
     tongue_at : input speeds [rad/s] at which the distance from the nearest region of instability is told; none by
         default.
-    seed : of the look around within the bounds.
+    draws : where a profile is not a parabola, or other values fit as well, so many steps of an ensemble that draws from
+        the likelihood, 400 say; 0 for none: then those parameters are named.
+    seed : of the look around within the bounds, and of the draws.
     progress : called as progress(share done).
 
     Raises
@@ -95,6 +101,7 @@ def identify(
     """
     assembly = assemble(line)
     whole_number(seed, "seed", 0)
+    whole_number(draws, "draws", 0)
     advance = progress or (lambda share: None)
     space = Space(assembly, free)
     most = FEWER_WINDOWS if has_periodic_base(assembly) else MOST_WINDOWS
@@ -124,6 +131,12 @@ def identify(
     distance = _distance(found, misfit, values, covariance, tongue_at) if len(tongue_at) else None
     tried = None if held_out is None else _held_out(assembly, held_out, misfit, best)
     predicted = turned(misfit.predicted(values[None])[0], data.order, best.angle)
+    advance(0.9)
+    gaussian = gaussian_of(misfit, values, intervals, spread * width)
+    sampled, drawn = LikelihoodDraws(np.zeros((0, 0)), 0.0, 0.0), np.full((1, len(values)), np.nan)
+    if draws and (twins or not gaussian.all()):
+        sampled, drawn = likelihood_draws(misfit, [best, *twins], spread, scale, draws, seed)
+    ends = np.quantile(drawn, (0.025, 0.975), axis=0)
     advance(1.0)
     made = Identification(
         parameters=tuple(one.label for one in space.free),
@@ -135,6 +148,9 @@ def identify(
         low_open=np.array([one.low_open for one in intervals]),
         high_open=np.array([one.high_open for one in intervals]),
         deviation=spread * width,
+        gaussian=gaussian,
+        drawn_low=ends[0],
+        drawn_high=ends[1],
         correlation=covariance / np.outer(spread, spread),
         chi_square=best.chi_square,
         freedom=freedom,
@@ -145,6 +161,8 @@ def identify(
         residual=_by_channel(misfit, residual),
         channels=tuple(data.channels[c] for c in misfit.channels.columns),
         order=data.order,
+        independent=sampled.effective,
+        draws=drawn,
         twins=tuple(
             dict(zip([one.label for one in space.free], values_at(misfit, twin.share).tolist(), strict=True))
             for twin in twins
@@ -268,6 +286,19 @@ def _findings(found: Identification, misfit: Misfit) -> Iterator[Finding]:
         elif found.low_open[k] or found.high_open[k]:
             side = "low" if found.low_open[k] else "high"
             yield Finding(Gravity.NOTE, f"The interval of {name} is open at its {side} bound; widen it to see its end.")
+    bent = [name for k, name in enumerate(found.parameters) if not (found.gaussian[k] or found.unknown[k])]
+    if bent and not found.independent:
+        yield Finding(
+            Gravity.NOTE,
+            f"The likelihood of {', '.join(bent)} is not Gaussian within its interval: standard deviations and "
+            "correlations do not describe it; draws = 400 draws from it.",
+        )
+    if 0 < found.independent < FEW_DRAWS:
+        yield Finding(
+            Gravity.CAUTION,
+            f"The draws are worth {figures(found.independent, 2)} independent ones: ends of 95 % are rough; ask for "
+            "more draws.",
+        )
     if found.twins:
         yield Finding(
             Gravity.CAUTION,

@@ -58,6 +58,9 @@ class Identification(Result):
     low_open: Flags = variable("parameter", "1", "1 where the interval reaches the bound")
     high_open: Flags = variable("parameter", "1", "1 where the interval reaches the bound")
     deviation: Array = variable("parameter", "", "standard deviation by Fisher's information there, SI units")
+    gaussian: Flags = variable("parameter", "1", "1 where the interval is as wide as a Gaussian's, to either side")
+    drawn_low: Array = variable("parameter", "", "end of what holds 95 % of the draws; NaN without draws, SI units")
+    drawn_high: Array = variable("parameter", "", "end of what holds 95 % of the draws; NaN without draws, SI units")
     correlation: Array = variable("parameter other", "1", "between the parameters")
     chi_square: float = attribute("sum of squares of residuals over their standard deviations")
     freedom: int = attribute("numbers compared beyond those fitted")
@@ -68,6 +71,8 @@ class Identification(Result):
     residual: Array = variable("channel order", "1", "rms of residuals over their standard deviations")
     channels: tuple[str, ...] = coordinate("channel")
     order: Array = coordinate("order", "1")
+    independent: float = attribute("independent draws that those of the likelihood are worth; 0 without")
+    draws: Array = internal("values drawn from the likelihood, SI units", axes="draw parameter")
     twins: tuple[Mapping[str, float], ...] = internal("other values that fit as well, SI units")
     line: Driveline = internal("with the values found")
     original: Driveline = internal("as it was")
@@ -126,6 +131,11 @@ class Identification(Result):
         yield self.headline
         for row in self.table():
             yield f"  {row['parameter']}: {row['fits']} (95 %: {row['95 % from']} to {row['to']}), was {row['was']}"
+        if self.independent:
+            worth = figures(self.independent, 2)
+            for k, name in enumerate(self.parameters):
+                low, high = (shown_value(one[k], self.units[k], 4) for one in (self.drawn_low, self.drawn_high))
+                yield f"  {name}: {low} to {high} hold 95 % of draws from its likelihood ({worth} independent ones)"
         for twin in self.twins:
             units = dict(zip(self.parameters, self.units, strict=True))
             words = ", ".join(f"{name} {shown_value(value, units[name])}" for name, value in twin.items())
