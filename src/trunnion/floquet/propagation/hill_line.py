@@ -76,7 +76,8 @@ class HillLine:
     def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction) -> None:
         fall = spreads(topo, co, turns)
         self.narrow, self.wide = (_harmonics(fall, decades) for decades in (DECADES, DECADES + WIDER))
-        times = 1 << int(np.ceil(np.log2(max(64, 4 * int(np.ptp(self.wide)) + 4))))
+        # Of a straight line nothing varies.
+        times = 1 << int(np.ceil(np.log2(max(64 if fall else 1, 4 * int(np.ptp(self.wide)) + 4))))
         period = 2 * np.pi * float(turns)
         matrices = tree_matrices(topo, co, period * np.arange(times) / times)
         self.n, self.speed = topo.size, float(co.speed[0])

@@ -24,19 +24,22 @@ from trunnion.equations.linear_clutches import with_mean_clutches
 from trunnion.equations.steady_base import refuse_dragged, require_balance
 from trunnion.errors import ComputationError
 from trunnion.modes.mode_content import ModeMotion, floquet_pair
-from trunnion.numerics.integration.integration import integrate
+from trunnion.numerics.integration.integration import IntegrationEnd, integrate
 from trunnion.results.speeds import show_speed
 from trunnion.steady.free.periodic_steady_states import SEVERAL, SteadyStatesBySpeed, breaks
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit
+from trunnion.systems.maps import IntegratedMap
 
 SAMPLES = 256
 PER_CYCLE = 8
 """Samples at least per cycle of the highest mode."""
-FAR = 0.05
-"""Distance from rigid shafts [rad] beyond which a motion is followed from speeds beside its own."""
-ASIDE = 0.1
-"""Share of the speed by which those differ from it."""
+FAR, BENT = 0.05, 0.25
+"""Distance from rigid shafts [rad], and what a linear step misses of it, beyond which a motion is followed from speeds
+beside its own."""
+ASIDE, ASIDE_OF_LONG, LONG = 0.1, 0.02, 30
+"""Share of the speed by which those differ from it; the same of lines of so many unknowns, which take seconds a
+step."""
 
 
 @dataclass(frozen=True)
@@ -117,10 +120,20 @@ def _closed(line: LineSystem, start: Array, extra: float, tolerance: float, *, s
 
 
 def _far(line: LineSystem, orbit: PeriodicOrbit, start: Array) -> bool:
-    """Whether a motion is so far from rigid shafts that others may have the same speed."""
-    n = line.assembly.topology.size
-    angle, rate = (float(np.abs(part).max()) for part in np.split((orbit.start - start)[: 2 * n], 2))
-    return max(angle, rate / line.speed) > FAR
+    """Whether a motion is so far from that of rigid shafts, and the way to it so bent, that others may have the same
+    speed: the orbit's own derivative leads back to ``start`` where it is not."""
+    n, apart = line.assembly.topology.size, start - orbit.start
+    scale = np.repeat([1.0, 1 / line.speed], n)
+    if np.abs(apart[: 2 * n] * scale).max() <= FAR:
+        return False
+    run = IntegratedMap.of(orbit.system).run(start[None])
+    if run.end is not IntegrationEnd.REACHED:
+        return True
+    closing, left = orbit.monodromy - np.eye(len(start)), run.final[0] - start
+    if line.assembly.topology.free:  # a phase is kept
+        closing, left = np.vstack([closing, np.eye(len(start))[:1]]), np.append(left, 0.0)
+    off = np.linalg.lstsq(closing, left)[0] - apart
+    return bool(np.abs(off[: 2 * n] * scale).max() > BENT * np.abs(apart[: 2 * n] * scale).max())
 
 
 def _followed(line: Driveline, prepared: LineSystem, speed: float, tolerance: float) -> PeriodicOrbit | None:
@@ -133,7 +146,9 @@ def _followed(line: Driveline, prepared: LineSystem, speed: float, tolerance: fl
     curve = SteadyStatesBySpeed(line)
     if curve.obstacle:
         return None
-    curve.broken = breaks(curve, speed * np.array([1 - ASIDE, 1.0, 1 + ASIDE]))
+    long = prepared.assembly.topology.size >= LONG
+    aside = ASIDE_OF_LONG if long else ASIDE
+    curve.broken = breaks(curve, speed * np.array([1 - aside, 1.0, 1 + aside]), between=not long)
     for one in curve.broken:
         if one.low < speed < one.high and one.why == SEVERAL:
             low, at, high = (show_speed(each, speed_unit(line)) for each in (one.low, speed, one.high))
