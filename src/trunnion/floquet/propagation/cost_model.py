@@ -1,10 +1,25 @@
-"""What the two ways to the multipliers of a long line cost, in seconds of one core: which of them ``tree_modes`` takes.
+"""What the ways to the multipliers of a long line cost, in seconds of one core: which of them ``tree_modes`` takes, and
+which lines are refused.
 
 Measured on one machine (``benchmarks/long_lines.py`` shows both); a choice of the dearer way costs time, never
 accuracy.
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from trunnion.equations.aligned import UnitMasses
+from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
+from trunnion.numerics.memory import MOST, size_text
+
+MOST_SECONDS = 3600.0
+"""Processor time beyond which nothing is begun."""
+SHORT = 150
+"""Unknowns up to which no line is refused."""
 
 
 def by_modes(size: int, harmonics: int, left: int) -> float:
@@ -15,3 +30,37 @@ def by_modes(size: int, harmonics: int, left: int) -> float:
 def in_time(size: int, steps: int) -> float:
     """All states carried over a period in ``steps``, and the eigenvalues of what becomes of them."""
     return 0.02 + steps * (1.4e-3 + 5.5e-7 * size**2) + 1.4e-8 * size**3
+
+
+def in_whole(size: int, phase: float) -> float:
+    """Whole matrices over a period in which the fastest mode turns by ``phase`` radians, as springs in loops need."""
+    return 6e-6 * size**2 * phase * (1 + size / 300)
+
+
+def own_motion(size: int, phase: float) -> float:
+    """The periodic motion of a free–free line by shooting, and its multipliers."""
+    return 3.5e-6 * size**2 * phase
+
+
+def require_time(assembly: Assembly, speed: float, cost: Callable[[int, float], float], what: str) -> None:
+    """Refuse what would not end, or fill the memory, at an input ``speed`` [rad/s].
+
+    ``cost`` : of the unknowns and of the radians by which the fastest mode turns in a turn of the input, in seconds.
+
+    Raises
+    ------
+    InputError : says how long it would take, and how much memory.
+    """
+    size, memory = assembly.topology.size, 20 * 8.0 * (2 * assembly.topology.size) ** 2
+    if size <= SHORT:
+        return
+    stiffness = UnitMasses(assembly.aligned.inertia[0]).of_matrix(assembly.aligned.stiffness[0])
+    # No mode is faster than the largest sum of a row.
+    seconds = cost(size, 2 * np.pi * float(np.sqrt(np.abs(stiffness).sum(axis=1).max())) / speed)
+    if seconds > MOST_SECONDS or memory > MOST:
+        raise InputError(
+            f"has {size} unknowns: {what} would take about {seconds / 3600:.2g} h of processor time and "
+            f"{size_text(memory)} of memory",
+            element="driveline",
+            remedy="join neighbouring parts",
+        )

@@ -31,6 +31,7 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
+from trunnion.floquet.propagation.cost_model import in_whole, own_motion, require_time
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
@@ -276,6 +277,8 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
             motion = mode_motion(assembly.topology, coefficients, turns, complex(modes.exponent[0]))
             named = _named(motion, found.verdict, system.rate, frequency, sources(assembly), turns)
             return replace(found, resonance=named)
+    if assembly.topology.graph:
+        require_time(assembly, system.rate, in_whole, "stability of springs in loops")
     run = propagated(system, tolerance)
     return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
 
@@ -303,6 +306,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
     turns = require_period(assembly.line, topo)
     from trunnion.steady.free.periodic_steady_state import periodic_steady_state
 
+    require_time(assembly, speed, own_motion, "stability about its own periodic motion")
     motion = periodic_steady_state(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)

@@ -24,11 +24,15 @@ from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.equations.steady_base import refuse_dragged
+from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
+from trunnion.numerics.memory import MOST as MOST_BYTES
+from trunnion.numerics.memory import size_text
 from trunnion.numerics.threads import on_one_thread
+from trunnion.results.counts import counted
 
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""
@@ -37,6 +41,8 @@ CLOSED = 1e-7
 NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
 CORRECTIONS = 8
+MOST_SECONDS, MATRICES = 3600.0, 4
+"""Processor time beyond which balances are not begun, and matrices of all unknowns that one takes."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -184,6 +190,7 @@ class FreeBalance:
     def solve(self, value: Array, h: int, guess: Array | None = None) -> SteadyStates:
         """Motions of ``h`` harmonics at ``value`` (case,), from a guess (case, n, 2h + 1) or rigid shafts."""
         unknowns = len(self.turn) * (2 * h + 1) + 1
+        self.require_time(h, len(value))
         batch_size = max(1, MOST_NUMBERS // unknowns**2)
         with on_one_thread():
             parts = [
@@ -192,6 +199,24 @@ class FreeBalance:
             ]
         keys = ("value", "found", "rows", "torque", "numbers")
         return SteadyStates(self, *(np.concatenate([getattr(part, key) for part in parts]) for key in keys))
+
+    def require_time(self, h: int, many: int) -> None:
+        """Refuse so ``many`` motions of ``h`` harmonics where they would not end, or fill the memory.
+
+        Raises
+        ------
+        InputError : says how long they would take, and how much memory.
+        """
+        size = len(self.turn)
+        unknowns = size * (2 * h + 1) + 1
+        seconds, memory = many * (1.5e-9 * unknowns**3 + 3e-7 * unknowns**2), MATRICES * 8.0 * unknowns**2
+        if seconds > MOST_SECONDS or memory > MOST_BYTES:
+            raise InputError(
+                f"has {size} unknowns: its own periodic motion in {h} harmonics at {counted(many, 'point')} would take "
+                f"about {seconds / 3600:.2g} h of processor time and {size_text(memory)} of memory",
+                element="driveline",
+                remedy="ask for fewer points, or join neighbouring parts",
+            )
 
     def _batch(self, value: Array, h: int, guess: Array | None) -> SteadyStates:
         table = self.rows(value)

@@ -216,6 +216,7 @@ class _SpectrumProblem:
         if self.varies and smooth and self.own is None:
             self.few = interpolation_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
+            self.own.balance.require_time(self.own.balance.fewest, len(numbers))
             self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
         elif self.varies:
             self.batch = self._batch()
