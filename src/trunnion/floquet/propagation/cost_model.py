@@ -37,7 +37,7 @@ def in_whole(size: int, phase: float) -> float:
     return 6e-6 * size**2 * phase * (1 + size / 300)
 
 
-def own_motion(size: int, phase: float) -> float:
+def by_shooting(size: int, phase: float) -> float:
     """The periodic motion of a free–free line by shooting, and its multipliers."""
     return 3.5e-6 * size**2 * phase
 

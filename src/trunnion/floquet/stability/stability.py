@@ -31,7 +31,7 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.propagation.cost_model import in_whole, own_motion, require_time
+from trunnion.floquet.propagation.cost_model import by_shooting, in_whole, require_time
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
@@ -306,7 +306,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
     turns = require_period(assembly.line, topo)
     from trunnion.steady.free.periodic_steady_state import periodic_steady_state
 
-    require_time(assembly, speed, own_motion, "stability about its own periodic motion")
+    require_time(assembly, speed, by_shooting, "stability about its own periodic motion")
     motion = periodic_steady_state(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
     scale = np.repeat([1.0, 1 / speed], topo.size)
