@@ -8,7 +8,7 @@ malfunction, heat, rules with their sources, what was searched and how far value
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -27,14 +27,14 @@ from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.reporting.provenance import fingerprint
 from trunnion.reporting.submission_contents import SubmissionContents, gather
 from trunnion.reporting.tables import Table
-from trunnion.results.finding import Gravity
+from trunnion.results.finding import Finding, Gravity
 from trunnion.results.speeds import frequency_unit
 from trunnion.results.words import HERTZ, Words
 from trunnion.waiting import to_the_end
 
 MOST_CURVES, MOST_UNLIMITED = 10, 3
 """Checks that are drawn over speed, and springs without a check."""
-FIRST_FINDINGS = 5
+FIRST_FINDINGS = 3
 """Findings on the first sheet."""
 
 
@@ -87,9 +87,15 @@ def submission(
         return Submission(_page(contents, shown, None if source is None else Path(source)), contents, shown)
 
 
+def _beside_checks(contents: SubmissionContents) -> Iterator[Finding]:
+    """Findings that are no row of the checks on the first sheet again."""
+    listed = tuple(f"{capital(str(row[1]))} is " for row in tables.first_checks(contents).rows)
+    return (one for one in contents.seen.findings if not one.sentence.startswith(listed))
+
+
 def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
     seen, made = contents.seen, datetime.now().astimezone()
-    first = [one for one in seen.findings if one.gravity is not Gravity.NOTE][:FIRST_FINDINGS]
+    first = [one for one in _beside_checks(contents) if one.gravity is not Gravity.NOTE][:FIRST_FINDINGS]
     name, digest = fingerprint(seen.line, source)
     facts: dict[str, Any] = {
         "title": seen.line.name or "Driveline",

@@ -79,11 +79,10 @@ def particulars(contents: SubmissionContents) -> Table:
 
 
 def _malfunction(contents: SubmissionContents) -> str:
-    """How the checks end with a cylinder out of work, in a few words."""
-    over = exceeded_by_malfunction(contents)
+    """How the checks end with a cylinder out of work, in a few words; the sheet names those exceeded at its top."""
     unknown = any(c.missing for one in contents.misfiring for c in one.checks)
-    if over:
-        return f"exceeded, see section 6: {', '.join(over)}"
+    if exceeded_by_malfunction(contents):
+        return "exceeded, see section 6"
     return "not all judged, see section 6" if unknown else "checks of torque satisfied, section 6"
 
 
