@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 import trunnion as tn
-from trunnion.reporting.overview_assessment import capital
 from trunnion.cli.program import app
 from trunnion.equations.coefficients import assemble
 from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
 from trunnion.reporting.submission_tables import excitations
