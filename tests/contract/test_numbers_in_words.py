@@ -92,3 +92,12 @@ def test_a_slip_clutch_is_told_to_slip_later() -> None:
         tn.stability(line, 100.0)
     said = str(refused.value)
     assert "150 N m: it slips" in said and "raise the torque at which it slips" in said and "outermost" not in said
+
+
+def test_a_mean_that_is_rounding_is_printed_as_nothing() -> None:
+    """As that of a shaft that drives nothing, whose torque swings about 0."""
+    from trunnion.results.units import mean_and_swing
+
+    assert mean_and_swing(-1.56e-12, 420.0, "N m") == "0 N m, 420 N m peak to peak"
+    assert mean_and_swing(-4.5e-7, 420.0, "N m") == "-4.5e-07 N m, 420 N m peak to peak"
+    assert mean_and_swing(12.5, 0.0, "N m") == "12.5 N m, 0 N m peak to peak"

@@ -6,6 +6,9 @@ from math import degrees, floor, isfinite, log10
 
 from trunnion.driveline.quantities import KINDS, SPEED, shown
 
+ROUNDING = 1e-10
+"""Share of a swing below which a mean is what rounding left of 0."""
+
 
 def signs(text: str) -> str:
     """A unit, or a number with its unit, as a page prints it: "N m", "kg m²"."""
@@ -26,6 +29,12 @@ def in_words(value: float, unit: str, digits: int = 4) -> str:
     """A value in SI with an engineer's unit, "32.8 kN*m/rad"; what is in rad/s is a frequency."""
     kind = next((kind for kind in KINDS if kind.unit == unit and kind is not SPEED), None)
     return with_unit(f"{value:.4g}", unit) if kind is None or unit == "1" else shown(value, kind, digits=digits)
+
+
+def mean_and_swing(mean: float, swing: float, unit: str) -> str:
+    """ "12 N m, 420 N m peak to peak"; a mean that is rounding beside the swing about it is 0."""
+    shown = 0.0 if abs(mean) < ROUNDING * abs(swing) else mean
+    return f"{shown:.6g} {unit}, {swing:.6g} {unit} peak to peak"
 
 
 def figures(value: float, most: int = 4) -> str:

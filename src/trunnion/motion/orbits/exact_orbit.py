@@ -35,6 +35,7 @@ from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.speeds import frequency_unit, show_speed
+from trunnion.results.units import mean_and_swing
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import MEANING
 from trunnion.steady.shooting.periodic_orbit import Orbit
@@ -218,7 +219,7 @@ class ExactOrbit(Result, TorqueRange, Orbit):
         if not self.outcome.ok:
             return f"no periodic motion of {self.line.name} at {at}: {self.outcome}"
         rows = [
-            f"  {name}: torque {mean:.6g} N m, {swing:.6g} N m peak to peak"
+            f"  {name}: torque {mean_and_swing(mean, swing, 'N m')}"
             for name, mean, swing in zip(self.springs, self.torque_mean, self.torque_peak_to_peak, strict=True)
         ]
         near = f"{self.clearance:.2g} rad from grazing" if np.isfinite(self.clearance) else "no stage end is approached"

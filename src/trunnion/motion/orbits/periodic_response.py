@@ -45,6 +45,7 @@ from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
+from trunnion.results.units import mean_and_swing
 from trunnion.results.variables import Attribute, Coordinate, Variable, attributes
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
@@ -252,7 +253,7 @@ class PeriodicResponse(Result, OfShafts, IntegratedOrbit):
         if not self.outcome.ok:
             return f"no periodic motion found at {at}: {self.outcome}"
         rows = [
-            f"  {name}: torque {mean:.6g} N m, {peak:.6g} N m peak to peak"
+            f"  {name}: torque {mean_and_swing(mean, peak, 'N m')}"
             for name, mean, peak in zip(self.shafts, self.torque_mean, self.torque_peak_to_peak, strict=True)
         ]
         against = f"linear theory: {self.comparison or self.no_comparison}"
