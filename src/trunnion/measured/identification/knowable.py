@@ -29,6 +29,8 @@ UNKNOWABLE = 0.5 * UNIFORM
 """Standard deviation from which the data tell next to nothing."""
 TIED = 0.98
 """Correlation from which only a combination is known."""
+SPEEDS = 65
+"""At which orders and natural frequencies that follow the speed are compared."""
 POINTS = 8
 """Points within the bounds that are looked at besides the line as it stands."""
 
@@ -212,11 +214,18 @@ def _findings(
 
 def _crossed(misfit: Misfit) -> list[float]:
     """Natural frequencies [rad/s] that an order crosses within the speeds."""
+    from trunnion.driveline.pendulums import CentrifugalPendulum
     from trunnion.modes.natural_frequencies import natural_frequencies
+    from trunnion.response.campbell_diagram import campbell_diagram
 
-    speeds = misfit.data.speed
-    found = []
-    for frequency in natural_frequencies(misfit.channels.assembly).elastic.tolist():
-        if any(speeds.min() <= frequency / k <= speeds.max() for k in misfit.data.order.tolist()):
-            found.append(frequency)
-    return found
+    low, high, assembly = float(misfit.data.speed.min()), float(misfit.data.speed.max()), misfit.channels.assembly
+    orders = misfit.data.order.tolist()
+    if any(isinstance(element, CentrifugalPendulum) for element in assembly.line.elements):
+        # What is held by the square of the speed has other frequencies at each.
+        speeds = np.linspace(low, high, SPEEDS) if high > low else np.array([low, 1.001 * low])
+        found = campbell_diagram(assembly, speeds).frequency
+        off = found[None] - np.multiply.outer(orders, speeds)[:, :, None]
+        crossed = np.any(np.diff(np.sign(off), axis=1) != 0, axis=(0, 1))
+        return [float(one) for one in found[:, crossed].mean(axis=0)]
+    frequencies = natural_frequencies(assembly).elastic.tolist()
+    return [one for one in frequencies if any(low <= one / k <= high for k in orders)]
