@@ -51,6 +51,11 @@ share = 0.1
 order = 2
 phase = "-15 deg"
 """
+RUBS = """
+friction_coefficient = 0.05
+drag_torque = "2 N*m"
+heat_rating = "400 W"
+"""
 STAGED = """
 name = "clutch"
 breakpoints = ["-12 deg", "-4 deg", "4 deg", "10 deg"]
@@ -70,8 +75,8 @@ def document(mesh: str) -> str:
 
 
 MESHES = {
-    "teeth, linear backlash": TEETH + COMMON + 'backlash = "0.1 mm"\n' + PHASED,
-    "radii, angular backlash": RADII + COMMON + 'angular_backlash = "0.2 deg"\n',
+    "teeth, linear backlash": TEETH + COMMON + 'backlash = "0.1 mm"\n' + RUBS + PHASED,
+    "radii, angular backlash": RADII + COMMON + 'angular_backlash = "0.2 deg"\nefficiency = 0.98\n',
 }
 
 
