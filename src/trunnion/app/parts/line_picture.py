@@ -88,9 +88,11 @@ export function render({ model }) {
 
   function gap(spot, front, where) {
     const [x, y] = front ? spot.begins : spot.ends
-    const made = element("button", { class: "gap", type: "button", "data-where": where,
+    const last = !front // beside the part, which is narrower than its + would leave of it
+    const made = element("button", { class: last ? "gap end" : "gap", type: "button", "data-where": where,
       "data-id": `gap ${spot.key} ${front}`, "aria-label": `insert ${chosen} ${where}`, title: where,
-      style: `left:${percent(x)};top:${percent(y)}`, onclick: () => insert(spot, front, chosen),
+      style: `left:${last ? `min(${percent(x)}, calc(100% - 26px))` : percent(x)};top:${percent(y)}`,
+      onclick: () => insert(spot, front, chosen),
       ondragover: event => { if (dragged) { event.preventDefault(); made.classList.add("over") } },
       ondragleave: () => made.classList.remove("over"),
       ondrop: event => { made.classList.remove("over"); drop(event, spot, front) } }, "+")
@@ -157,6 +159,7 @@ img.picture { display: block; width: 100%; filter: var(--picture-filter, none);
   border: 1px solid var(--edge); opacity: 0.55; cursor: pointer; z-index: 2; }
 .gap:hover, .gap:focus-visible, .gap.over, .dragging .gap { opacity: 1; }
 .gap.over { background: var(--chosen); color: var(--on-chosen); transform: translate(-50%, -50%) scale(1.4); }
+.gap.end { transform: translate(2px, -50%); }
 .part:focus-visible, .gap:focus-visible, .chip:focus-visible, select:focus-visible {
   outline: 3px solid var(--focus); outline-offset: 1px; z-index: 3; }
 """
