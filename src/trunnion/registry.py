@@ -129,6 +129,7 @@ ANALYSES = (
         "certify_peaks",
         "Prove how large torque and twist of every spring can be in a range of speeds and tolerances.",
         features="proof of peaks",
+        pictures={"PeakCertificate.plot": "trunnion.pictures.design:peak_certificate"},
         command="trunnion.cli.limits:certify_peaks",
     ),
     Analysis(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from oracles.dense_scan import Sum
 from oracles.line_equations import WIDEST, Steady
 from oracles.scanned_lines import ScannedLine, scanned_line
 from oracles.steady_orders import response
+from typer.testing import CliRunner
 
 import trunnion as tn
 from trunnion.response.peaks import periodic_enclosure
@@ -190,3 +192,16 @@ def test_many_random_lines_stay_below(kind: str) -> None:
     every = [attacked(kind, seed, 150, 40) for seed in range(10, 35)]
     bounded = [near for count, near in every if count]
     assert len(bounded) >= 8 and max(bounded) > 0.95  # some random line comes close to its bound
+
+
+def test_the_command_answers_and_writes(tmp_path: Path) -> None:
+    """Bounds in words, in data and as bars with what was reached."""
+    from trunnion.cli import app
+
+    asked = ["certify-peaks", str(EXAMPLES / "pto-shaft.toml"), "--speed", "300rpm:310rpm"]
+    files = [str(tmp_path / name) for name in ("peaks.png", "peaks.nc")]
+    said = CliRunner().invoke(app, [*asked, "-o", files[0], "-o", files[1]])
+    assert said.exit_code == 0 and "is not exceeded" in said.output, said.output
+    assert all(Path(name).stat().st_size > 1000 for name in files)
+    answer = json.loads(CliRunner().invoke(app, [*asked, "--json", "-o", files[0]]).stdout)
+    assert all(a >= b for a, b in zip(answer["vibratory_torque_bound"], answer["vibratory_torque"], strict=True))

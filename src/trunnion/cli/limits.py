@@ -172,7 +172,7 @@ def certify_stability(
     return CommandOutput(found.in_unit(unit), written=[write])
 
 
-@Command("peak certificate", within=True)
+@Command("peak certificate", writes=PICTURES_AND_DATA, part="peaks", within=True)
 def certify_peaks(
     line: Line,
     *,

@@ -34,6 +34,7 @@ from trunnion.pictures.picture import (
     single,
 )
 from trunnion.pictures.shared import axis_of, printed
+from trunnion.response.peaks.certify_peaks import PeakCertificate
 from trunnion.results.speeds import speed_factor
 from trunnion.results.units import in_words
 from trunnion.results.words import Words
@@ -287,6 +288,19 @@ def _limit(across: Axis, slowest: float, fastest: float) -> tuple[Axis, list[Ite
                   "below left" if stable else "below right", inside=True)  # fmt: skip
     ends = (slowest - MARGIN * width, fastest + MARGIN * width)
     return Axis(across.words, across.unit, *ends), [words]
+
+
+def peak_certificate(found: PeakCertificate) -> Picture:
+    """Bounds of the vibratory torque of every spring as bars, what was reached as marks; open ones have no bar."""
+    known = [k for k, torque in enumerate(found.vibratory_torque) if np.isfinite(torque)]
+    bound = np.nan_to_num(found.vibratory_torque_bound[known], posinf=0.0)
+    reached, places = found.vibratory_torque[known], np.arange(len(known))
+    items: list[Item] = [
+        Bars(places, bound, 0.7, "bar 0", "proved not to be exceeded", lie=True),
+        points_at(np.column_stack((reached, places)), "after", "reached"),
+    ]
+    names = [found.springs[k] for k in known]
+    return single(Axis("vibratory torque ±", "N m"), rows(names), items, 7.2, 1.6 + 0.5 * len(names), key="below")
 
 
 def certificate(found: StabilityCertificate) -> Picture:

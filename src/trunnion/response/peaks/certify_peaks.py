@@ -31,6 +31,7 @@ from trunnion.response.orders.result import OrderResponse
 from trunnion.response.peaks.box_peaks import BoxPeaks, box_peaks
 from trunnion.response.peaks.forced_box import require_forcing
 from trunnion.response.speed_sweep import sweep_speeds
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
@@ -91,6 +92,10 @@ class PeakCertificate(Result):
         yield Coordinate("variable", names, "variable")
         yield Variable("counterexample", np.array([known.get(name, np.nan) for name in names]), "variable")
         yield from super().declared()
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Bounds of vibratory torque beside what was reached; see ``pictures.design.peak_certificate``."""
+        return drawing(self, "plot")(self, axes)
 
     @property
     def largest_gap(self) -> float:
