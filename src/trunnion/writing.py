@@ -25,6 +25,8 @@ NEW, COMPLETE = "new", "complete"
 """In a temporary folder: the files written, and the sign that they are all whole and on their way."""
 STALE = 86_400.0
 """Seconds after which a temporary file is nobody's, where its process cannot be asked for."""
+_BEING_WRITTEN: set[str] = set()
+"""The temporary names that this process writes to now."""
 
 
 @contextmanager
@@ -45,18 +47,15 @@ def written_whole(path: str | os.PathLike[str]) -> Iterator[Path]:
     if not target.parent.is_dir():
         _refuse_output(Path(path), "cannot be written, its folder does not exist", f"create the folder {target.parent}")
     sweep(target.parent)
-    temporary = target.parent / f"{_own_prefix()}{target.suffix}"
-    try:
-        temporary.touch(exist_ok=False)
-    except OSError as error:
-        _refuse_output(Path(path), f"cannot be written ({error.strerror})")
-    try:
+    with _temporary(target.parent, target.suffix) as temporary:
+        try:
+            temporary.touch(exist_ok=False)
+        except OSError as error:
+            _refuse_output(Path(path), f"cannot be written ({error.strerror})")
         with _disk_errors_about(Path(path), temporary):
             yield temporary
             _to_disk(temporary)
             os.replace(temporary, target)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def write_durably(path: Path, content: bytes) -> None:
@@ -66,16 +65,15 @@ def write_durably(path: Path, content: bytes) -> None:
     ------
     InputError, ComputationError : as of ``written_whole``; nothing is left behind.
     """
-    temporary = path.parent / f"{_own_prefix()}{path.suffix}"
-    try:
-        with _disk_errors_about(path, temporary), _named(temporary):
-            temporary.write_bytes(content)
-            _to_disk(temporary)
-            os.replace(temporary, path)
-            folder_to_disk(path.parent)
-    finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+    with (
+        _temporary(path.parent, path.suffix) as temporary,
+        _disk_errors_about(path, temporary),
+        _named(temporary),
+    ):
+        temporary.write_bytes(content)
+        _to_disk(temporary)
+        os.replace(temporary, path)
+        folder_to_disk(path.parent)
 
 
 @contextmanager
@@ -87,22 +85,18 @@ def folder_made_durably(path: Path) -> Iterator[Path]:
     InputError, ComputationError : as of ``written_whole``.
     """
     sweep(path.parent)
-    temporary = path.parent / _own_prefix()
-    try:
-        with _disk_errors_about(path, temporary), _named(temporary):
-            temporary.mkdir()
-            yield temporary
-            for one in temporary.rglob("*"):
-                folder_to_disk(one) if one.is_dir() else _to_disk(one)
-            folder_to_disk(temporary)
-            try:
-                os.rename(temporary, path)
-            except OSError:
-                if not path.is_dir():  # else somebody else made it meanwhile
-                    raise
-            folder_to_disk(path.parent)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+    with _temporary(path.parent) as temporary, _disk_errors_about(path, temporary), _named(temporary):
+        temporary.mkdir()
+        yield temporary
+        for one in temporary.rglob("*"):
+            folder_to_disk(one) if one.is_dir() else _to_disk(one)
+        folder_to_disk(temporary)
+        try:
+            os.rename(temporary, path)
+        except OSError:
+            if not path.is_dir():  # else somebody else made it meanwhile
+                raise
+        folder_to_disk(path.parent)
 
 
 @contextmanager
@@ -133,12 +127,9 @@ def folder_to_disk(folder: Path) -> None:
 @contextmanager
 def scratch_folder(within: Path) -> Iterator[Path]:
     """A temporary folder below ``within``, removed afterwards."""
-    temporary = within / _own_prefix()
-    temporary.mkdir()
-    try:
+    with _temporary(within) as temporary:
+        temporary.mkdir()
         yield temporary
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def move_durably(made: Path, path: Path) -> None:
@@ -165,13 +156,12 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
     nearest = next(path for path in (target.absolute(), *target.absolute().parents) if path.is_dir())
     sweep(nearest)
     sweep(target.absolute().parent)  # where a run that was to make the folder may have been killed
-    temporary = nearest / _own_prefix()
-    made = temporary / NEW
-    try:
-        made.mkdir(parents=True)
-    except OSError as error:
-        _refuse_output(target, f"cannot be made: {error.strerror}")
-    try:
+    with _temporary(nearest) as temporary:
+        made = temporary / NEW
+        try:
+            made.mkdir(parents=True)
+        except OSError as error:
+            _refuse_output(target, f"cannot be made: {error.strerror}")
         with _disk_errors_about(target, temporary):
             yield made
             for path in made.rglob("*"):
@@ -185,8 +175,6 @@ def folder_written_whole(folder: str | os.PathLike[str]) -> Iterator[Path]:
                 made.rename(target)
             except OSError as error:
                 _refuse_output(target, f"cannot be made: {error.strerror}")
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _to_disk(path: Path) -> None:
@@ -259,9 +247,22 @@ def _finish(left: Path) -> None:
                 os.replace(written, there)
 
 
-def _own_prefix() -> str:
-    """Host, process and a random part: what tells an abandoned file from one that is being written."""
-    return f"{PREFIX}{_host()}-{os.getpid()}-{secrets.token_hex(4)}"
+@contextmanager
+def _temporary(folder: Path, suffix: str = "") -> Iterator[Path]:
+    """A name in ``folder`` for one file or folder, removed afterwards unless it was renamed.
+
+    Host, process and a random part tell an abandoned one from one that is being written. A thread that outlives the
+    failure of what it works for may write there once more: what then comes up is swept by the next, since the name
+    is written to no longer.
+    """
+    path = folder / f"{PREFIX}{_host()}-{os.getpid()}-{secrets.token_hex(4)}{suffix}"
+    _BEING_WRITTEN.add(path.name)
+    try:
+        yield path
+    finally:
+        _BEING_WRITTEN.discard(path.name)
+        with suppress(OSError):
+            shutil.rmtree(path, ignore_errors=True) if path.is_dir() else path.unlink(missing_ok=True)
 
 
 def _host() -> str:
@@ -270,6 +271,8 @@ def _host() -> str:
 
 def _is_abandoned(left: Path) -> bool:
     host, process, _ = left.name.removeprefix(PREFIX).split("-", 2)
+    if host == _host() and int(process) == os.getpid():
+        return left.name not in _BEING_WRITTEN
     if time.time() - left.stat().st_mtime > STALE:
         return True
     # On Windows asking whether a process lives would end it; there, only age counts.

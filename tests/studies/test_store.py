@@ -313,3 +313,16 @@ def test_what_is_nothing_at_some_points_is_told_by_the_others(tmp_path: Path) ->
     for angle, speed, name in zip(found.parameter("HookeJoint 1.angle"), found.parameter("speed"), names, strict=True):
         known = tn.stability(line().replace("HookeJoint 1", angle=float(angle)), float(speed)).resonance
         assert name == ("" if known is None else known.name)
+
+
+def test_what_a_thread_writes_after_the_failure_is_swept(tmp_path) -> None:
+    """Zarr writes in threads: one may still write when another has failed and all was removed."""
+    with pytest.raises(RuntimeError), writing.folder_made_durably(tmp_path / "a") as first:
+        raise RuntimeError
+    first.mkdir()
+    (first / "late").write_bytes(b"1")
+    with writing.folder_made_durably(tmp_path / "a") as second:
+        (second / "whole").write_bytes(b"1")
+        writing.sweep(tmp_path)
+        assert [one.name for one in tmp_path.iterdir()] == [second.name], "what is being written stays"
+    assert [one.name for one in tmp_path.iterdir()] == ["a"]
