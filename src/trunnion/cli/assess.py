@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from trunnion.design.remedies.result import Remedies
 
 CHECK = (
-    "name status decides margin required_margin value error limit unit speed because barred covered "
+    "name status proof decides margin required_margin value bound error limit unit speed because barred covered "
     "rule.formula rule.source rule.certainty inputs load_case guideline element"
 )
 REMEDY = "check variable before after unit value margin required_margin verdict sentence"

@@ -119,16 +119,16 @@ def _in_rows(across: Axis, names: Sequence[str], items: Sequence[Item], title: s
 def margins(found: Assessment) -> Picture:
     """Every check that has a margin, and those that could not be judged, with what is to be said of each."""
     table = list(zip(found.table(), found.checks, strict=True))
-    judged = [one for one in table if np.isfinite(one[1].margin) and one[0]["status"] in _STATUS][:JUDGED]
-    drawn = judged + [one for one in table if one[0]["status"] in ("not judged", "guideline not judged")][:JUDGED]
+    judged = [one for one in table if np.isfinite(one[1].margin) and one[1].word in _STATUS][:JUDGED]
+    drawn = judged + [one for one in table if one[1].word in ("not judged", "guideline not judged")][:JUDGED]
     items: list[Item] = []
     for status, (role, words) in _STATUS.items():
-        at = [k for k, (row, _) in enumerate(drawn) if row["status"] == status]
+        at = [k for k, (_, check) in enumerate(drawn) if check.word == status]
         size = [float(np.clip(100 * drawn[k][1].margin, -FAR, FAR)) for k in at]
         says = [f"{drawn[k][0]['check']}: {drawn[k][0]['because']}" for k in at]
         items += [Bars(at, size, THICK, role, words, True, says)] if at else []
     percent = [100 * float(check.margin) if k < len(judged) else 0.0 for k, (_, check) in enumerate(drawn)]
-    said = [_said(str(row["status"]), margin) for (row, _), margin in zip(drawn, percent, strict=True)]
+    said = [_said(check.word, check.proof, margin) for (_, check), margin in zip(drawn, percent, strict=True)]
     ends = [max(0.0, min(FAR, margin)) for margin in percent]
     items.append(Texts(ends, range(len(drawn)), said, beside="right"))
     low, high = max(-FAR, min([0.0, *percent])), min(FAR, max([20.0, *percent]))
@@ -144,10 +144,11 @@ _STATUS = {
 """Role and words of a status that has a margin."""
 
 
-def _said(status: str, percent: float) -> str:
+def _said(status: str, proof: str, percent: float) -> str:
     """What stands at the end of a bar."""
     far = f"> {FAR:g} %" if percent > FAR else ""
-    return {"satisfied": far, "within guideline": f"{far} (guideline)".strip()}.get(status, status)
+    met = ", ".join(part for part in (far, "proved" if proof == "proved" else "") if part)
+    return {"satisfied": met, "within guideline": f"{far} (guideline)".strip()}.get(status, status)
 
 
 def sensitivities(found: Sensitivities, quantity: str | None = None, *, most: int = 10) -> Picture:

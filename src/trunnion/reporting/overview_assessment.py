@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.design.assessment.assess import by_case, checks_of, judgement, subject_of
+from trunnion.design.assessment.assess import assessment_of, by_case, subject_of
 from trunnion.design.assessment.assessment_input import NO_RESPONSE, QUICK, AssessmentInput, LoadCaseResponse, lossy
 from trunnion.design.assessment.check import Check, worst
 from trunnion.design.assessment.deciding import weighed
@@ -107,7 +107,7 @@ def asked(line: Driveline, *, speed: float | str | None = None, unit: str | None
 
 def judged(of: AssessableLine) -> AssessedLine:
     """The verdict over the range."""
-    return AssessedLine(**_parts(of), assessment=judgement(of.subject, checks_of(of.subject)))
+    return AssessedLine(**_parts(of), assessment=assessment_of(of.subject))
 
 
 def answer(of: AssessedLine) -> OverviewAssessment:

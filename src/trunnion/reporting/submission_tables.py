@@ -470,7 +470,7 @@ def _rule(check: Check, words: Words) -> dict[str, object]:
     searched: Iterable[tuple[float, float]] = check.covered
     return {
         "check": check.name,
-        "result": f"{check.word}{f', {check.margin_word}' if check.margin_word else ''}",
+        "result": f"{check.words}{f', {check.margin_word}' if check.margin_word else ''}",
         "rule": check.rule.formula,
         "source": f"{check.rule.source} ({check.rule.certainty})",
         "value": _quantity(check.value, check.unit, words),

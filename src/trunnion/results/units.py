@@ -42,6 +42,14 @@ def figures(value: float, most: int = 4) -> str:
     return f"{float(f'{value:.{most}g}'):.10g}"
 
 
+def rounded_up(value: float, digits: int = 4) -> float:
+    """The smallest number of so many significant figures that is not below a positive ``value``: of bounds in print."""
+    if not (isfinite(value) and value > 0):
+        return value
+    near = float(f"{value:.{digits - 1}e}")
+    return near if near >= value else float(f"{near + 10.0 ** (_place(value) - digits + 1):.{digits - 1}e}")
+
+
 def angle_words(angle: float, most: int = 3) -> str:
     """An angle [rad] in degrees, "14.3°"."""
     return f"{figures(degrees(angle), most)}°"

@@ -131,7 +131,7 @@ class _DashboardPane(VariantPane["DashboardView"]):
                 "<tr class='{2}'><td>{0}</td><td>{1}</td></tr>",
                 row["check"],
                 row["margin"],
-                row["status"],
+                str(row["status"]).partition(",")[0],
             )
             for row in rows
         )

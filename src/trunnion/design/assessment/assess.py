@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from trunnion.design.assessment.assessment_input import WHOLE, AssessmentInput, LoadCaseResponse, SearchEffort, cases_of
 from trunnion.design.assessment.bending import bending
+from trunnion.design.assessment.bounds import with_bounds
 from trunnion.design.assessment.brake_heat import brake_heat
 from trunnion.design.assessment.check import Check, in_order, worst
 from trunnion.design.assessment.compared import uncovered
@@ -77,14 +78,18 @@ def assess(
     >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
     satisfied max torque of shaft 0.129
     """
-    subject = subject_of(line, speeds, load_case, unit, partly=True)
-    return judgement(subject, checks_of(subject))
+    return assessment_of(subject_of(line, speeds, load_case, unit, partly=True))
 
 
-def judgement(subject: AssessmentInput, checks: tuple[Check, ...]) -> Assessment:
-    """What follows from the checks of a line."""
+def assessment_of(subject: AssessmentInput) -> Assessment:
+    """All checks, with what a few boxes prove of those that are searched."""
+    return judgement(subject, *with_bounds(subject, checks_of(subject)))
+
+
+def judgement(subject: AssessmentInput, checks: tuple[Check, ...], notes: Iterable[Finding] = ()) -> Assessment:
+    """What follows from the checks of a line; ``notes`` of what they stand on."""
     verdict, barred = verdict_of(checks, subject.speed)
-    findings = by_gravity([*_findings(subject.cases, subject.unit), *shaken_stages(assemble(subject.line))])
+    findings = by_gravity([*_findings(subject.cases, subject.unit), *shaken_stages(assemble(subject.line)), *notes])
     return Assessment(
         verdict=verdict, checks=checks, barred=barred, low=subject.low, high=subject.high, speed=subject.speed,
         unit=subject.unit, findings=findings, operation=subject.line.operation or Operation(),

@@ -29,6 +29,7 @@ class Status(Enum):
         return self.value
 
 
+PROVED, SEARCHED = "proved", "searched, not proved"
 ROUNDING = 1e-12
 """Margin that adding up a handful of numbers may lose."""
 SHOWN = {
@@ -79,6 +80,11 @@ class Check:
     )
     error: float = variable(words="what the value may be low by, in the unit of its check", default=nan)
     covered: tuple[tuple[float, float], ...] = internal("speed ranges that it was judged over", "rad/s", default=())
+    proof: str = variable(
+        words='"proved" at every speed, "searched, not proved", or empty where nothing is searched or exceeded',
+        default="",
+    )
+    bound: float = variable(words="proved not to be exceeded at any speed, in the unit of its check", default=nan)
     ended: str = internal("what ended its search before it was done, as a clause", default="")
 
     @property
@@ -116,6 +122,11 @@ class Check:
     def word(self) -> str:
         """The status in print: of a guideline that does not decide other words, so that it does not read as one."""
         return str(self.status) if self.decides else SHOWN[self.status]
+
+    @property
+    def words(self) -> str:
+        """The same, "satisfied, proved" where a bound shows it at every speed."""
+        return f"{self.word}, {PROVED}" if self.proof == PROVED else self.word
 
     @property
     def margin_word(self) -> str:
@@ -173,14 +184,23 @@ def _known(number: float) -> float:
 
 
 def worst(checks: Iterable[Check]) -> tuple[Check, ...]:
-    """Of checks of one name over several load cases, the one that binds, with the speeds that any of them bars."""
+    """Of checks of one name over several load cases, the one that binds, with the speeds that any of them bars; proved
+    where all are."""
     by_name: dict[str, list[Check]] = {}
     for check in checks:
         by_name.setdefault(check.name, []).append(check)
     return tuple(
-        replace(min(same, key=_severity), barred=merged(pair for check in same for pair in check.barred))
+        replace(
+            min(same, key=_severity),
+            barred=merged(pair for check in same for pair in check.barred),
+            proof=_proof({check.proof for check in same}),
+        )
         for same in by_name.values()
     )
+
+
+def _proof(proofs: set[str]) -> str:
+    return PROVED if proofs == {PROVED} else SEARCHED if proofs & {PROVED, SEARCHED} else ""
 
 
 def merged(ranges: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:

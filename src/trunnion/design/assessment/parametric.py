@@ -16,12 +16,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
-from trunnion.design.assessment.check import Check, Rule, Status
+from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
@@ -37,7 +38,7 @@ EACH, COARSE = 25, 1e-8
 ROUGHLY = 1e-3
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
-PROVED = 6
+BOXES = 6
 """Boxes for a proof, each of some hundredths of a second."""
 NAME = "parametric stability"
 NOT_EXCITED = "no joint has an angle and no mesh varies: nothing excites the line parametrically"
@@ -96,9 +97,11 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         "the straight line's damping"
     )
     status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
-    if status is Status.SATISFIED and subject.naming and _proved(case):
-        because += "; proved for every speed of the range"
-    yield _judged(case, status, because + gaps, float(share), worst, (), covered)
+    proof = ""
+    if status is Status.SATISFIED and subject.naming:
+        proof = PROVED if _proved(case) else SEARCHED
+        because += "; proved for every speed of the range" if proof == PROVED else ""
+    yield replace(_judged(case, status, because + gaps, float(share), worst, (), covered), proof=proof)
 
 
 def _proved(case: LoadCaseResponse) -> bool:
@@ -108,7 +111,7 @@ def _proved(case: LoadCaseResponse) -> bool:
     # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.certificate.certify import proved_over
 
-    return proved_over(case.assembly, (case.low, case.high), PROVED)
+    return proved_over(case.assembly, (case.low, case.high), BOXES)
 
 
 def _covered(case: LoadCaseResponse, found: UnstableRanges) -> tuple[tuple[float, float], ...]:

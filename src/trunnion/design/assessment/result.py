@@ -14,7 +14,7 @@ from trunnion.results.result import Result
 
 SEPARATION = "separation"
 COLUMNS = (
-    "status rule decides margin required_margin value limit error unit speed because "
+    "status proof rule decides margin required_margin value bound limit error unit speed because "
     "rule.formula rule.source rule.certainty inputs load_case covered_in_words"
 )
 """What datasets hold of each check."""
@@ -142,7 +142,7 @@ class Assessment(Result):
         return [
             {
                 "check": c.name,
-                "status": c.word,
+                "status": c.words,
                 "margin": c.margin_word,
                 f"speed [{words.unit}]": f"{c.speed * words.factor:.5g}" if c.speed == c.speed else "",
                 "because": c.because,
@@ -153,7 +153,7 @@ class Assessment(Result):
     def _lines(self) -> Iterator[str]:
         yield f"assessment from {self.words.ends(self.low, self.high)}: {self.sentence}"
         for c in self.checks:
-            yield f"  {c.word}: {c.name}: {c.because}"
+            yield f"  {c.words}: {c.name}: {c.because}"
             if c.judged:
                 details = [c.rule.formula, f"{c.rule.source} ({c.rule.certainty})", c.inputs]
                 yield f"      {'; '.join(d for d in details if d)}"

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.design.assessment.assess import checks_of, judgement, subject_of
 from trunnion.design.assessment.assessment_input import AssessmentInput
+from trunnion.design.assessment.bounds import with_bounds
 from trunnion.design.assessment.check import Check, Status, percent
 from trunnion.design.assessment.fatigue_life import NAME as FATIGUE
 from trunnion.design.assessment.result import verdict_of
@@ -25,6 +26,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.results.counts import counted
+from trunnion.results.finding import Finding
 from trunnion.results.units import in_words
 from trunnion.waiting import OutOfTime, keeps_time, to_the_end
 
@@ -81,20 +83,22 @@ def remedies(
 to 128.23 rad/s: margin 0.405 %
     """
     subject = subject_of(line, speeds, load_case, unit, partly=True)
-    return remedies_of(subject, checks_of(subject), checks=checks, near=near, most=most, progress=progress)
+    base, notes = with_bounds(subject, checks_of(subject))
+    return remedies_of(subject, base, notes, checks=checks, near=near, most=most, progress=progress)
 
 
 def remedies_of(
     subject: AssessmentInput,
     base: tuple[Check, ...],
+    notes: Iterable[Finding] = (),
     *,
     checks: Iterable[str] | None = None,
     near: float = NEAR,
     most: int = MOST,
     progress: Callable[[float], None] | None = None,
 ) -> Remedies:
-    """The same for a line whose checks, ``base``, are known."""
-    judged = judgement(subject, base)
+    """The same for a line whose checks, ``base``, are known, with ``notes`` of them."""
+    judged = judgement(subject, base, notes)
     goals = _goals(base, checks, near)
     design = Design(subject.line)
     by_name = {check.name: check for check in base}
