@@ -13,6 +13,7 @@ Derivatives of r and a by the angle are those of their Fourier series, not those
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -38,7 +39,8 @@ class Part:
                for key, value in self.numbers.items()}  # fmt: skip
         kinds = {"shaft": tn.Shaft, "disk": tn.Disk, "hooke": tn.HookeJoint, "tripod": tn.TripodJoint}
         if self.kind == "ratio":
-            return tn.Ratio(teeth_in=12 * round(1 / own["ratio"]), teeth_out=12)
+            teeth = Fraction(own["ratio"]).limit_denominator(100)
+            return tn.Ratio(teeth_in=12 * teeth.denominator, teeth_out=12 * teeth.numerator)
         return kinds[self.kind](**own)
 
 
