@@ -279,6 +279,10 @@ _NOT_EXACT = {
         "the stages are then not linear with constant coefficients",
     ),
 }
+_NO_ORDER = dict.fromkeys(
+    ("excitation in time", "excitation by order and frequency"),
+    "it excites at frequencies of its own, and what was measured is compared order by order of the rotation",
+)
 _UNBENT = {**_PASSIVE, "fork offset": "without an angled joint forks have no phase"}
 _RIGID = dict.fromkeys(
     (
@@ -320,6 +324,15 @@ ROWS: dict[str, Row] = {
         },
     ),
     "linear motion": _row(refused=_FAR_END, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)),
+    "measured orders": _row(
+        refused=_FAR_END, said={**_BY_PLACE, **_NO_ORDER}, inert={**_PASSIVE, **_STICKS}, set_aside=(DRAGGED,)
+    ),
+    "fitted orders": _row(
+        refused={**_FAR_END, CONVERTER: "its ratio of speeds follows from numbers that are fitted"},
+        said={**_BY_PLACE, **_NO_ORDER},
+        inert={**_PASSIVE, **_STICKS},
+        set_aside=(DRAGGED,),
+    ),
     "settled temperatures": _row(
         refused={
             **_FAR_END,

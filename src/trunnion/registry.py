@@ -408,7 +408,7 @@ ANALYSES = (
     Analysis(
         "compare_measured",
         "Measured orders over what the line predicts, with a sentence on what differs.",
-        features="linear motion",
+        features="measured orders",
         pictures={
             "MeasuredComparison.plot": "trunnion.pictures.measured:comparison",
             "MeasuredComparison.plot_campbell": "trunnion.pictures.measured:on_campbell",
@@ -420,7 +420,7 @@ ANALYSES = (
     Analysis(
         "identify",
         "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
-        features="linear motion",
+        features="fitted orders",
         pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
         command="trunnion.cli.measured:identify",
     ),

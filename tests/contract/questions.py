@@ -121,6 +121,14 @@ def measured_orders(of_line_in_rpm: bool) -> tn.MeasuredOrders:
 
 
 @cache
+def measured_mesh_order() -> tn.MeasuredOrders:
+    """Order 25 of a bench with gears whose transmission error excites it."""
+    line = feature_lines.unbent(feature_lines.CHANGES["transmission error"][1](feature_lines.bent()))
+    run = tn.measure(line, (80.0, 110.0), 3.0, {"hub": 60}, gauges=["rear"], jitter=1e-8, pitch_error=0.0)
+    return tn.track_orders(run, [25], line=line)
+
+
+@cache
 def geared_in_rpm() -> tn.Driveline:
     elements = [
         tn.ConstantSpeed(),
@@ -201,7 +209,7 @@ QUESTIONS = {
     "identify": Question(
         lambda line: tn.identify(shaken(line), measured_orders(False), {"joint 2.angle": (0.1, 0.2)}),
         lambda: tn.identify(in_rpm(), measured_orders(True), {"tube.stiffness": (5e3, 2e4)}),
-        quick=("load torque", "dry friction"),
+        quick=("load torque", "dry friction", "transmission error", "torque converter"),
     ),
     "coupling_temperatures": Question(
         lambda line: tn.coupling_temperatures(heated(line), [90.0, 100.0]),
@@ -397,6 +405,17 @@ ASK_CELL = {
     ("minimum_damping", "drive share"): lambda line: tn.minimum_damping(
         line.replace("HookeJoint 2", angle=0.65), (108.0, 112.0), maximum=10.0, rows=3
     ),
+    # It excites the order of the mesh, from which an inertia can be known with it, and nothing without it.
+    ("identify", "transmission error"): lambda line: tn.identify(
+        feature_lines.unbent(line), measured_mesh_order(), {"hub.inertia": (0.05, 0.2)}
+    ),
+    # Gears make long periods of a line with joint angles; a straight one asks as much of them.
+    **{
+        ("identify", key): lambda line: tn.identify(
+            shaken(feature_lines.unbent(line)), measured_orders(False), {"rear.stiffness": (5e3, 2e4)}
+        )
+        for key in ("planetary set", "ratio", "gear mesh", "mesh damping", "mesh-stiffness variation", "belt")
+    },
     # A stiff mesh moves where its own mode is excited.
     ("sweep", "mesh damping"): lambda line: tn.sweep(line, [2700.0, 2800.0]),
     ("minimum_damping", "loss factor"): lambda line: least_damping(line, (140.0, 150.0), 0.6, maximum=4.0),

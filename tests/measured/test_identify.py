@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 import pytest
 from measured.benches import guess, part, random_line, recorded
@@ -158,6 +160,19 @@ def test_pickups_that_are_reversed_or_swapped_are_noticed() -> None:
     assert "are they swapped?" in said([first, made(hub, "out"), made(out, "hub")])
     assert "hub fits better with its sign changed" in said([first, made(hub, "hub", True), out])
     assert "?" not in said([first, hub, out])
+
+
+def test_what_no_number_explains_is_neither_known_nor_a_twin() -> None:
+    """Of a disk that the line does not say to be excited: every value fits as well, and the line found stays whole."""
+    disk = tn.Disk(inertia=0.3, name="hub")
+    line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=5, name="tube"), disk])
+    shaken = line.replace("hub", excitation=[{"order": 2, "amplitude": 5.0}])
+    run = tn.measure(shaken, (60.0, 90.0), 3.0, {"hub": 30}, jitter=1e-7, pitch_error=0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        found = tn.identify(line, tn.track_orders(run, [2], line=line), {"hub.inertia": (0.01, 90.0)})
+    assert found.unknown.tolist() == [True] and not found.twins and found.probability < 1e-6
+    assert 0.01 <= part(found.line, "hub").inertia <= 90.0
 
 
 @pytest.mark.slow

@@ -19,7 +19,9 @@ LOOKS, STARTS = 64, 5
 """Points looked at within the bounds, and descents from the best of them."""
 ROUNDS = 60
 SMALL, SETTLED = 1e-9, 1e-7
-"""Step, as a share of the ranges, and change of χ² at which a descent ends."""
+"""Step, as a share of the ranges, and change of χ², over what a number adds to it, at which a descent ends."""
+ROUGHLY = 1e-3
+"""The same change in the look around: where noise does not explain the misfit, descents creep."""
 TWIN = 1.0
 """Difference of χ² up to which another minimum cannot be told from the best."""
 APART = 0.02
@@ -50,7 +52,7 @@ def shares_of(misfit: Misfit, values: Array) -> Array:
     return np.asarray(np.clip((values - low) / (high - low), 0.0, 1.0))
 
 
-def descend(misfit: Misfit, share: Array, angle: float, held: Flags) -> FitPoint:
+def descend(misfit: Misfit, share: Array, angle: float, held: Flags, settled_by: float = SETTLED) -> FitPoint:
     """Levenberg and Marquardt's descent within the bounds; parameters ``held`` (free,) stay."""
     count, damping = len(misfit.free), 1e-3
     residual, slope = misfit.linear(values_at(misfit, share), angle, both=False)
@@ -84,7 +86,7 @@ def descend(misfit: Misfit, share: Array, angle: float, held: Flags) -> FitPoint
             return FitPoint(share, angle, best, True)
         gained, damping = best - value, max(damping / 10, 1e-9)
         share, angle, residual, slope, best = there, turned, found, steeper, value
-        if gained < SETTLED * max(1.0, 1e-6 * best):
+        if gained < settled_by * max(1.0, best / len(residual)):
             settled = True
             break
     return FitPoint(share, angle, best, settled)
@@ -110,7 +112,8 @@ def search(whole: Misfit, start: Array, seed: int) -> list[FitPoint]:
             low_cost[k] = float(residual @ residual)
     picked = [0, *(k for k in np.argsort(low_cost).tolist() if k)][: STARTS + 1]
     free = np.zeros(count, dtype=bool)
-    ends = sorted((descend(misfit, looks[k], float(angles[k]), free) for k in picked), key=lambda one: one.chi_square)
+    ends = [descend(misfit, looks[k], float(angles[k]), free, ROUGHLY) for k in picked]
+    ends.sort(key=lambda one: one.chi_square)
     found: list[FitPoint] = []
     for one in ends:
         far = all(np.abs(one.share - other.share).max() > APART for other in found)
@@ -120,8 +123,11 @@ def search(whole: Misfit, start: Array, seed: int) -> list[FitPoint]:
     return sorted(found, key=lambda one: one.chi_square)
 
 
-def twins_of(misfit: Misfit, minima: list[FitPoint]) -> list[FitPoint]:
-    """Others that fit as well as the best: found by the search, or by the best's mirror images and exchanges."""
+def twins_of(misfit: Misfit, minima: list[FitPoint], known: Flags) -> list[FitPoint]:
+    """Others that fit as well as the best: found by the search, or by the best's mirror images and exchanges.
+
+    known : parameters (free,) whose likelihood is not flat; twins differ in one of them.
+    """
     best = minima[0]
     free = np.zeros(len(misfit.free), dtype=bool)
     found: list[FitPoint] = []
@@ -131,7 +137,7 @@ def twins_of(misfit: Misfit, minima: list[FitPoint]) -> list[FitPoint]:
         if misfit.chi_square(predicted) < best.chi_square + 1e3:
             candidates.append(descend(misfit, share, misfit.angle(predicted), free))
     for one in candidates:
-        near = [np.abs(one.share - other.share).max() for other in (best, *found)]
+        near = [np.abs(one.share - other.share)[known].max(initial=0.0) for other in (best, *found)]
         if one.chi_square < best.chi_square + TWIN and min(near) > APART:
             found.append(one)
     return found

@@ -21,7 +21,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
-from trunnion.floquet.tolerance.parameter_intervals import table_at
+from trunnion.floquet.tolerance.parameter_intervals import ParameterInterval, table_at
 from trunnion.measured.identification.fitting import FitPoint, search, shares_of, twins_of, values_at
 from trunnion.measured.identification.knowable import knowable
 from trunnion.measured.identification.misfit import Misfit, misfit_of
@@ -118,14 +118,14 @@ def identify(
     advance(0.4)
     best, intervals, scale = _profiled(misfit, minima, freedom, lambda share: advance(0.4 + 0.4 * share))
     minima = [best, *minima]
-    twins = twins_of(misfit, minima)
+    twins = twins_of(misfit, minima, np.array([not (one.low_open and one.high_open) for one in intervals]))
     values = values_at(misfit, best.share)
     residual, slope = misfit.linear(values, best.angle)
     covariance = covariance_of(slope)[: len(values), : len(values)] * scale
     width = np.array([one.high - one.low for one in space.free])
     spread = np.sqrt(np.diag(covariance))
-    known = zip(values, spread * width, space.free, strict=True)
-    stated = np.array([_rounded(float(value), float(own), one.unit) for value, own, one in known])
+    known = zip(values, np.minimum(spread, 1.0) * width, space.free, strict=True)
+    stated = np.array([_rounded(float(value), float(own), one) for value, own, one in known])
     found = assembly.packed.line_at(table_at(assembly, space.free, stated[None])[0])
     advance(0.85)
     distance = _distance(found, misfit, values, covariance, tongue_at) if len(tongue_at) else None
@@ -207,15 +207,16 @@ def _profiled(
     )
 
 
-def _rounded(value: float, deviation: float, unit: str) -> float:
-    """A value [unit] without digits that nobody knows: to a hundredth of its standard deviation, in the unit that a
-    file states it in."""
-    kind = next((kind for kind in KINDS if kind.unit == unit), None)
+def _rounded(value: float, deviation: float, one: ParameterInterval) -> float:
+    """A value without digits that nobody knows: to a hundredth of its standard deviation, in the unit that a file
+    states it in; as it is where that would leave its bounds."""
+    kind = next((kind for kind in KINDS if kind.unit == one.unit), None)
     if kind is None or not (np.isfinite(deviation) and deviation > 0):
         return value
     symbol, size = eye_unit(value, kind)
     digits = round(value / size, int(2 - np.floor(np.log10(deviation / size))))
-    return digits if size == 1.0 else parse(f"{digits:.15g} {symbol}", kind)
+    rounded = digits if size == 1.0 else parse(f"{digits:.15g} {symbol}", kind)
+    return rounded if one.low <= rounded <= one.high else value
 
 
 def _by_channel(misfit: Misfit, residual: Array) -> Array:

@@ -22,6 +22,8 @@ FEW_STEPS, STEP_LEFT = 6, 1e-3
 """Steps by the slopes at the best, and what one more would take from χ² when they end."""
 PARABOLA = 0.1
 """Share by which χ² may rise otherwise than a parabola, to be taken for one."""
+NO_SLOPE = 1e-24
+"""What χ² rises by over a whole range in a direction that the data do not see at all."""
 
 
 @dataclass(frozen=True)
@@ -171,5 +173,5 @@ def covariance_of(slopes: Array) -> Array:
     """Covariance (unknown, unknown) of shares by Fisher's information; infinite directions are very large."""
     normal = slopes.T @ slopes
     values, vectors = np.linalg.eigh(normal)
-    floor = max(float(values.max(initial=0.0)), 1e-300) * 1e-14
+    floor = max(float(values.max(initial=0.0)) * 1e-14, NO_SLOPE)
     return np.asarray((vectors / np.maximum(values, floor)) @ vectors.T)
