@@ -104,13 +104,66 @@ def test_turns_behind_a_ratio():
             tn.Disk(inertia=1, load_torque=30.0),
         ]
     )
-    short = tn.kinetostatics(line)
+    short = tn.kinetostatics(line, turns=1)
     assert any("repeats after 3 turns" in f.sentence for f in short.findings)
-    whole = tn.kinetostatics(line, turns=3)
-    assert not whole.findings
+    whole = tn.kinetostatics(line)
+    assert not whole.findings and (whole.turns, whole.repeats_after) == (3, 3)
     assert whole.irregularity >= short.irregularity
     assert whole.power_residual < 1e-12
     assert whole.output_angle[-1] + whole.output_speed[-1] * 2 * np.pi / 720 == pytest.approx(4 * np.pi, abs=1e-3)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 10.0, -10.0, 7.5, 1000.0])
+def test_a_joint_behind_a_gear_is_as_uneven_as_in_front_of_it(ratio):
+    """U = tan β sin β wherever its plane lies, though a turn of the input is a part of a turn of the joint."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.Ratio(ratio=ratio),
+            tn.Disk(inertia=0.01, name="fork"),
+            tn.HookeJoint(angle=tn.deg(10), plane=tn.deg(60), name="joint"),
+            tn.Shaft(stiffness=1e4, damping=1.0),
+            tn.Disk(inertia=0.1),
+        ],
+        operation=tn.Operation(speed_range=(100.0, 200.0)),
+    )
+    uneven = np.tan(tn.deg(10)) * np.sin(tn.deg(10))
+    result = tn.kinetostatics(line)
+    assert result.irregularity == pytest.approx(uneven, rel=1e-5)
+    ends = [panel.items[0].x[-1] for panel in pictures.kinetostatics(result).panels]
+    assert ends == [360.0 * result.turns] * 2
+    if ratio == 10.0:
+        judged = tn.assess(line).check("uniformity")
+        assert judged.because.startswith("U = 0.03062 against")
+
+
+def test_joints_that_never_meet_again_are_all_turned():
+    """437 turns until both repeat are cut at 100: each joint has been everywhere, the two together nearly."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(),
+            tn.HookeJoint(angle=tn.deg(5)),
+            tn.Shaft(stiffness=1e4),
+            tn.Ratio(teeth_in=43, teeth_out=19),
+            tn.HookeJoint(angle=tn.deg(9)),
+            tn.Ratio(teeth_in=13, teeth_out=23),
+            tn.HookeJoint(angle=tn.deg(7)),
+            tn.Disk(inertia=0.1),
+        ]
+    )
+    result = tn.kinetostatics(line)
+    fast = np.prod([1 / np.cos(tn.deg(b)) for b in (5, 9, 7)])
+    slow = np.prod([np.cos(tn.deg(b)) for b in (5, 9, 7)])
+    low, high = result.speed_ratio
+    ratio = result.mean_ratio
+    assert result.turns < result.repeats_after and any("repeats after" in one.sentence for one in result.findings)
+    assert slow <= low / ratio < 1.0005 * slow and 0.9995 * fast < high / ratio <= fast
+
+
+def test_no_torque_draws_no_empty_panels():
+    assert len(pictures.kinetostatics(tn.kinetostatics(LINE)).panels) == 4
+    unloaded = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.HookeJoint(angle=0.1), tn.Disk(inertia=1)])
+    assert len(pictures.kinetostatics(tn.kinetostatics(unloaded)).panels) == 2
 
 
 def test_negative_ratio_turns_the_load_with_it():

@@ -79,7 +79,7 @@ def kinetostatics(
     limit: Annotated[float, NumberBounds(0.0)] = 0.0027,
     phase: bool = False,
     pitch: str | None = None,
-    turns: Annotated[int, NumberBounds(1)] = 1,
+    turns: Annotated[int | None, NumberBounds(1)] = None,
     points: Annotated[int, NumberBounds(8)] = 720,
     unit: SpeedUnit,
 ) -> CommandOutput:
@@ -95,7 +95,7 @@ def kinetostatics(
     --limit  Largest irregularity of the output that is allowed.
     --phase  Also find the best fork offsets.
     --pitch  Spline pitch for --phase, such as "10 deg".
-    --turns  Turns of the input.
+    --turns  Turns of the input; default: until the motion repeats, at most about 100.
     --points  Points per turn.
     """
     result = tn.kinetostatics(
@@ -125,7 +125,7 @@ def kinetostatics_json(result: Kinetostatics) -> dict[str, Any]:
     """The numbers of a turn in SI units; the curves themselves are in the files written."""
     slow, fast = result.speed_ratio
     return {
-        **output.record(result, "rigid inertia turns"),
+        **output.record(result, "rigid inertia turns repeats_after"),
         "driveline": result.line.name,
         "speed": result.input_speed,
         "points": len(result.input_angle),

@@ -17,7 +17,7 @@ from functools import cache
 from importlib.abc import MetaPathFinder
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from trunnion._version import __version__
 from trunnion.cli.ending import EndedBy
@@ -74,7 +74,8 @@ def table(rows: Sequence[Mapping[str, object]], title: str = "") -> None:
         heading(title)
     drawn = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for key, value in rows[0].items():
-        drawn.add_column(key, justify="right" if value is None or isinstance(value, int | float) else "left")
+        side: Literal["left", "right"] = "right" if value is None or isinstance(value, int | float) else "left"
+        drawn.add_column(key, justify=side, min_width=max(map(len, key.split())))  # no word of a head is cut
     for row in rows:
         drawn.add_row(*("" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()))
     _console().print(drawn)

@@ -24,24 +24,27 @@ TOGETHER = 3
 
 
 def kinetostatics(result: Kinetostatics, *, unit: str | None = None) -> Picture:
-    """Speeds, accelerations, torques and secondary couples over the input angle."""
+    """Speeds and accelerations over the input angle; torques and secondary couples below, where there are any."""
     names, ratio, acceleration, torque = _shafts(result)
     percent = 100 * (ratio - 1)
     factor, torque_unit = _scale(torque, "N m")
     alike = _alike(names, np.stack([percent, acceleration, torque], axis=1))
     geared = bool(np.any(np.abs(result.shaft_ratio) != 1))
-    referring = "torque referred to the drive" if geared else "torque passed on"
-    couple, couples = _couples(result)
     panels = [
         _panel(result, _curves(result, alike, percent), "speed about its mean", "%"),
         _panel(result, _curves(result, alike, acceleration), "angular acceleration", "rad/s²"),
-        _panel(result, _curves(result, alike, torque / factor), referring, torque_unit),
-        _panel(result, couples, couple.words, couple.unit),
     ]
     panels[0] = replace(panels[0], key="left", key_title=_key_title("shafts", alike))
-    up, title = panels[3].y, _key_title("forks", couples)
-    top = up.high if up.low is not None else None
-    panels[3] = replace(panels[3], y=replace(up, low=0.0, high=top), key="right", key_title=title)
+    if not (np.any(torque) or np.any(result.secondary_couple)):  # which the headline says: nothing to be drawn
+        return Picture(panels, 8.6, 4.2, 2, _title(result, unit), shared=True)
+    referring = "torque referred to the drive" if geared else "torque passed on"
+    couple, couples = _couples(result)
+    size = _panel(result, couples, couple.words, couple.unit)
+    top = size.y.high if size.y.low is not None else None
+    panels += [
+        _panel(result, _curves(result, alike, torque / factor), referring, torque_unit),
+        replace(size, y=replace(size.y, low=0.0, high=top), key="right", key_title=_key_title("forks", couples)),
+    ]
     return Picture(panels, 8.6, 7.2, 2, _title(result, unit), shared=True)
 
 
@@ -177,6 +180,8 @@ def _curves(result: Kinetostatics, alike: Sequence[tuple[str, int]], values: Arr
 def _over_turn(result: Kinetostatics, y: Array, role: str, name: str) -> Line:
     """A curve over degrees, with the end of the last turn put back, where it closes."""
     degrees = np.degrees(result.input_angle)
+    if result.turns % result.repeats_after:
+        return Line(degrees, y, role, name)
     return Line(np.append(degrees, 360.0 * result.turns), np.append(y, y[0]), role, name)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from math import lcm
+from math import ceil, lcm
 from typing import Any
 
 import numpy as np
@@ -122,6 +122,11 @@ class KinematicChain:
     def turns(self) -> int:
         """Fewest whole turns of the input after which every joint is back in phase (half a turn of its shaft)."""
         return lcm(*((order * abs(step.speed)).denominator for step in self.steps for order in step.orders))
+
+    @property
+    def turns_of_the_slowest(self) -> int:
+        """Fewest whole turns of the input after which every joint has been in all its phases."""
+        return ceil(max((1 / (order * abs(step.speed)) for step in self.steps for order in step.orders), default=1))
 
     def end_behind(self, name: str, key: str = "branch") -> int:
         """The end of the branch that the element ``name`` lies on.

@@ -97,6 +97,7 @@ class Kinetostatics(Result):
     input_acceleration: float = attribute("of the drive", "rad/s^2")
     branch: str = attribute("whose end is the output", name="output")
     turns: int = attribute("computed")
+    repeats_after: int = attribute("turns of the input after which the motion repeats")
     rigid: bool = attribute("whether shafts are")
     inertia: bool = attribute("whether inertia torques are included")
     end_ratio: Array = internal("mean speed over the input's", "1", "branch")

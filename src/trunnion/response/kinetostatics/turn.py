@@ -30,6 +30,8 @@ from trunnion.response.kinetostatics.supports import support_forces
 from trunnion.response.kinetostatics.torques import Torques, refuse_locking
 
 FEWEST_POINTS = 8
+MOST_TURNS = 100
+"""Turns of the input that are computed unless more are asked for, or a joint turns so slowly that it needs more."""
 
 
 def kinetostatics(
@@ -43,11 +45,13 @@ def kinetostatics(
     friction: CrossFriction | None = None,
     supports: Bearings | None = None,
     lengths: Mapping[str, float | str] | None = None,
-    turns: int = 1,
+    turns: int | None = None,
     points: int = 720,
     branch: str | None = None,
 ) -> Kinetostatics:
     """Motion, torques, secondary couples and support forces of ``line`` over a turn of its input.
+
+    Behind a ratio one turn of the input is less than the motion takes to repeat: by default all turns until it does.
 
     All branches are computed together: the shafts in front of a fork carry what its branches ask for.
 
@@ -65,7 +69,8 @@ def kinetostatics(
     friction : in the bearings of every cross.
     supports : (shaft, position, position) or (shaft, position) each [m]; see ``supports.support_forces``.
     lengths : joint-to-joint lengths [m] by shaft, where the shaft is not a tube of known length.
-    turns, points : turns of the input, and points per turn.
+    turns, points : turns of the input, by default those after which the motion repeats, at most 100
+        unless the slowest joint needs more; points per turn.
     branch : name of an element on the branch that "the output" is the end of; default the last of the line.
         ``result.on_branch(name)`` gives the same turn with the output of another.
 
@@ -79,7 +84,8 @@ def kinetostatics(
     drive_speed = quantity(speed, SPEED, "speed")
     if not drive_speed > 0:
         raise InputError("must be positive", key="speed", value=speed, remedy="write tn.rpm(1500), say")
-    _whole("turns", turns, 1)
+    if turns is not None:
+        _whole("turns", turns, 1)
     _whole("points", points, FEWEST_POINTS)
     if friction is not None and not isinstance(friction, CrossFriction):
         raise InputError(
@@ -95,6 +101,7 @@ def kinetostatics(
     train = chain(line, _lengths(line, lengths), branch, drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
+    turns = turns or min(train.turns, max(MOST_TURNS, train.turns_of_the_slowest))
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
     torque = _output_torques(train, output_torque)
     drive = Drive(input_angle, drive_speed, _acceleration(acceleration), torque, pin_moment, inertia)
@@ -119,6 +126,7 @@ def kinetostatics(
         input_speed=drive_speed,
         input_acceleration=drive.acceleration,
         turns=turns,
+        repeats_after=train.turns,
         rigid=rigid,
         inertia=inertia,
         branches=tuple(names[i] for i in train.ends),

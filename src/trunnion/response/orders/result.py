@@ -329,8 +329,8 @@ class OrderResponse(Result):
                     **self._largest("peak torque", self.peak_torque[:, s], words, ""),
                     **self._largest("vibratory torque", self.vibratory_torque[:, s], words, " "),
                     **rated,
-                    "largest order": name,
-                    "of it [N m]": size if vibrates else None,
+                    "largest order": name.removeprefix("order "),
+                    "its torque [N m]": size if vibrates else None,
                     f"at [{words.unit}]   ": speed * words.factor if vibrates else None,
                 }
             )
