@@ -1,4 +1,4 @@
-"""Sizes known before anything is allocated: what would not fit is refused with the number it would need."""
+"""Sizes and times known before anything is begun: what would not fit or not end is refused with its numbers."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from trunnion.errors import InputError
 
 MOST = 2 * 2**30
 """Bytes one result may take, working space included."""
+MOST_SECONDS = 3600.0
+"""Processor time beyond which nothing is begun."""
 
 
 def require_memory(needed: float, *, key: str, value: object, remedy: str, element: str = "") -> None:
@@ -18,6 +20,22 @@ def require_memory(needed: float, *, key: str, value: object, remedy: str, eleme
     if needed > MOST:
         problem = f"would need {size_text(needed)} of memory, at most {size_text(MOST)} is taken"
         raise InputError(problem, element=element, key=key, value=value, remedy=remedy)
+
+
+def require_estimate(size: int, what: str, seconds: float, memory: float, *, remedy: str) -> None:
+    """Refuse ``what`` of a driveline with ``size`` unknowns that would take more than ``MOST_SECONDS`` of processor
+    time, or more than ``MOST`` bytes.
+
+    Raises
+    ------
+    InputError : says how long it would take, how much memory, and the remedy.
+    """
+    if seconds > MOST_SECONDS or memory > MOST:
+        problem = (
+            f"has {size} unknowns: {what} would take about {seconds / 3600:.2g} h of processor time and "
+            f"{size_text(memory)} of memory"
+        )
+        raise InputError(problem, element="driveline", remedy=remedy)
 
 
 def size_text(size: float) -> str:

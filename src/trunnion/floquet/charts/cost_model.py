@@ -43,8 +43,6 @@ def without_groups(size: int, pixels: int, mean_phase: float, longest_phase: flo
 
 NODES_OF_MATRICES, STAGES = 2000, 4.0
 """Matrices of the period that a chart of a long line is made of, at most; what each costs more with meshes or loads."""
-MOST_SECONDS = 3600.0
-"""Processor time of a chart of a long line, beyond which it is not begun."""
 
 
 def long_chart_seconds(size: int, pixels: int, phase: float, stages: bool) -> float:

@@ -37,7 +37,6 @@ from trunnion.floquet.charts.building import BuiltChart, build, decide, family_f
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.charts.chart_pixels import judge, multipliers_of, tells_all
 from trunnion.floquet.charts.cost_model import (
-    MOST_SECONDS,
     compiling_pays,
     instead_of_compiling,
     long_chart_bytes,
@@ -45,7 +44,7 @@ from trunnion.floquet.charts.cost_model import (
 )
 from trunnion.floquet.charts.numpy_chart import MOST_FIRST, NumpyAxisTest, build_with_numpy
 from trunnion.floquet.charts.user_families import StoredPatches, UserFamily
-from trunnion.numerics.memory import MOST, size_text
+from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.patches.patches import PatchedFunction
 from trunnion.numerics.workers import shared_with, workers_of_client
 from trunnion.results.chart import ChartPoint, StabilityChart, is_log, require_pixels
@@ -361,14 +360,8 @@ def _refuse_too_long(family: LineFamily) -> None:
         return
     ends = family.x.values[[0, 0, -1, -1]], family.y.values[[0, -1, 0, -1]]
     seconds = long_chart_seconds(size, pixels, family.phase(*ends), family.needs_stages)
-    memory = long_chart_bytes(size, pixels)
-    if seconds > MOST_SECONDS or memory > MOST:
-        raise InputError(
-            f"has {size} unknowns: a chart of {pixels} points would take about {seconds / 3600:.2g} h of processor "
-            f"time and {size_text(memory)} of memory",
-            element="driveline",
-            remedy="ask for fewer points, join neighbouring parts, or ask stability() at single speeds",
-        )
+    remedy = "ask for fewer points, join neighbouring parts, or ask stability() at single speeds"
+    require_estimate(size, f"a chart of {pixels} points", seconds, long_chart_bytes(size, pixels), remedy=remedy)
 
 
 def _idle(family: ChartFamily, x: ChartAxis, y: ChartAxis, what: str, numpy_only: bool = False) -> list[str]:

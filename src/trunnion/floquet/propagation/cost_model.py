@@ -13,11 +13,8 @@ import numpy as np
 
 from trunnion.equations.aligned import UnitMasses
 from trunnion.equations.coefficients import Assembly
-from trunnion.errors import InputError
-from trunnion.numerics.memory import MOST, size_text
+from trunnion.numerics.memory import require_estimate
 
-MOST_SECONDS = 3600.0
-"""Processor time beyond which nothing is begun."""
 SHORT = 150
 """Unknowns up to which no line is refused."""
 
@@ -57,10 +54,4 @@ def require_time(assembly: Assembly, speed: float, cost: Callable[[int, float], 
     stiffness = UnitMasses(assembly.aligned.inertia[0]).of_matrix(assembly.aligned.stiffness[0])
     # No mode is faster than the largest sum of a row.
     seconds = cost(size, 2 * np.pi * float(np.sqrt(np.abs(stiffness).sum(axis=1).max())) / speed)
-    if seconds > MOST_SECONDS or memory > MOST:
-        raise InputError(
-            f"has {size} unknowns: {what} would take about {seconds / 3600:.2g} h of processor time and "
-            f"{size_text(memory)} of memory",
-            element="driveline",
-            remedy="join neighbouring parts",
-        )
+    require_estimate(size, what, seconds, memory, remedy="join neighbouring parts")

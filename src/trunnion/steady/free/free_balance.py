@@ -24,13 +24,11 @@ from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.equations.steady_base import refuse_dragged
-from trunnion.errors import InputError
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
-from trunnion.numerics.memory import MOST as MOST_BYTES
-from trunnion.numerics.memory import size_text
+from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.threads import on_one_thread
 from trunnion.results.counts import counted
 
@@ -40,9 +38,8 @@ CLOSED = 1e-7
 """Correction, in units of ``ANGLE_SCALE``, at which a motion is found."""
 NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
-CORRECTIONS = 8
-MOST_SECONDS, MATRICES = 3600.0, 4
-"""Processor time beyond which balances are not begun, and matrices of all unknowns that one takes."""
+CORRECTIONS, MATRICES = 8, 4
+"""Newton's steps, and matrices of all unknowns that one takes."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -210,13 +207,8 @@ class FreeBalance:
         size = len(self.turn)
         unknowns = size * (2 * h + 1) + 1
         seconds, memory = many * (1.5e-9 * unknowns**3 + 3e-7 * unknowns**2), MATRICES * 8.0 * unknowns**2
-        if seconds > MOST_SECONDS or memory > MOST_BYTES:
-            raise InputError(
-                f"has {size} unknowns: its own periodic motion in {h} harmonics at {counted(many, 'point')} would take "
-                f"about {seconds / 3600:.2g} h of processor time and {size_text(memory)} of memory",
-                element="driveline",
-                remedy="ask for fewer points, or join neighbouring parts",
-            )
+        what = f"its own periodic motion in {h} harmonics at {counted(many, 'point')}"
+        require_estimate(size, what, seconds, memory, remedy="ask for fewer points, or join neighbouring parts")
 
     def _batch(self, value: Array, h: int, guess: Array | None) -> SteadyStates:
         table = self.rows(value)
