@@ -163,21 +163,23 @@ def test_analyze_names_the_unstable_band_of_the_catalogue(run):
     assert "No operating speed is given" in result.stdout
 
 
-def test_catalogue(run):
+def test_catalogue(run, here):
     assert "two-shaft-cardan" in run("catalogue").stdout
     assert len(parsed(run("catalogue", "--json"))["entries"]) >= 2
     text = run("catalogue", "two-shaft-cardan").stdout
     assert tn.loads(text) == tn.catalogue("two-shaft-cardan")
     assert parsed(run("catalogue", "two-shaft-cardan", "--json"))["toml"] in text
+    assert "wrote kept.toml" in run("catalogue", "two-shaft-cardan", "-o", "kept.toml").stdout
+    assert (here / "kept.toml").read_text(encoding="utf-8") == text
 
 
 def test_new_writes_a_file_that_analyses(run, here):
     assert "two-shaft" in run("new").stdout
     assert run("new", "two-shaft").exit_code == 0
-    assert parsed(run("new", "truck", "my.toml", "--json"))["written"] == "my.toml"
+    assert parsed(run("new", "truck", "-o", "my.toml", "--json"))["written"] == "my.toml"
     assert run("natural-frequencies", "my.toml").exit_code == 0
     (here / "my.toml").write_text("old")
-    assert run("new", "truck", "my.toml", "--force").exit_code == 0
+    assert run("new", "truck", "-o", "my.toml", "--force").exit_code == 0
     assert tn.load("my.toml").name == "light truck, one-piece propeller shaft"
 
 

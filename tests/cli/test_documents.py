@@ -58,7 +58,7 @@ def test_the_commands_of_orders_run(run, command):
 
 
 def test_the_first_driveline_is_the_starter(run):
-    run("new", "two-shaft", "my-line.toml")
+    run("new", "two-shaft", "-o", "my-line.toml")
     (shown,) = blocks(FIRST, "toml")
     assert tomllib.loads(shown)["format"] == 1
     assert tn.loads(shown) == tn.load("my-line.toml")
@@ -67,7 +67,7 @@ def test_the_first_driveline_is_the_starter(run):
 @pytest.mark.slow
 def test_the_findings_shown_are_those_of_the_starter(run, monkeypatch):
     monkeypatch.setenv("COLUMNS", "110")
-    run("new", "two-shaft", "my-line.toml")
+    run("new", "two-shaft", "-o", "my-line.toml")
     printed = run("analyze", "my-line.toml").stdout
     (shown,) = blocks(FIRST, "text")
     assert [line.rstrip() for line in shown.splitlines()] == [

@@ -74,9 +74,9 @@ OPTIONS: dict[str, dict[str, list[str]]] = {
     "certify-chaos": {**SPEED, **OUTPUT, **MOTION, **SECTION, **CHAOS,
                       "--sweep": ["damping:0:1:3", "x:1:2:1e9", "x", ":::", "forcing:1:2:99999999"]},
     "reproduce": OUTPUT,
-    "catalogue": {"--json": []},
+    "catalogue": OUTPUT,
     "schema": {"--json": []},
-    "new": {"--force": [], "--json": []},
+    "new": {**OUTPUT, "--force": []},
 }  # fmt: skip
 COMMANDS = [name for name, options in OPTIONS.items() for _ in range(1 + len(options))]
 

@@ -18,7 +18,7 @@ import trunnion
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="forks, and mounts file systems as Linux does")
 TO = "-o out/r.nc -o out/r.png"
 COMMANDS = [
-    "new two-shaft other.toml --force",
+    "new two-shaft -o other.toml --force",
     f"simulate line.toml --turns 2 {TO} -o out/r.csv",
     f"kinetostatics line.toml --points 24 {TO} -o out/r.csv",
     f"stability-chart line.toml --points 12x6 {TO} -o out/r.csv",

@@ -14,15 +14,22 @@ from trunnion.cli.readers import read_line
 from trunnion.cli.typed import Json
 from trunnion.errors import InputError
 
+Output = Annotated[
+    Path | None, typer.Option("--output", "-o", metavar="PATH", help="Driveline file to write; default: print it.")
+]
+
 
 def catalogue(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Print this driveline as TOML.")] = None,
+    output: Output = None,
     as_json: Json = False,
 ) -> None:
-    """List the published drivelines, or print one as a file to start from."""
+    """List the published drivelines, or print or write one as a file to start from."""
     from trunnion.papers.entries import entries
 
     if name is None:
+        if output is not None:
+            raise InputError("belongs to one driveline", key="--output", value=str(output), remedy="name it before")
         rows = [{"name": e.name, "title": e.title, "source": e.source} for e in entries()]
         if as_json:
             write_json("catalogue", {"entries": rows})
@@ -30,12 +37,12 @@ def catalogue(
             table(rows)
         return
     found = tn.catalogue(name)
+    if output is not None and not isinstance(found, tn.Driveline):
+        raise InputError("is not a driveline", key="catalogue", value=name, remedy="leave --output out; it is printed")
     text = tn.dumps(found) if isinstance(found, tn.Driveline) else f"{found}\n"
     entry = next(e for e in entries() if e.name == name)
-    if as_json:
-        write_json("catalogue", {"name": name, "title": entry.title, "source": entry.source, "toml": text})
-    else:
-        typer.echo(f"# {entry.title}\n# {entry.source}\n\n{text}", nl=False)
+    content = {"name": name, "title": entry.title, "source": entry.source, "toml": text}
+    _give("catalogue", f"# {entry.title}\n# {entry.source}\n\n{text}", content, output, as_json)
 
 
 def components(
@@ -79,7 +86,9 @@ def new(
     starter: Annotated[
         str | None, typer.Argument(metavar="[STARTER]", help="Starter to write; without one, list them.")
     ] = None,
-    path: Annotated[Path | None, typer.Argument(help="File to write; default: STARTER.toml here.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", metavar="PATH", help="File to write; default: STARTER.toml here.")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
     as_json: Json = False,
 ) -> None:
@@ -95,20 +104,20 @@ def new(
             table(rows)
         return
     text = starter_text(starter)
-    target = path or Path(f"{starter}.toml")
-    _write_new(target, text, force)
+    target = output or Path(f"{starter}.toml")
+    if target.exists() and not target.is_dir() and not force:
+        remedy = "choose another name, or replace it with --force"
+        raise InputError("exists already", key="--output", value=str(target), remedy=remedy)
+    _write(target, text)
     if as_json:
         write_json("new", {"written": str(target)})
     else:
         typer.echo(f"wrote {target}; look at it with: trunnion analyze {target}")
 
 
-def _write_new(target: Path, text: str, force: bool) -> None:
+def _write(target: Path, text: str) -> None:
     from trunnion.writing import written_whole
 
-    if target.exists() and not target.is_dir() and not force:
-        remedy = "choose another name, or replace it with --force"
-        raise InputError("exists already", key="output", value=str(target), remedy=remedy)
     with written_whole(target) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
@@ -136,22 +145,24 @@ def export(
 
 def import_(
     file: Annotated[str, typer.Argument(metavar="FILE", help="File that trunnion export wrote: .csv, .py or .mo.")],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Driveline file to write; default: print it.")
-    ] = None,
+    output: Output = None,
     as_json: Json = False,
 ) -> None:
     """Read a line from a table, a script for openTorsion or a Modelica model, as a driveline file."""
-    line = tn.import_line(file)
+    text = tn.dumps(tn.import_line(file))
+    _give("import", text, {"toml": text}, output, as_json)
+
+
+def _give(command: str, text: str, content: dict[str, object], output: Path | None, as_json: bool) -> None:
+    """A driveline file in ``output``, printed where none is asked for."""
     if output is not None:
         if output.suffix != ".toml":
-            raise InputError("does not end in .toml", key="output", value=str(output), remedy="a driveline file does")
-        tn.dump(line, output)
+            raise InputError("does not end in .toml", key="--output", value=str(output), remedy="a driveline file does")
+        _write(output, text)
     if as_json:
-        written = {} if output is None else {"written": str(output)}
-        write_json("import", {**written, "toml": tn.dumps(line)})
+        write_json(command, content if output is None else {"written": str(output), **content})
     elif output is None:
-        typer.echo(tn.dumps(line), nl=False)
+        typer.echo(text, nl=False)
     else:
         typer.echo(f"wrote {output}; look at it with: trunnion analyze {output}")
 

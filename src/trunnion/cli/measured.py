@@ -146,7 +146,7 @@ def compare_measured(
     --window  Turns of one window.
     --channel  Channel that is drawn; default: the first that moves.
     --over  What the picture lays the orders over: "response" (default), "campbell" or "run-up".
-    --report FILE  Writes the report on the line, NAME.html, with a section on what was measured.
+    --report PATH  Writes the report on the line, NAME.html, with a section on what was measured.
     """
     if over not in OVER:
         raise InputError("is not a picture", key="--over", value=over, remedy=nearest(over, list(OVER)))
@@ -215,7 +215,7 @@ def identify(
     --window  Turns of one window.
     --tongue-at SPEED,…  Input speeds at which to give the distance from the nearest instability.
     --draws STEPS  Where a likelihood is not Gaussian, steps of an ensemble that draws from it, 400 say.
-    --write FILE  Write the driveline with the values found.
+    --write PATH  Write the driveline with the values found.
     --channel  Channel that is drawn; default: the first that moves.
     """
     if not free:

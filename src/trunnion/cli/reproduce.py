@@ -23,7 +23,7 @@ def reproduce(
     ],
     folder: Annotated[
         Path | None,
-        typer.Option("--output", "-o", metavar="DIR", help="Folder for pictures and page; default: NAME."),
+        typer.Option("--output", "-o", metavar="PATH", help="Folder for pictures and page; default: NAME."),
     ] = None,
     as_json: Json = False,
 ) -> None:
