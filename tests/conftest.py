@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import gc
+import json
 import os
+import re
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -144,8 +146,41 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def run(here: Path) -> Run:
-    """The command in this process."""
-    return lambda *args: CliRunner().invoke(app, [str(a) for a in args])
+    """The command in this process; what it prints has "N m" as its unit, but where it gives a file's own text."""
+
+    def invoked(*args: object) -> Result:
+        words = [str(arg) for arg in args]
+        result = CliRunner().invoke(app, words)
+        if result.exit_code == 0 and words[:1] and words[0] not in PRINT_FILES:
+            starred = [text for text in said(result, "--json" in words) if STAR.search(QUOTED.sub("", text))]
+            assert not starred, starred
+        return result
+
+    return invoked
+
+
+PRINT_FILES = ("catalogue", "components", "import", "schema")
+STAR = re.compile(r"\b[kM]?N\*m|kg\*m\^2|rad/s\^2")
+QUOTED = re.compile(r"\"(\\.|[^\"\\])*\"|'[^'\n]*'")
+"""Texts of the file, which remarks quote; errors say what to write in it."""
+
+
+def said(result: Result, as_json: bool) -> Iterator[str]:
+    """Keys and texts of JSON, units as files have them aside; otherwise all that is printed."""
+    yield result.stderr
+    if not (as_json and result.stdout.startswith("{")):
+        yield result.stdout
+        return
+    waiting = [json.loads(result.stdout)]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, dict):
+            yield from one
+            waiting += [value for key, value in one.items() if not key.endswith(("unit", "units", "toml"))]
+        elif isinstance(one, list):
+            waiting += one
+        elif isinstance(one, str):
+            yield one
 
 
 @pytest.fixture

@@ -42,8 +42,8 @@ def test_the_sheet_stands_beside_what_was_typed_and_what_the_line_has() -> None:
     typed = tn.component(COMPONENT).sheet
     assert typed is not None and sheet["printed"] == typed.printed
     made = {key: (before, now, differs) for key, before, now, differs in sheet["made"]}
-    assert made["stiffness"] == ("80 kN*m/rad", "80 kN*m/rad", "")
-    assert made["nominal torque"] == ("16 kN*m", "12 kN*m", "differs")
+    assert made["stiffness"] == ("80 kN m/rad", "80 kN m/rad", "")
+    assert made["nominal torque"] == ("16 kN m", "12 kN m", "differs")
     assert made["heat rating"] == ("450 W", "left out", "differs")
     assert [row[1] for row in found["rows"]] == list(document.line.names)
 
@@ -71,7 +71,7 @@ def test_in_the_browser_a_part_is_made_of_a_component(look: Look) -> None:
     page.get_by_role("button", name="Make the part of it", exact=True).click()
     sheet = page.get_by_role("region", name=f"Coupling 1: {COMPONENT}")
     sheet.wait_for()
-    assert sheet.get_by_text("80 kN*m/rad").count() == 2  # as typed, and in the line
+    assert sheet.get_by_text("80 kN m/rad").count() == 2  # as typed, and in the line
     page.get_by_text("rating: heat rating of Coupling 1", exact=True).wait_for()
     look.view("Driveline")
     page.get_by_role("button", name="Undo", exact=True).first.click()

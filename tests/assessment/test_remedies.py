@@ -96,7 +96,7 @@ def test_a_sentence_says_what_moves_where_and_what_is_left(found):
     first = found.of("max torque of shaft")[0]
     factor = first.after / first.before
     assert first.sentence.startswith(
-        "shaft stiffer by 5.3 % (10.53 kN*m/rad) moves order 2 on mode 2 from 124.96 rad/s to "
+        "shaft stiffer by 5.3 % (10.53 kN m/rad) moves order 2 on mode 2 from 124.96 rad/s to "
     )
     there = float(first.sentence.split(" to ")[1].split()[0])
     reduced = J1 * J2 / (J1 + J2)  # the damped mode: ω_d² = k/μ − (c/2μ)²

@@ -240,7 +240,7 @@ def test_numbers_stand_beside_each_other_in_one_unit():
     line = tn.Driveline(parts, limits=[tn.Limit(of="shaft", max_stress="120 MPa", max_torque="20 kN*m")])
     found = tn.assess(line, (50.0, 50.0))
     assert "MPa against 120 MPa at" in found.check("max stress of shaft").because
-    assert "N*m against 20000 N*m at" in found.check("max torque of shaft").because.replace("2e+04", "20000")
+    assert "N m against 20000 N m at" in found.check("max torque of shaft").because.replace("2e+04", "20000")
     assert "times the least" in str(found.table("rpm"))  # of separation, which must be reached
 
 
@@ -253,7 +253,7 @@ def test_joints_that_cancel_leave_nothing():
     ]  # fmt: skip
     found = tn.assess(tn.Driveline(parts), (100.0, 100.0))
     assert found.check("uniformity").because.startswith("U = 0 against 0.0027, as one joint of 0 deg")
-    assert found.check("acceleration behind the joints").because.startswith("0 rad/s^2 against 300 rad/s^2")
+    assert found.check("acceleration behind the joints").because.startswith("0 rad/s² against 300 rad/s²")
 
 
 def test_the_mean_twist_of_a_soft_coupling_is_no_swing_of_a_joint():

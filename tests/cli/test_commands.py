@@ -127,7 +127,7 @@ def test_analyze_prints_and_writes(run, here, mild):
     others = ("test line", "Resonance speeds from 600 rpm to 2400 rpm", "One turn of the joints")
     for part in (*others, *sections):
         assert part in result.stdout
-    assert "rad/s" not in result.stdout.replace("rad/s^2", "")  # accelerations are in no unit of speed
+    assert "rad/s" not in result.stdout.replace("rad/s²", "")  # accelerations are in no unit of speed
     written = sorted(p.name for p in (here / "trunnion-out").iterdir())
     assert written == ["line-report.html", "line-stability-chart.nc", "line-stability-chart.png"]
     page = (here / "trunnion-out" / "line-report.html").read_text(encoding="utf-8")

@@ -62,7 +62,7 @@ def test_a_file_with_several_mistakes_has_a_line_for_each(run, here):
     assert len(lines) == 3 and all(line.startswith("error: bad.toml: ") for line in lines)
 
 
-@pytest.mark.parametrize("command", [("analyze",), ("stability-chart", "line.toml", "-o"), ("new", "truck")])
+@pytest.mark.parametrize("command", [("analyze",), ("stability-chart", "line.toml", "-o"), ("new", "truck", "-o")])
 def test_a_name_too_long_is_refused(run, here, command):
     result = run(*command, "x" * 300 + (".toml" if command[0] != "stability-chart" else ".png"))
     assert result.exit_code == 2, result.stderr

@@ -322,25 +322,25 @@ def test_a_line_introduces_itself():
     assert str(line).splitlines() == [
         "Driveline 'everything' of 9 elements",
         "  drive         ConstantSpeed",
-        "  Shaft 1       stiffness 12 kN*m/rad, damping 3 N*m*s/rad, fork offset 90 deg",
-        "  Shaft 2       tube 110 mm with bore 100 mm, 1.3 m long, 277.9 kN*m/rad, 0.0465 kg*m^2, "
+        "  Shaft 1       stiffness 12 kN m/rad, damping 3 N m s/rad, fork offset 90 deg",
+        "  Shaft 2       tube 110 mm with bore 100 mm, 1.3 m long, 277.9 kN m/rad, 0.0465 kg m², "
         "loss factor 0.02 at 50 Hz",
-        "  Disk 1        inertia 0.4 kg*m^2, load torque 250 N*m",
-        "  Disk 2        after drive, disk 300 mm, 20 mm long, 0.1248 kg*m^2",
+        "  Disk 1        inertia 0.4 kg m², load torque 250 N m",
+        "  Disk 2        after drive, disk 300 mm, 20 mm long, 0.1248 kg m²",
         "  HookeJoint 1  angle 12 deg, plane 15 deg",
         "  IdealJoint 1",
         "  Ratio 1       ratio -4.1",
         "  Ratio 2       teeth in 10, teeth out 41",
     ]
     assert str(Driveline([ConstantSpeed(), *PARTS])).splitlines()[2:] == [
-        "  Shaft 1          tube 76 mm with bore 72 mm, 1.4 m long, 36.08 kN*m/rad, 0.007001 kg*m^2, loss factor 0.02, "
+        "  Shaft 1          tube 76 mm with bore 72 mm, 1.4 m long, 36.08 kN m/rad, 0.007001 kg m², loss factor 0.02, "
         "material C45",
-        "  Coupling 1       stiffness 35 kN*m/rad, relative damping 1.13, nominal torque 5000 N*m, heat rating 350 W",
-        "  Disk 1           269.5 kg*m^2, mass 2200 kg, radius 350 mm",
-        "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg*m^2, material steel",
+        "  Coupling 1       stiffness 35 kN m/rad, relative damping 1.13, nominal torque 5000 N m, heat rating 350 W",
+        "  Disk 1           269.5 kg m², mass 2200 kg, radius 350 mm",
+        "  Disk 2           disk 300 mm, 20 mm long, 0.1248 kg m², material steel",
         "  Planetary 1      teeth sun 30, teeth ring 72, input sun, held ring, planet mass 0.8 kg, "
         "centre distance 80 mm",
-        "  Differential 1   teeth in 10, teeth out 41, inertia 0.05 kg*m^2",
+        "  Differential 1   teeth in 10, teeth out 41, inertia 0.05 kg m²",
     ]
 
 

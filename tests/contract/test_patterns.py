@@ -76,7 +76,7 @@ def test_designs_and_derivatives_take_each_by_itself() -> None:
     assert designs.free == names
 
 
-UNLIKE = "would make unlike numbers one (half shaft left.stiffness 10000 and half shaft right.stiffness 30000 N*m/rad)"
+UNLIKE = "would make unlike numbers one (half shaft left.stiffness 10000 and half shaft right.stiffness 30000 N m/rad)"
 BOX = ("half shaft *.stiffness", 1e4, 2e4)
 ABSOLUTE = {
     "chart": lambda one: tn.stability_chart(one, ("speed", 100, 200, 3), (*BOX, 3)),

@@ -123,11 +123,11 @@ SHOWN = [
     (q.rpm(1500), q.SPEED, None, "1500 rpm"),
     (q.hz(50), q.SPEED, "Hz", "50 Hz"),
     (3.0, q.SPEED, "rad/s", "3 rad/s"),
-    (11100.0, q.STIFFNESS, None, "11.1 kN*m/rad"),
-    (140.0, q.STIFFNESS, None, "140 N*m/rad"),
-    (95e6, q.STIFFNESS, None, "95 MN*m/rad"),
+    (11100.0, q.STIFFNESS, None, "11.1 kN m/rad"),
+    (140.0, q.STIFFNESS, None, "140 N m/rad"),
+    (95e6, q.STIFFNESS, None, "95 MN m/rad"),
     (0.076, q.LENGTH, None, "76 mm"),
-    (0.4, q.INERTIA, None, "0.4 kg*m^2"),
+    (0.4, q.INERTIA, None, "0.4 kg m²"),
     (0.02, q.RATIO, None, "0.02"),
 ]
 

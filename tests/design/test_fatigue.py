@@ -176,7 +176,7 @@ def test_what_cannot_be_counted_leaves_no_life() -> None:
     check = tn.assess(undamped, (99.0, 101.0)).check("fatigue of shaft")
     assert str(check.status) == "not judged" and "no steady state" in check.because
     heavy = tn.fatigue(line(ultimate_torque=1000.0), [tn.LoadHistory({"shaft": [0.0, 1100.0, 0.0]}, per_hour=1)])
-    assert heavy.findings[0].sentence == "shaft reaches what breaks it at once: 1100 N*m against 1000 N*m."
+    assert heavy.findings[0].sentence == "shaft reaches what breaks it at once: 1100 N m against 1000 N m."
 
 
 def test_assess_judges_the_life_that_is_stated() -> None:

@@ -32,7 +32,7 @@ def test_examples_run_in_order() -> None:
     assert "measurement of 3 channels" in text and "pitch errors of 2 wheels" in text
     fitted = names["fitted"]
     assert np.all((fitted.low < [2e4, np.deg2rad(12)]) & (fitted.high > [2e4, np.deg2rad(12)]))
-    assert "its peak comes" in text and "tube, stiffness: 17 kN*m/rad →" in text
+    assert "its peak comes" in text and "tube, stiffness: 17 kN m/rad →" in text
     found, line = names["found"], names["line"]
     truth = tn.order_response(line, found.speed)
     orders = np.round(truth.order, 9).tolist()

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.driveline.quantities import shown
+from trunnion.driveline.quantities import QuantityKind, shown, signs
 from trunnion.errors import ComputationError
 from trunnion.measured.signals.sources import opened
 from trunnion.pictures import design, kinetostatics, orders
@@ -126,15 +126,21 @@ def _sheet(name: str, element: Any) -> Plain:
     sheet, departures = element.sheet, element.departures
     stated = element.stated
     made = [
-        (key.replace("_", " "), _typed(typed), _now(element, key, stated), "differs" if key in departures else "")
+        (
+            key.replace("_", " "),
+            _typed(typed, element.quantity_of(key)),
+            _now(element, key, stated),
+            "differs" if key in departures else "",
+        )
         for key, typed in sheet.numbers.items()
     ]
     title, note = f"{name}: {sheet.component}", sheet.note or ""
     return {"title": title, "source": sheet.words, "note": note, "printed": dict(sheet.printed), "made": made}
 
 
-def _typed(value: object) -> str:
-    return ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+def _typed(value: object, kind: QuantityKind | None) -> str:
+    text = ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+    return signs(text) if kind else text
 
 
 def _now(element: Any, key: str, stated: Plain) -> str:

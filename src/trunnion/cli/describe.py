@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -153,7 +153,7 @@ def import_(
     _give("import", text, {"toml": text}, output, as_json)
 
 
-def _give(command: str, text: str, content: dict[str, object], output: Path | None, as_json: bool) -> None:
+def _give(command: str, text: str, content: dict[str, Any], output: Path | None, as_json: bool) -> None:
     """A driveline file in ``output``, printed where none is asked for."""
     if output is not None:
         if output.suffix != ".toml":

@@ -361,7 +361,7 @@ class FrictionTorque(Record):
                 )
                 raise InputError("must not be negative", key=key, value=getattr(self, key), remedy=remedy)
         if self.static is not None and self.static < self.torque:
-            remedy = f"write {self.torque:g} N*m or more, or leave it out"
+            remedy = f"write {self.torque:g} N m or more, or leave it out"
             raise InputError("is less than in motion", key="static", value=self.static, remedy=remedy)
         return self
 

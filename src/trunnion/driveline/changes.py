@@ -12,7 +12,7 @@ from trunnion.driveline.files import dumps
 from trunnion.driveline.kinds import KINDS
 from trunnion.driveline.limits import LIMIT_KINDS
 from trunnion.driveline.operation import Operation
-from trunnion.driveline.quantities import shown
+from trunnion.driveline.quantities import QuantityKind, shown, signs
 
 NOTHING = "none"
 WHOLE = ""
@@ -71,11 +71,11 @@ def _tables(line: Driveline) -> dict[str, dict[str, str]]:
     data = tomllib.loads(dumps(line))
     found: dict[str, dict[str, str]] = {WHOLE: {}}
     for name, table in zip(line.names, data.pop("element"), strict=True):
-        found[name] = {label_of(k): text_of(v, _kind(table, k)) for k, v in table.items() if k != "name"}
+        found[name] = {label_of(k): _read(v, _kind(table, k)) for k, v in table.items() if k != "name"}
     found["operation"] = {label_of(k): _running(k, v) for k, v in data.pop("operation", {}).items()}
     for table in data.pop("limit", []):
         own = found.setdefault(f"limit of {table['of']}", {})
-        own |= {label_of(k): text_of(v, LIMIT_KINDS.get(k)) for k, v in table.items() if k != "of"}
+        own |= {label_of(k): _read(v, LIMIT_KINDS.get(k)) for k, v in table.items() if k != "of"}
     found[WHOLE] = {label_of(key): text_of(value, None) for key, value in data.items() if key != "format"}
     return found
 
@@ -95,7 +95,12 @@ def _running(key: str, value: Any) -> str:
     """A value of the operation; numbers without a unit get theirs."""
     kind = Operation.quantity_of(key) if key in Operation.model_fields else None
     numbers = isinstance(value, list) and not any(isinstance(end, str) for end in value)
-    return f"{text_of(value, None)} {kind.unit}" if kind and numbers else text_of(value, kind)
+    return f"{text_of(value, None)} {signs(kind.unit)}" if kind and numbers else _read(value, kind)
+
+
+def _read(value: Any, kind: QuantityKind | None) -> str:
+    """A value as a reader says it; what is no quantity, as the file does."""
+    return text_of(value, None) if kind is None else signs(text_of(value, kind))
 
 
 def _kind(table: dict[str, Any], key: str) -> Any:

@@ -37,6 +37,7 @@ from trunnion.driveline.elements import Element
 from trunnion.driveline.packed_numbers import SPEED as SPEED
 from trunnion.driveline.packed_numbers import UNITS as UNITS
 from trunnion.driveline.patterns import names
+from trunnion.driveline.quantities import signs
 from trunnion.errors import InputError, InputRemark
 
 
@@ -159,7 +160,7 @@ class PackedLine:
         first, last = columns.index[numbers.argmin()], columns.index[numbers.argmax()]
         differ = " and ".join(f"{self.labels[c]} {self.values[c]:.6g}" for c in (first, last))
         remedy = f'vary the "factor of {path}", from 0.5 to 2, say, or one of them'
-        raise InputError(f"would make unlike numbers one ({differ} {columns.unit})", key=path, remedy=remedy)
+        raise InputError(f"would make unlike numbers one ({differ} {signs(columns.unit)})", key=path, remedy=remedy)
 
     def each(self, path: str) -> tuple[str, ...]:
         """The numbers of a path one by one; a path that has no pattern, or is a factor, as it is."""

@@ -274,7 +274,7 @@ def _finite(number: float, value: object, kind: QuantityKind) -> float:
     tiny = 0 < abs(number) < SMALLEST and kind not in OFTEN_NOTHING
     if tiny or abs(number) > LARGEST:
         size = f"smaller than {SMALLEST:g}" if tiny else f"larger than {LARGEST:g}"
-        problem = f"is {size} {'' if kind is RATIO else kind.unit}".rstrip()
+        problem = f"is {size} {'' if kind is RATIO else signs(kind.unit)}".rstrip()
         raise InputError(problem, value=value, remedy=f"check the exponent, {_advice(kind)}")
     return number
 
@@ -312,20 +312,25 @@ def _is_number(text: str) -> bool:
 
 
 def shown(value: float, kind: QuantityKind, unit: str | None = None, digits: int = 6) -> str:
-    """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN*m/rad"."""
+    """`value` for the eye, in an engineering unit: "12 deg", "11.1 kN m/rad"; it reads back as in a file."""
     if kind is TEMPERATURE:
         return f"{_plain(value - FREEZING, digits)} °C"
     symbol, size = eye_unit(value, kind, unit)
-    return _plain(value / size, digits) + ("" if kind is RATIO else f" {symbol}")
+    return _plain(value / size, digits) + ("" if kind is RATIO else f" {signs(symbol)}")
+
+
+def signs(unit: str) -> str:
+    """A unit, or a number with its unit, as text prints it: "N m", "kg m²"; files write "N*m" and "kg*m^2"."""
+    return unit.replace("*", " ").replace("^2", "²").replace("^3", "³")
 
 
 def against(value: float, limit: float, kind: QuantityKind, digits: int = 4) -> str:
-    """``value`` beside its limit in one unit: "8.12 kN*m against 12 kN*m"."""
+    """``value`` beside its limit in one unit: "8.12 kN m against 12 kN m"."""
     if kind is TEMPERATURE:
         return f"{shown(value, kind, digits=digits)} against {shown(limit, kind, digits=digits)}"
     small = min(abs(value), abs(limit))
     symbol, size = eye_unit(small if small > SAME_UNIT * abs(limit) else limit, kind)
-    left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {symbol}") for x in (value, limit))
+    left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {signs(symbol)}") for x in (value, limit))
     return f"{left} against {right}"
 
 

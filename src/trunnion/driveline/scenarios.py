@@ -43,7 +43,7 @@ from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque
 from trunnion.driveline.disturbances import Disturbance
 from trunnion.driveline.elements import Element, Rotor
 from trunnion.driveline.parts import Dragged, Sprung
-from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Speed, TableList, Time, Torque, optional
+from trunnion.driveline.quantities import Angle, Dimensionless, Maybe, Speed, TableList, Time, Torque, optional, signs
 from trunnion.driveline.record import Name, Named, Record, Switch, listed, one_of
 from trunnion.driveline.refusals import nearest
 from trunnion.driveline.slip_clutches import SlipClutch
@@ -110,7 +110,7 @@ class LevelCrossing(Record):
         kind = type(self).quantity_of(self.key)
         assert kind is not None
         way = {"rising": "rises to", "falling": "falls to", "either": "comes to"}[self.direction]
-        return f"{self.key} of {self.of} {way} {self.level:.6g} {kind.unit}"
+        return f"{self.key} of {self.of} {way} {self.level:.6g} {signs(kind.unit)}"
 
     @model_validator(mode="after")
     def _whole(self) -> LevelCrossing:

@@ -53,7 +53,7 @@ def _shape(law: Excitation, running: Running) -> Complex:
         if np.any(beyond(points, place)):
             apart = np.maximum(points[0] - place, place - points[-1])
             worst = place[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
-            asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if over == "speeds" else f"{worst:.5g} N*m"
+            asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if over == "speeds" else f"{worst:.5g} N m"
             problem = f"is a table from {law.covers}, which does not cover {asked}"
             raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
     phases = np.array(law.phases) if law.phases else np.zeros(len(law.amplitudes))

@@ -76,7 +76,7 @@ def refuse_overload(assembly: Assembly, speed: float) -> None:
                 f"carries a load of {clutch.load:.6g} N m, more than the {clutch.holds:.6g} N m that {held}, and no "
                 "spring takes the rest: it slips away and has no periodic motion",
                 element=clutch.name, key="friction",
-                remedy=f"raise its friction torque above {clutch.load - clutch.spring:.6g} N*m, lower the load, or "
+                remedy=f"raise its friction torque above {clutch.load - clutch.spring:.6g} N m, lower the load, or "
                 "give it a stiffness that holds the rest; tn.simulate follows it as it slips",
             )  # fmt: skip
 

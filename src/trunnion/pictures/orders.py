@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Array
 from trunnion.design.assessment.response_curve import ResponseCurve
 from trunnion.driveline.operation import Operation
-from trunnion.driveline.quantities import TORQUE, eye_unit, shown
+from trunnion.driveline.quantities import TORQUE, eye_unit, shown, signs
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
 from trunnion.pictures.looks import curve
 from trunnion.pictures.picture import Axis, Band, Item, Level, Line, Picture, single
@@ -17,7 +17,7 @@ from trunnion.pictures.shared import over_speed, place_of, printed, stretches
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.speed_sweep import SpeedSweep
 from trunnion.results.speeds import order_name, speed_factor
-from trunnion.results.units import angle_words, signs
+from trunnion.results.units import angle_words
 from trunnion.results.words import Words
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 

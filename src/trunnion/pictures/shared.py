@@ -8,11 +8,11 @@ import numpy as np
 
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.operation import Operation
+from trunnion.driveline.quantities import signs
 from trunnion.errors import InputError
 from trunnion.pictures.picture import Axis, Item, Level, Picture, Spans, runs, single
 from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.speeds import speed_factor
-from trunnion.results.units import signs
 from trunnion.results.words import Words
 
 

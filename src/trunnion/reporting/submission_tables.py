@@ -11,7 +11,7 @@ from trunnion.design.assessment.check import Check, Status
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
-from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown
+from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown, signs
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.equations.harmonics import disk_torques
 from trunnion.errors import InputError
@@ -19,7 +19,6 @@ from trunnion.modes.mass_elastic import HolzerTable, masses, springs
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
 from trunnion.results.speeds import order_name
-from trunnion.results.units import signs
 from trunnion.results.words import HERTZ, Words
 
 EMPTY = "–"

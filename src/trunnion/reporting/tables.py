@@ -15,13 +15,13 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.pressure import PressureCurve
-from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown
+from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown, signs
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
-from trunnion.results.units import figures, range_words, signs
+from trunnion.results.units import figures, range_words
 from trunnion.results.words import Words
 
 MOST_RESONANCES = 30

@@ -7,8 +7,8 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from trunnion.arrays import Array
+from trunnion.driveline.quantities import signs
 from trunnion.results.speeds import frequency_unit, speed_factor
-from trunnion.results.units import signs
 
 if TYPE_CHECKING:  # which loads the compiler
     from trunnion.systems.system import System

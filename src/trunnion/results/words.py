@@ -75,7 +75,7 @@ class Words:
         return figures(value, most)
 
     def value(self, value: float, unit: str, digits: int = 4) -> str:
-        """ "32.8 kN*m/rad", of a value in SI; what is in rad/s is a frequency."""
+        """ "32.8 kN m/rad", of a value in SI; what is in rad/s is a frequency."""
         return in_words(value, unit, digits)
 
     def parameter(self, label: str, unit: str) -> QuantityAxis:

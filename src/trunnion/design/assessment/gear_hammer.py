@@ -41,7 +41,7 @@ def gear_hammer(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Ch
         if np.all(found.limits <= NOTHING * swing):
             yield _idle(subject, case, title)
             continue
-        words = f"±{swing[found.at]:.4g} N*m about a mean of {found.limit:.4g} N*m"
+        words = f"±{swing[found.at]:.4g} N m about a mean of {found.limit:.4g} N m"
         by_order = np.abs(measure.parts(case.answer))
         barred = bands(case.speeds, swing, found.limits * (1 - measure.margin))
         yield at_largest(

@@ -114,7 +114,7 @@ def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetosta
 
 def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float) -> Check:
     value = value if value > ROUNDING * subject.high**2 else 0.0
-    numbers = f"{value:.4g} rad/s^2 against {limit:g} rad/s^2 at {subject.shown(subject.high)}"
+    numbers = f"{value:.4g} rad/s² against {limit:g} rad/s² at {subject.shown(subject.high)}"
     return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
 
 

@@ -60,7 +60,7 @@ def compare(
     >>> line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)])
     >>> print(tn.compare(line, line.replace("Shaft 1", stiffness=1.21e4)))
     before → after: 1 change; no speeds are stated at which both could be judged
-      Shaft 1, stiffness: 10 kN*m/rad → 12.1 kN*m/rad
+      Shaft 1, stiffness: 10 kN m/rad → 12.1 kN m/rad
       natural frequency of mode 1: 17.793 Hz → 19.5725 Hz (+10 %)
       damping ratio of mode 1: 0.01118 → 0.01016 (-9.09 %)
     """

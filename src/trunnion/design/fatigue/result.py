@@ -17,7 +17,7 @@ from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding
 from trunnion.results.result import Result
-from trunnion.results.units import figures
+from trunnion.results.units import figures, with_unit
 
 HOUR = 3600.0
 
@@ -45,7 +45,7 @@ class CycleSpectrum:
     def shown(self, value: float) -> str:
         """ "124.4 MPa", of a value in SI."""
         unit, size = self.axis(value)
-        return f"{figures(value / size)} {unit}"
+        return with_unit(figures(value / size), unit)
 
 
 @labelled

@@ -79,7 +79,7 @@ def remedies(
     >>> shaft = tn.Shaft(stiffness=1e4, damping=2.0, name="shaft")
     >>> line = tn.Driveline([engine, shaft, tn.Disk(inertia=0.8)], limits=[tn.Limit(of="shaft", max_torque=400.0)])
     >>> print(tn.remedies(line, (90.0, 115.0), most=1).sentences[0])
-    max torque of shaft: shaft stiffer by 5.3 % (10.53 kN*m/rad) moves order 2 on mode 2 from 124.96 rad/s \
+    max torque of shaft: shaft stiffer by 5.3 % (10.53 kN m/rad) moves order 2 on mode 2 from 124.96 rad/s \
 to 128.23 rad/s: margin 0.405 %
     """
     subject = subject_of(line, speeds, load_case, unit, partly=True)
@@ -207,7 +207,7 @@ def _shown(subject: AssessmentInput, check: Check) -> str:
 
 
 def _closest(found: CandidateChange, base: dict[str, Check]) -> str:
-    """ "coupling softer by 18 % (32.8 kN*m/rad) would, but gear hammer in gearbox is then exceeded by 4 %"."""
+    """ "coupling softer by 18 % (32.8 kN m/rad) would, but gear hammer in gearbox is then exceeded by 4 %"."""
     first = found.breaks[0]
     now, before = percent(first.margin), base.get(first.name)
     if first.status is not Status.EXCEEDED:

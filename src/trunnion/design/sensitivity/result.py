@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.sensitivity.variables import STEPS, Scale, scale_of
+from trunnion.driveline.quantities import signs
 from trunnion.driveline.refusals import nearest
 from trunnion.errors import InputError
 from trunnion.results.drawing import Axes, drawing
@@ -159,7 +160,7 @@ class Sensitivities(Result):
             {
                 "parameter": one.parameter,
                 "effect": effect_words(quantity, one).removesuffix(f" of {one.parameter}"),
-                f"derivative [{quantity.unit} per unit]": one.derivative,
+                f"derivative [{signs(quantity.unit)} per unit]": one.derivative,
                 "logarithmic": one.logarithmic,
             }
             for one in self.ranked(name)
@@ -220,7 +221,7 @@ def share_of(quantity: SensitivityQuantity) -> tuple[float, str]:
     if quantity.kind == "margin":
         return 100.0, " [points]"
     if quantity.kind in CROSSES_ZERO or not quantity.value:
-        return 1.0, f" [{quantity.unit}]"
+        return 1.0, f" [{signs(quantity.unit)}]"
     return 100 / abs(quantity.value), " [%]"
 
 

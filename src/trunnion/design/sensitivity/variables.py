@@ -94,7 +94,7 @@ class DesignVariable:
         return self.path.rpartition(".")[2]
 
     def worded(self, value: float) -> str:
-        """ "coupling 2 softer by 18 % (32.8 kN*m/rad)"."""
+        """ "coupling 2 softer by 18 % (32.8 kN m/rad)"."""
         owner = f" of {self.element}" if self.element else ""
         if self.scale is not Scale.FACTOR:
             before, after = f"{self.value / DEGREE:.4g}", f"{value / DEGREE:.4g}"

@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.parameters import Columns, Parameter
-from trunnion.driveline.quantities import kind_of, parse
+from trunnion.driveline.quantities import kind_of, parse, signs
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
@@ -207,9 +207,10 @@ def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -
     least = lowest_speed(assembly) / slope
     why = f"a turn there spans more than {MOST_CYCLES} cycles of the highest mode"
     turning = least * slope * 60 / (2 * np.pi)
+    unit = signs(columns.unit)
     if high <= least:
         raise InputError(
-            f"lies wholly below {least:.4g} {columns.unit} ({turning:.4g} rpm): {why}, the line follows statically",
+            f"lies wholly below {least:.4g} {unit} ({turning:.4g} rpm): {why}, the line follows statically",
             element=columns.label,
             key="range",
             value=high,
@@ -218,8 +219,8 @@ def _clip_speed(assembly: Assembly, columns: Columns, low: float, high: float) -
     if low < 0:
         raise InputError("cannot be negative", element=columns.label, key="range", value=low, remedy="start above zero")
     if low < least:
-        asked = f"{low:.5g} {columns.unit} ({low * slope * 60 / (2 * np.pi):.4g} rpm)"
-        said = f"the {columns.label} axis starts at {least:.4g} {columns.unit} ({turning:.4g} rpm) instead of {asked}"
+        asked = f"{low:.5g} {unit} ({low * slope * 60 / (2 * np.pi):.4g} rpm)"
+        said = f"the {columns.label} axis starts at {least:.4g} {unit} ({turning:.4g} rpm) instead of {asked}"
         return least, high, f"{said}: {why}"
     return low, high, None
 

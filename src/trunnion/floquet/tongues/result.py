@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.quantities import signs
 from trunnion.errors import InputError
 from trunnion.modes.resonance_speeds import Resonance
 from trunnion.results.drawing import Axes, drawing
@@ -207,8 +208,8 @@ class Tongues(Result):
                 "tongue": t.number,
                 "resonance": t.name,
                 "tip": _place(t.tip),
-                f"growth rate [{self.rate_unit}]": t.growth_rate,
-                f"widest [{self.x_unit}]": t.widest,
+                f"growth rate [{signs(self.rate_unit)}]": t.growth_rate,
+                f"widest [{signs(self.x_unit)}]": t.widest,
             }
             for t in self.tongues
         ]

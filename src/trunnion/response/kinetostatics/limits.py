@@ -45,7 +45,7 @@ def check_limits(
     >>> for finding in tn.check_limits(tn.kinetostatics(line, speed=100.0), output_acceleration=50.0):
     ...     print(finding)
     note: pass: irregularity of the output 0.002501 keeps the limit of 0.0027
-    note: pass: angular acceleration of the output 25.01 rad/s^2 keeps the limit of 50 rad/s^2
+    note: pass: angular acceleration of the output 25.01 rad/s² keeps the limit of 50 rad/s²
     """
     even, jerk = _limit("irregularity", irregularity), _limit("output_acceleration", output_acceleration)
     lag = _limit("deviation", deviation, ANGLE)
@@ -55,7 +55,7 @@ def check_limits(
         output = "the output" if len(result.branches) == 1 else f"the output {name}"
         checks += [
             (f"irregularity of {output}", end.irregularity, even, ""),
-            (f"angular acceleration of {output}", end.peak_acceleration, jerk, " rad/s^2"),
+            (f"angular acceleration of {output}", end.peak_acceleration, jerk, " rad/s²"),
         ]
         if lag is not None:
             behind = end.homokinetic_deviation / DEGREE
@@ -67,7 +67,7 @@ def check_limits(
                 f"angular acceleration of {result.shafts[s]}",
                 float(largest(result.acceleration[s])),
                 limit,
-                " rad/s^2",
+                " rad/s²",
             )
             for s in range(len(result.shafts))
             if np.any(result.acceleration[s] != result.output_acceleration) and np.any(result.acceleration[s])
@@ -76,7 +76,7 @@ def check_limits(
         sizes = largest(np.hypot(result.secondary_couple[:, 0], result.secondary_couple[:, 1]))
         limit = _limit("secondary_couple", secondary_couple, TORQUE)
         checks += [
-            (f"secondary couple on {fork}", float(size), limit, " N*m")
+            (f"secondary couple on {fork}", float(size), limit, " N m")
             for fork, size in zip(result.forks, sizes, strict=True)
         ]
     if support_force is not None:

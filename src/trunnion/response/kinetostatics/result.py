@@ -245,9 +245,9 @@ class Kinetostatics(Result):
                     "shaft": name,
                     f"slowest [{words.unit}]": float(slow) * words.factor,
                     f"fastest [{words.unit}]": float(fast) * words.factor,
-                    "largest acceleration [rad/s^2]": float(largest(self.acceleration[s])),
-                    "least torque [N*m]": float(weak) + 0.0,  # not -0
-                    "largest torque [N*m]": float(strong) + 0.0,
+                    "largest acceleration [rad/s²]": float(largest(self.acceleration[s])),
+                    "least torque [N m]": float(weak) + 0.0,  # not -0
+                    "largest torque [N m]": float(strong) + 0.0,
                     "largest twist [rad]": float(largest(self.twist[s])),
                 }
             )
@@ -289,7 +289,7 @@ def _output(r: Kinetostatics) -> list[str]:
         f"  {output} speed over input speed {turned}: irregularity {r.irregularity:.5g}, as one "
         f"Hooke's joint of {r.equivalent_angle / DEGREE:.4g} deg",
         f"  {output} leads and lags by {r.homokinetic_deviation / DEGREE:.4g} deg; largest angular "
-        f"acceleration {r.peak_acceleration:.5g} rad/s^2",
+        f"acceleration {r.peak_acceleration:.5g} rad/s²",
     ]
 
 
@@ -312,7 +312,7 @@ def _couples(r: Kinetostatics) -> list[str]:
     f = int(np.argmax(size))
     part = r.couple_parts(r.forks[f])
     return [
-        f"  largest secondary couple {size[f]:.5g} N*m, on the fork {r.forks[f]!r}: "
+        f"  largest secondary couple {size[f]:.5g} N m, on the fork {r.forks[f]!r}: "
         f"{np.hypot(*part.steady):.5g} steady, {part.two_per_turn:.5g} twice per turn"
     ]
 
