@@ -44,7 +44,7 @@ def loaded(
 
 BEYOND = (
     r"clutch\.friction: carries a load of 5 N m, more than the 3 N m that its friction holds.*"
-    r"raise its friction torque above 5 N\*m, lower the load"
+    r"raise its friction torque above 5 N m, lower the load"
 )
 
 
