@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import TYPE_CHECKING
@@ -87,6 +88,20 @@ def behind_converter(line: ElementChain, place: int) -> list[tuple[float, Torque
     return [(abs(float(ratios[i] / ratios[place])), curve) for i, curve in with_losses(line, driven)]
 
 
+_KNOWN: deque[tuple[ElementChain, list[tuple[float, TorqueCurve]]]] = deque(maxlen=32)
+"""Lines asked of last, with what their turbines drive: at each of many speeds it is the same."""
+
+
+def _loads(line: ElementChain, place: int) -> list[tuple[float, TorqueCurve]]:
+    """``behind_converter`` of a line, made once: its curves keep where they turn round."""
+    for known, loads in tuple(_KNOWN):
+        if known is line:
+            return loads
+    loads = behind_converter(line, place)
+    _KNOWN.append((line, loads))
+    return loads
+
+
 def run_of(line: ElementChain, place: int, speed: float) -> ConverterRun:
     """How the converter at a place runs at an input speed [rad/s].
 
@@ -96,7 +111,7 @@ def run_of(line: ElementChain, place: int, speed: float) -> ConverterRun:
     """
     converter, name = line.elements[place], line.names[place]
     assert isinstance(converter, TorqueConverter)
-    loads = behind_converter(line, place)
+    loads = _loads(line, place)
     pump = speed * abs(float(speed_ratios(line)[place]))
     at = shown(speed, SPEED, "rpm", 5)
     if not pump > 0:
@@ -178,7 +193,7 @@ def converter_balances(line: ElementChain, place: int, low: float, high: float) 
     converter, ratios = line.elements[place], speed_ratios(line)
     assert isinstance(converter, TorqueConverter)
     law, own = converter.law, abs(float(ratios[place]))
-    loads = behind_converter(line, place)
+    loads = _loads(line, place)
     before = set(range(len(line.elements))) - behind(line, place)
     others = [(abs(float(ratios[i])), curve) for i, curve in with_losses(line, sorted(before))]
 

@@ -73,32 +73,31 @@ def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ..
     if not low < high:
         return ()
     knots = sorted({knot / ratio for ratio, curve in curves for knot in curve.knots})
-    pieces = [low, *(knot for knot in knots if low < knot < high), high]
+    pieces = np.array([low, *(knot for knot in knots if low < knot < high), high])
     found: list[float] = []
-    for first, last in zip(pieces, pieces[1:], strict=False):
-        for root in _roots(curves, first, last):
-            if not found or root - found[-1] > ALIKE * root:
-                found.append(root)
+    for root in sorted(_roots(curves, pieces[:-1], pieces[1:])):
+        if not found or root - found[-1] > ALIKE * root:
+            found.append(root)
     return tuple(TorqueBalance(speed, slope_left(curves, speed)) for speed in found)
 
 
-def _roots(curves: Geared, low: float, high: float) -> Iterator[float]:
-    """Rising roots of f between two speeds, no knot between them."""
-    middle, half = (low + high) / 2, (high - low) / 2
-    torques = _at_input(curves, middle + half * _POINTS)
-    acting = np.abs(torques).sum(axis=0).max()
-    if not np.isfinite(acting):
-        return
-    series = _TO_SERIES @ torques.sum(axis=0)
-    followed = np.abs(series[-TAIL:]).max() <= FOLLOWED * acting and high <= 4 * low
-    if not followed and 2 * half > NARROWEST * high:
-        yield from _roots(curves, low, middle)
-        yield from _roots(curves, middle, high)
-        return
-    above = np.flatnonzero(np.abs(series) > ROUNDING * acting)
-    if above.size and abs(series[0]) <= np.abs(series[1:]).sum() + ZERO * acting:
-        smooth = Chebyshev(series[: above[-1] + 1], (low, high))
-        yield from sorted(_balanced(curves, smooth, middle, half))
+def _roots(curves: Geared, low: Array, high: Array) -> Iterator[float]:
+    """Roots of f in pieces (piece,) without a knot between their ends, in no order: all are looked at together, and
+    where no polynomial follows f, their halves are."""
+    while len(low):
+        middle, half = (low + high) / 2, (high - low) / 2
+        torques = _at_input(curves, middle[:, None] + half[:, None] * _POINTS)
+        acting = np.abs(torques).sum(axis=0).max(axis=-1)
+        series = torques.sum(axis=0) @ _TO_SERIES.T
+        followed = (np.abs(series[:, -TAIL:]).max(axis=-1) <= FOLLOWED * acting) & (high <= 4 * low)
+        followed |= 2 * half <= NARROWEST * high
+        for i in np.flatnonzero(followed & np.isfinite(acting)):
+            above = np.flatnonzero(np.abs(series[i]) > ROUNDING * acting[i])
+            if above.size and abs(series[i, 0]) <= np.abs(series[i, 1:]).sum() + ZERO * acting[i]:
+                smooth = Chebyshev(series[i, : above[-1] + 1], (low[i], high[i]))
+                yield from _balanced(curves, smooth, float(middle[i]), float(half[i]))
+        halved = ~followed & np.isfinite(acting)
+        low, high = np.append(low[halved], middle[halved]), np.append(middle[halved], high[halved])
 
 
 def _balanced(curves: Geared, smooth: Chebyshev, middle: float, half: float) -> Iterator[float]:
