@@ -6,12 +6,12 @@ import numpy as np
 
 from trunnion.design.assessment.assessment_input import LoadCaseResponse
 from trunnion.design.assessment.check import Check
-from trunnion.design.assessment.measures import springs_of
 from trunnion.design.assessment.parametric import NAME as PARAMETRIC
 from trunnion.reporting.overview import Overview
 from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.pictures import ReportPicture, picture
 from trunnion.response.orders.result import OrderResponse
+from trunnion.response.peaks.peak_limits import springs_of
 
 OF_TORQUE = {
     "vibratory torque of": "vibratory_torque",

@@ -15,12 +15,12 @@ import numpy as np
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Status
 from trunnion.design.assessment.couplings import KINDS
-from trunnion.design.assessment.measures import OF_LIMITS, measures, name_of, rating_name, service_factors, springs_of
-from trunnion.driveline.geometry import tube_stress
+from trunnion.design.assessment.measures import measures, name_of, rating_name
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import TORQUE, QuantityKind, eye_unit, shown
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
+from trunnion.response.peaks.peak_limits import peak_limits
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.units import figures, rounded_up
@@ -155,40 +155,9 @@ def _at_most(value: float, kind: QuantityKind) -> str:
 
 def bounded_checks(assembly: Assembly) -> Iterator[BoundedCheck]:
     """Those that compare peaks which are bounded."""
-    for limit in assembly.line.limits_by_element:
-        if limit.key in OF_LIMITS and (found := _of_limit(assembly, limit)):
-            yield found
-    for name, element in assembly.line.parts:
-        for key in element.ratings:
-            if getattr(element, key) is not None and (rated := _of_rating(assembly, name, key)):
-                yield rated
-
-
-def _of_limit(assembly: Assembly, limit: OneLimit) -> BoundedCheck | None:
-    from trunnion.response.peaks.quantities import LARGEST, SPEED, SWING, place_of
-
-    name, kind = name_of(limit), LIMIT_KINDS[limit.key]
-    if limit.key == "max_speed_fluctuation":
-        points = [own for _, own in assembly.topology.points]
-        if limit.element not in points:
-            return None
-        return BoundedCheck(name, (place_of(assembly, SPEED, points.index(limit.element)),), 1.0, kind)
-    of = {"max_torque": LARGEST, "max_stress": LARGEST, "vibratory_torque": SWING, "transient_vibratory_torque": SWING}
-    if limit.key not in of:
-        return None
-    springs = springs_of(assembly, limit.element)
-    per = 1.0
-    if limit.key == "max_stress":
-        shaft = assembly.line.elements[assembly.line.index(limit.element)]
-        per, springs = tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0), springs[:1]  # type: ignore[attr-defined]
-    return BoundedCheck(name, tuple(place_of(assembly, of[limit.key], c) for c in springs), float(per), kind)
-
-
-def _of_rating(assembly: Assembly, name: str, key: str) -> BoundedCheck | None:
-    from trunnion.response.peaks.quantities import LARGEST, place_of
-
-    if key != "maximum_torque":
-        return None
-    temperature, starting = service_factors(assembly, name)
-    place = place_of(assembly, LARGEST, springs_of(assembly, name)[0])
-    return BoundedCheck(rating_name(name, key), (place,), temperature * starting, KINDS.get(key, TORQUE))
+    for one in peak_limits(assembly):
+        if one.rating:
+            yield BoundedCheck(rating_name(one.element, one.key), one.places, one.per, KINDS.get(one.key, TORQUE))
+        else:
+            name = name_of(OneLimit(one.element, one.key, one.value, one.margin))
+            yield BoundedCheck(name, one.places, one.per, LIMIT_KINDS[one.key])

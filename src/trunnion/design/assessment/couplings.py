@@ -23,7 +23,6 @@ from trunnion.design.assessment.measures import (
     of_rating,
     rating_name,
     rating_words,
-    service_factors,
     spring_of,
 )
 from trunnion.design.assessment.response_curve import WHOLE, course
@@ -32,6 +31,7 @@ from trunnion.driveline.elements import Element
 from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.quantities import LENGTH, POWER, TORQUE, shown
 from trunnion.driveline.torque_converters import TorqueConverter
+from trunnion.response.peaks.peak_limits import service_factors
 
 SOURCE = "DIN 740-2 in form; check your edition and the maker's catalogue"
 OF_DAMPERS = Rule(

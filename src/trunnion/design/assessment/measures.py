@@ -22,6 +22,7 @@ from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly, shaft_stiffness
 from trunnion.response.orders.clutch_torque import clutch_torque
 from trunnion.response.orders.result import OrderResponse
+from trunnion.response.peaks.peak_limits import required_of, service_factors, springs_of
 from trunnion.response.ranges.largest import SearchedQuantity
 
 OF_LIMITS = (
@@ -92,20 +93,9 @@ def measures(assembly: Assembly) -> Iterator[Measure]:
             yield carried
 
 
-def springs_of(assembly: Assembly, element: str) -> tuple[int, ...]:
-    """The springs that an element has or is part of."""
-    place = assembly.line.index(element)
-    return tuple(c for c, ends in enumerate(assembly.topology.compliances) if place in ends.shafts)
-
-
 def spring_of(assembly: Assembly, element: str) -> int:
     """The first of them, of most elements the only one."""
     return springs_of(assembly, element)[0]
-
-
-def required_of(assembly: Assembly, element: str) -> float:
-    """Largest margin that the description requires of an element."""
-    return max((one.margin for one in assembly.line.limits_by_element if one.element == element), default=0.0)
 
 
 def name_of(limit: OneLimit) -> str:
@@ -201,12 +191,6 @@ def _share(assembly: Assembly, table: Array, element: str, compliance: int) -> A
     torque = assembly.static_torque(table)[:, compliance]
     soft = {names[i]: 1 / shaft_stiffness(assembly, table, i, torque=torque) for i in shafts}
     return np.asarray(soft[element] / sum(soft.values()))
-
-
-def service_factors(assembly: Assembly, name: str) -> tuple[float, float]:
-    """S_t and S_z of a coupling."""
-    factor = {one.key: one.value for one in assembly.line.limits_by_element if one.element == name}
-    return factor.get("temperature_factor", 1.0), factor.get("starting_factor", 1.0)
 
 
 def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure:

@@ -22,8 +22,6 @@ from trunnion.design.assessment.measures import (
     of_limit,
     of_rating,
     rating_name,
-    required_of,
-    service_factors,
 )
 from trunnion.design.limits.result import OtherLimit
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
@@ -33,6 +31,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.tongues.bracketing import bracketed
 from trunnion.response.orders.response import response_of_table
 from trunnion.response.orders.result import OrderResponse
+from trunnion.response.peaks.peak_limits import required_of, service_factors
 
 Progress = Callable[[float], None]
 Reached = tuple[tuple[OtherLimit, ...], str]

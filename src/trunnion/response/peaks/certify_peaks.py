@@ -8,6 +8,7 @@ below a stated limit. A line that exceeds its limit ends the search.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,15 +24,48 @@ from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.response.peaks.peak_search import PeakSearch
 from trunnion.response.peaks.peaks_below import require_enclosed
+from trunnion.response.peaks.quantities import (
+    ACCELERATION,
+    ALWAYS,
+    FURTHEST,
+    HEAT,
+    LARGEST,
+    RATED,
+    SPEED,
+    SWING,
+    TWIST,
+    in_unit,
+)
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
+from trunnion.results.units import rounded_up
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.waiting import keeps_time
 
 STEADY = "of the steady motion, which the line comes to where it is stable: certify_stability proves that"
+
+
+@dataclass(frozen=True)
+class AllowedPeak:
+    """The bound of a ``measure`` of one spring or inertia, the largest computed, and what the description allows."""
+
+    measure: str
+    name: str
+    bound: float
+    computed: float
+    limit: float
+
+    @property
+    def sentence(self) -> str:
+        """ "heat of coupling: 120 W at most, 110 W reached, 160 W allowed"."""
+        has, reached, most = (
+            in_unit(self.measure, one, 5) for one in (rounded_up(self.bound, 5), self.computed, self.limit)
+        )
+        proved = f"{has} at most" if np.isfinite(self.bound) else "no bound"
+        return f"{self.measure} of {self.name}: {proved}, {reached} reached, {most} allowed"
 
 
 @labelled
@@ -52,8 +86,18 @@ class PeakCertificate(Result):
     peak_torque: Array = variable("spring", "N*m", "the largest computed")
     vibratory_twist_bound: Array = variable("spring", "rad", "half of peak to peak, proved not to be exceeded")
     vibratory_twist: Array = variable("spring", "rad", "the largest computed")
+    peak_twist_bound: Array = variable("spring", "rad", "largest |twist|, proved not to be exceeded")
+    peak_twist: Array = variable("spring", "rad", "the largest computed")
+    rated_torque_bound: Array = variable(
+        "spring", "N*m", "sum of amplitudes by S_f of all orders up to 1 kHz and more, proved not to be exceeded"
+    )
+    rated_torque: Array = variable("spring", "N*m", "the largest computed")
+    heat_bound: Array = variable("spring", "W", "of the damping, mean over the cycle, proved not to be exceeded")
+    heat: Array = variable("spring", "W", "the largest computed")
     speed_fluctuation_bound: Array = variable("inertia", "rad/s", "half of peak to peak, proved not to be exceeded")
     speed_fluctuation: Array = variable("inertia", "rad/s", "the largest computed")
+    acceleration_bound: Array = variable("inertia", "rad/s^2", "half of peak to peak, proved not to be exceeded")
+    acceleration: Array = variable("inertia", "rad/s^2", "the largest computed")
     peak_speed: Array = variable("spring", "rad/s", "at which the largest vibratory torque was computed")
     springs: tuple[str, ...] = coordinate("spring")
     inertias: tuple[str, ...] = coordinate("inertia")
@@ -62,6 +106,7 @@ class PeakCertificate(Result):
     open_share: float = attribute("of the volume in ln(speed) and shares of tolerances without a bound")
     counterexample: dict[str, float] | None = internal("values by name of a line that exceeds a limit")
     exceeded: str = attribute("which limit the counterexample exceeds, in words", default="")
+    allowed: tuple[AllowedPeak, ...] = internal("quantities with a limit", default=())
     units: tuple[str, ...] = internal("of the parameters", default=())
     unit: str = internal("of speeds in print", default="rad/s")
     findings: tuple[Finding, ...] = internal("what of the line is left out", default=())
@@ -108,14 +153,15 @@ class PeakCertificate(Result):
             bound, known = self.vibratory_torque_bound[k], self.vibratory_torque[k]
             if not np.isfinite(known):
                 continue
-            proved = f"±{bound:.5g} N m is not exceeded" if np.isfinite(bound) else "no bound"
+            proved = f"±{rounded_up(bound, 5):.5g} N m is not exceeded" if np.isfinite(bound) else "no bound"
             at = f" at {self.words.speed(float(self.peak_speed[k]))}" if known else ""
-            most = f"{self.peak_torque_bound[k]:.5g} N m at most"
+            most = f"{rounded_up(float(self.peak_torque_bound[k]), 5):.5g} N m at most"
             yield f"  {name}: {proved}, ±{known:.5g} N m reached{at}; in all {most}"
         for name, bound, known in zip(self.inertias, self.speed_fluctuation_bound, self.speed_fluctuation, strict=True):
             if np.isfinite(bound) and known > 0:
                 most, reached = self.words.speed(float(bound), 4), self.words.speed(float(known), 4)
                 yield f"  {name}: its speed swings by ±{most} at most, ±{reached} reached"
+        yield from (f"  {one.sentence}" for one in self.allowed if one.measure not in ALWAYS)
         yield f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
 
 
@@ -179,9 +225,11 @@ def certify_peaks(
 
 def _certificate(space: BoxSpace, found: PeakSearch, gap: float) -> PeakCertificate:
     assembly = space.assembly
-    springs = shaft_names(assembly)
-    ends = [len(springs) * k for k in (1, 2, 3)]
-    upper, known = np.split(found.upper, ends), np.split(found.computed, ends)
+    measures = np.array([measure for measure, _ in found.quantities])
+
+    def of(values: Array, measure: str) -> Array:
+        return values[measures == measure]
+
     limited = np.isfinite(found.limit)
     if found.counterexample is not None:
         verdict = "counterexample"
@@ -195,16 +243,24 @@ def _certificate(space: BoxSpace, found: PeakSearch, gap: float) -> PeakCertific
         parameters=tuple(s.label for s in space.spreads),
         speeds=space.speeds,
         verdict=verdict,
-        vibratory_torque_bound=upper[0],
-        vibratory_torque=known[0],
-        peak_torque_bound=upper[1],
-        peak_torque=known[1],
-        vibratory_twist_bound=upper[2],
-        vibratory_twist=known[2],
-        speed_fluctuation_bound=upper[3],
-        speed_fluctuation=known[3],
-        peak_speed=found.speed[: len(springs)],
-        springs=springs,
+        vibratory_torque_bound=of(found.upper, SWING),
+        vibratory_torque=of(found.computed, SWING),
+        peak_torque_bound=of(found.upper, LARGEST),
+        peak_torque=of(found.computed, LARGEST),
+        vibratory_twist_bound=of(found.upper, TWIST),
+        vibratory_twist=of(found.computed, TWIST),
+        peak_twist_bound=of(found.upper, FURTHEST),
+        peak_twist=of(found.computed, FURTHEST),
+        rated_torque_bound=of(found.upper, RATED),
+        rated_torque=of(found.computed, RATED),
+        heat_bound=of(found.upper, HEAT),
+        heat=of(found.computed, HEAT),
+        speed_fluctuation_bound=of(found.upper, SPEED),
+        speed_fluctuation=of(found.computed, SPEED),
+        acceleration_bound=of(found.upper, ACCELERATION),
+        acceleration=of(found.computed, ACCELERATION),
+        peak_speed=of(found.speed, SWING),
+        springs=shaft_names(assembly),
         inertias=tuple(name for _, name in assembly.topology.points),
         gap=gap,
         boxes=found.judged,
@@ -213,6 +269,10 @@ def _certificate(space: BoxSpace, found: PeakSearch, gap: float) -> PeakCertific
         exceeded=found.exceeded,
         units=tuple(s.unit for s in space.spreads),
         unit=speed_unit(assembly.line),
+        allowed=tuple(
+            AllowedPeak(*found.quantities[k], *map(float, (found.upper[k], found.computed[k], found.limit[k])))
+            for k in np.flatnonzero(limited)
+        ),
         findings=(Finding(Gravity.NOTE, STEADY), *left_out("certify_peaks", assembly.line)),
         ended=found.ended,
         line=found.line,

@@ -23,7 +23,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.topology import LinkKind, require_period
 from trunnion.errors import InputError
-from trunnion.floquet.certificate.box_coefficients import STATED, NumberRange
+from trunnion.floquet.certificate.box_coefficients import STATED, NumberRange, staged
 from trunnion.floquet.certificate.box_equations import (
     BoxEntries,
     BoxLine,
@@ -54,9 +54,10 @@ class BoxForce:
 @dataclass(frozen=True)
 class ForcedBox:
     """``matrix`` A, whose first harmonic has ``rate`` cycles per turn of the input; ``forces``, the first that of the
-    joints; ``outputs`` C (1 + parameters, 2K + 1, Q, D) with its rest (Q, D): of every spring its torque [N m], then
-    its twist [rad], then of every point of ``Topology.points`` its speed [rad/s]; ``base`` (1 + parameters, 2K + 1, Q)
-    and its rest (Q,)."""
+    joints; ``outputs`` C (1 + parameters, 2K + 1, Q, D) with its rest (Q, D): of every spring its torque [N m], its
+    twist [rad] and the rate of it [rad/s], then of every point of ``Topology.points`` its speed [rad/s] and
+    acceleration [rad/s²]; ``base`` (1 + parameters, 2K + 1, Q) and its rest (Q,); ``damping`` (S,) of springs in the
+    middle and at most [N m s/rad]."""
 
     matrix: BoxMatrix
     rate: Fraction
@@ -65,6 +66,7 @@ class ForcedBox:
     outputs_rest: Array
     base: Complex
     base_rest: Array
+    damping: tuple[Array, Array]
 
 
 def forced_box(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> ForcedBox:
@@ -125,6 +127,7 @@ class _ForcedLine:
         line, motion = self.line, self.line.walk()
         found = line.equations(motion)
         outputs, base = self._outputs(motion, found)
+        moved = self._accelerations(motion, found, outputs, base)
         uniform, acting = self._uniform(), [one for one in line_harmonics(line.assembly) if one.acts]
         raw: list[tuple[Fraction, float, dict[int, Wave], dict[int, Wave]]]
         raw = [(Fraction(0), 0.0, self._own(motion), {})]
@@ -132,6 +135,8 @@ class _ForcedLine:
         stack = _Stack(line.parameters, line.last)
         matrix, rest = found.arrays(line.parameters, line.last)
         given = [(order, nu, self._on_states(g, found, order, nu), direct) for order, nu, g, direct in raw]
+        for _, _, g, direct in given:
+            direct |= {at: row * g[i] for at, (i, row) in moved.items() if i in g}
         waves = [
             *(w for _, _, g, direct in given for w in (*g.values(), *direct.values())),
             *outputs.values(),
@@ -139,7 +144,7 @@ class _ForcedLine:
         ]
         stride = _stride([matrix, *(w.parts for w in waves)], line.last)
         topo = line.assembly.topology
-        size, count = len(found.energy), 2 * len(topo.compliances) + len(topo.points)
+        size, count = len(found.energy), 3 * len(topo.compliances) + 2 * len(topo.points)
         kept = slice(line.last % stride, None, stride)
         speed = line.co.speed
         rate = Fraction(stride) / require_period(line.assembly.line, line.assembly.topology)
@@ -152,7 +157,8 @@ class _ForcedLine:
             for order, nu, g, direct in given
         )
         rows, rows_rest = stack.rows(outputs, count, size, kept)
-        return ForcedBox(box, rate, forces, rows, rows_rest, *stack.vector(base, count, kept))
+        damping = np.array([c.mean.real for c in line.co.damping]), np.array([c.size for c in line.co.damping])
+        return ForcedBox(box, rate, forces, rows, rows_rest, *stack.vector(base, count, kept), damping)
 
     def _uniform(self) -> list[Wave]:
         """Angle of every station beyond its mean rotation where nothing is bent or twisted."""
@@ -228,7 +234,8 @@ class _ForcedLine:
         g = {far: -torque} if far >= 0 else {}
         if near >= 0:
             g[near] = motion.relative[station] * torque
-        return g, {e: torque, len(topo.compliances) + e: size}
+        springs = len(topo.compliances)
+        return g, {e: torque, springs + e: size, 2 * springs + e: size * rate}
 
     def _size(self, one: LineHarmonic) -> Wave:
         """A e^{i phase}, over Ω² where it goes by that."""
@@ -278,12 +285,14 @@ class _ForcedLine:
             k, c, torque = co.stiffness[e], co.damping[e], co.torque[e]
             if e in waves:
                 k, torque = k * waves[e], torque * waves[e]
-            base[e] = torque
+            base[e], base[springs + e] = torque, self._static_twist(e)
             if topo.free:
                 put(e, e, k)
                 put(springs + e, e, self.line.number(1.0))
                 for i in np.flatnonzero(topo.elongations[e]).tolist():
-                    put(e, springs + i, c * found.light[i] * float(topo.elongations[e, i]))
+                    rate = found.light[i] * float(topo.elongations[e, i])
+                    put(e, springs + i, c * rate)
+                    put(2 * springs + e, springs + i, rate)
                 continue
             ref = topo.reference[topo.group_of(compliance.near)]
             r = motion.relative[compliance.near]
@@ -292,11 +301,14 @@ class _ForcedLine:
                 put(e, far, k)
                 put(e, n + far, c * found.light[far])
                 put(springs + e, far, self.line.number(1.0))
+                put(2 * springs + e, n + far, found.light[far])
             if near >= 0:
                 put(e, near, -(k * r + c * r_dot))
                 put(e, n + near, -(c * r * found.light[near]))
                 put(springs + e, near, -r)
-        for at, (s, _) in enumerate(topo.points, start=2 * springs):
+                put(2 * springs + e, near, -r_dot)
+                put(2 * springs + e, n + near, -(r * found.light[near]))
+        for at, (s, _) in enumerate(topo.points, start=3 * springs):
             group = topo.group_of(s)
             i, ref, r = topo.coordinate[group], topo.reference[group], motion.relative[s]
             base[at] = motion.speed[s] * co.speed
@@ -306,6 +318,59 @@ class _ForcedLine:
             if not topo.free:
                 put(at, i, motion.relative_slope[s] * motion.speed[ref] * co.speed)
         return rows, base
+
+    def _static_twist(self, e: int) -> Wave:
+        """Of a compliance: torque over stiffness, or in its stage."""
+        co, compliance = self.line.co, self.line.assembly.topology.compliances[e]
+        if not staged(self.line.assembly.line.elements[compliance.shafts[0]]):
+            return co.torque[e] * co.stiffness[e].inverse() if co.torque[e].size else self.line.number(0.0)
+        twist = float(co.middle.twist[0, e])
+        return affine(twist, {}, self.line.parameters, self.line.last, STATED * abs(twist))
+
+    def _accelerations(
+        self, motion: Walk, found: BoxEntries, rows: dict[tuple[int, int], Wave], base: dict[int, Wave]
+    ) -> dict[int, tuple[int, Wave]]:
+        """Put the rows of points' accelerations; by row the state on which torques act, and by how much.
+
+        φ̈ = r δ̈ + 2r′ω δ̇ + (r′ω̇ + r″ω²) δ beyond that of the base motion, δ̇ = π/M, δ̈ = π̇/M − Ṁπ/M².
+        """
+        topo, co = self.line.assembly.topology, self.line.co
+        first, square, moved = len(found.energy) - topo.size, co.speed * co.speed, dict[int, tuple[int, Wave]]()
+        growth = {} if topo.free else self._mass_rates(motion)
+        for at, (s, _) in enumerate(topo.points, start=3 * len(topo.compliances) + len(topo.points)):
+            group = topo.group_of(s)
+            i, ref, r = topo.coordinate[group], topo.reference[group], motion.relative[s]
+            base[at] = motion.acceleration[s] * square
+            if i < 0:
+                continue
+            own, light = first + i, found.light[i]
+            push = r * light
+            moved[at] = own, push
+            row = {j: push * entry for (k, j), entry in found.entries.items() if k == own}
+            if not topo.free:
+                w, w1 = motion.speed[ref] * co.speed, motion.acceleration[ref] * square
+                r1, r2 = motion.relative_slope[s], motion.relative_curvature[s]
+                turning_on = (r1 * w * 2.0) * light
+                if i in growth:
+                    turning_on = turning_on - push * light * growth[i]
+                for j, more in ((own, turning_on), (i, r1 * w1 + r2 * (w * w))):
+                    if more.size:
+                        row[j] = row[j] + more if j in row else more
+            rows |= {(at, j): wave for j, wave in row.items() if wave.size}
+        return moved
+
+    def _mass_rates(self, motion: Walk) -> dict[int, Wave]:
+        """Ṁ = Σ 2J r r′ω by unknown, where joints within a group move it."""
+        topo, co, found = self.line.assembly.topology, self.line.co, dict[int, Wave]()
+        for s in range(len(topo.stations)):
+            group = topo.group_of(s)
+            i, ref = topo.coordinate[group], topo.reference[group]
+            if i < 0 or not (co.inertia[s].size and motion.relative_slope[s].size):
+                continue
+            w = motion.speed[ref] * co.speed
+            rate = co.inertia[s] * (motion.relative[s] * motion.relative_slope[s]) * w * 2.0
+            found[i] = found[i] + rate if i in found else rate
+        return found
 
 
 @dataclass(frozen=True)

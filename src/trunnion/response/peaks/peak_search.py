@@ -4,32 +4,27 @@ asked."""
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.geometry import tube_stress
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError
 from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.peaks.box_peaks import BoxPeaks, box_peaks
-from trunnion.response.peaks.quantities import LARGEST, SPEED, SWING, UNITS, quantities_of
+from trunnion.response.peaks.peak_limits import largest_allowed
+from trunnion.response.peaks.quantities import ALWAYS, OF_INERTIAS, OF_SPRINGS, SPEED, in_unit, quantities_of
 from trunnion.response.speed_sweep import sweep_speeds
-from trunnion.results.units import figures
 from trunnion.results.words import Words
-from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.waiting import time_is_up, to_the_end
 
-LIMITED = {
-    "vibratory_torque": SWING, "max_torque": LARGEST, "max_stress": LARGEST, "max_speed_fluctuation": SPEED,
-}  # fmt: skip
-"""Measures by the keys of the limits that they are compared with."""
+AROUND = 64
+"""Speeds looked at before the first box."""
 LEAST = 1e-3
 """What springs carry below this share of the largest is bounded by that."""
 
@@ -60,7 +55,7 @@ class PeakSearch:
     @classmethod
     def of(cls, space: BoxSpace, gap: float, most: int, progress: Callable[[float], None]) -> PeakSearch:
         found = quantities_of(space.assembly)
-        limit, none = stated_limits(space.assembly, found), np.full(len(found), np.nan)
+        limit, none = largest_allowed(space.assembly), np.full(len(found), np.nan)
         return cls(space, gap, most, progress, found, limit, none, none)
 
     @property
@@ -109,6 +104,7 @@ class PeakSearch:
         line = self.space.line_at(np.full(self.space.size, 0.5))[0]
         low, high = self.space.speeds
         speeds = sweep_speeds(line, low, high) if low < high else np.array([low])
+        speeds = speeds[:: -(-len(speeds) // AROUND)]  # the middles of boxes come closer
         try:
             found = order_response(line, speeds)
         except ComputationError:
@@ -126,18 +122,26 @@ class PeakSearch:
         known = np.where(np.isfinite(self.computed), self.computed, 0.0)
         measures = np.array([measure for measure, _ in self.quantities])
         least = np.zeros(len(known))
-        for measure in UNITS:
+        for measure in (*OF_SPRINGS, *OF_INERTIAS):
             of = measures == measure
             least[of] = LEAST * known[of].max(initial=0.0)
         return np.maximum((1 + self.gap) * known, least)
 
     def _within(self, upper: Array) -> Flags:
         """Whether bounds are below limits, or without one close enough."""
-        return np.asarray(np.where(np.isfinite(self.limit), upper <= self.limit, upper <= self._allowed()))
+        close = np.where(np.isfinite(self.limit), upper <= self.limit, upper <= self._allowed())
+        return np.asarray(close | ~self._asked)
+
+    @property
+    def _asked(self) -> Flags:
+        """What is to come close, or below its limit; other bounds are given as they come."""
+        always = np.array([measure in ALWAYS for measure, _ in self.quantities])
+        return np.asarray(always | np.isfinite(self.limit))
 
     def _beyond(self, peaks: BoxPeaks) -> Array:
         """By what factor a box stands above what is asked (quantity,); 1 where it does not."""
         target = np.where(np.isfinite(self.limit), self.limit, self._allowed())
+        target = np.where(self._asked, target, np.inf)
         with np.errstate(invalid="ignore", divide="ignore"):
             factor = np.where(peaks.upper > target, np.where(target > 0, peaks.upper / target, np.inf), 1.0)
         return np.asarray(np.nan_to_num(factor, nan=np.inf, posinf=1e300))
@@ -170,33 +174,16 @@ class PeakSearch:
         if not value > limit:
             return
         measure, name = self.quantities[quantity]
-        words, unit = Words(speed_unit(line)), UNITS[measure]
-        has, most = (words.speed(one) if measure == SPEED else f"{figures(one)} {unit}" for one in (value, limit))
+        words = Words(speed_unit(line))
+        has, most = (words.speed(one) if measure == SPEED else in_unit(measure, one) for one in (value, limit))
         self.line, self.counterexample = line, known
-        self.exceeded = f"has a {measure} of {has} in {name}, whose limit is {most}"
+        self.exceeded = f"has a {measure} of {has} in {name}, of which {most} is allowed"
 
 
 def _values(found: OrderResponse) -> Array:
     """Quantities (speed, quantity) of a response."""
-    parts = found.vibratory_torque, found.peak_torque, found.vibratory_twist, found.speed_fluctuation
+    parts = (
+        found.vibratory_torque, found.peak_torque, found.vibratory_twist, found.twist_range.largest,
+        found.rated_torque, found.heat, found.speed_fluctuation, found.acceleration,
+    )  # fmt: skip
     return np.concatenate(parts, axis=1)
-
-
-def stated_limits(assembly: Assembly, quantities: Sequence[tuple[str, str]]) -> Array:
-    """The smallest limit that the description states of every quantity, by measure and element (quantity,); infinite
-    where none. A limit of stress is one of the torque that makes it."""
-    springs = dict(zip((c.shafts for c in assembly.topology.compliances), shaft_names(assembly), strict=True))
-    found = np.full(len(quantities), np.inf)
-    for one in assembly.line.limits_by_element:
-        if one.key not in LIMITED:
-            continue
-        place, value = assembly.line.index(one.element), float(one.value)
-        holder = next((name for shafts, name in springs.items() if place in shafts), one.element)
-        if one.key == "max_stress":
-            shaft = assembly.line.elements[place]
-            value /= float(tube_stress(shaft.outer_diameter, shaft.inner_diameter or 0.0))  # type: ignore[attr-defined]
-        at = (LIMITED[one.key], holder)
-        if at in quantities:
-            k = quantities.index(at)
-            found[k] = min(found[k], value)
-    return found

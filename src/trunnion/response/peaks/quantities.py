@@ -2,12 +2,31 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from trunnion.equations.coefficients import Assembly
+from trunnion.results.units import figures
 from trunnion.steady.orders.forced_response import shaft_names
 
-SWING, LARGEST, TWIST, SPEED = "vibratory torque", "largest torque", "vibratory twist", "speed fluctuation"
-UNITS = {SWING: "N m", LARGEST: "N m", TWIST: "rad", SPEED: "rad/s"}
-OF_SPRINGS, OF_INERTIAS = (SWING, LARGEST, TWIST), (SPEED,)
+SWING, LARGEST, TWIST, FURTHEST = "vibratory torque", "largest torque", "vibratory twist", "largest twist"
+RATED, HEAT = "rated torque", "heat"
+SPEED, ACCELERATION = "speed fluctuation", "acceleration"
+UNITS = {
+    SWING: "N m", LARGEST: "N m", TWIST: "rad", FURTHEST: "rad", RATED: "N m", HEAT: "W", SPEED: "rad/s",
+    ACCELERATION: "rad/s²",
+}  # fmt: skip
+OF_SPRINGS, OF_INERTIAS = (SWING, LARGEST, TWIST, FURTHEST, RATED, HEAT), (SPEED, ACCELERATION)
+ALWAYS = (SWING, LARGEST, TWIST, SPEED)
+"""Measures whose bounds are brought close to what was computed; others only where a limit is stated."""
+RATED_UP_TO = 1000.0
+"""Frequency [Hz] up to which orders are sure to count in a rated torque."""
+
+
+def in_unit(measure: str, value: float, digits: int = 4) -> str:
+    """A value with its unit; twists in degrees."""
+    if UNITS[measure] == "rad":
+        return f"{figures(float(np.degrees(value)), digits)} deg"
+    return f"{figures(value, digits)} {UNITS[measure]}"
 
 
 def quantities_of(assembly: Assembly) -> list[tuple[str, str]]:
