@@ -20,7 +20,6 @@ from trunnion.response.peaks.certify_peaks import PeakCertificate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
-TABLED = {"order": 2, "speeds": [5, 500], "amplitudes": [1, 9]}
 ASKED = (
     "vibratory_torque", "peak_torque", "vibratory_twist", "peak_twist", "rated_torque", "heat", "speed_fluctuation",
     "acceleration",
@@ -91,7 +90,6 @@ def test_what_ends_early_still_holds() -> None:
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        (two_disks().replace("engine", excitation=[TABLED]), r"engine\.excitation 1"),
         (two_disks().replace("shaft", damping=0.0, loss_factor=0.1), "shaft"),
     ],
 )  # fmt: skip
@@ -210,7 +208,7 @@ def test_a_slow_line_with_a_light_fork() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["straight", "bent", "geared", "branched"])
 def test_many_random_lines_stay_below(kind: str) -> None:
-    every = [attacked(kind, seed, 150, 40) for seed in range(10, 35)]
+    every = [attacked(kind, seed, 60, 12) for seed in range(10, 27)]
     bounded = [near for count, near in every if count]
     assert len(bounded) >= 8 and max(bounded) > 0.95  # some random line comes close to its bound
 

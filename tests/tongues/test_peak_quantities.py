@@ -86,3 +86,50 @@ def test_limits_exceeded_are_named_in_words() -> None:
     limits = (tn.Limit(of="coupling", max_twist=0.9 * peaks()["peak_twist"]),)
     found = tn.certify_peaks(line.model_copy(update={"limits": limits}), {}, SPEEDS)
     assert " deg in coupling" in found.exceeded
+
+
+def driven(law: dict[str, object], **load: float) -> tn.Driveline:
+    drives = {"drive_share": 1.0} if load else {}
+    engine = tn.Disk(name="engine", inertia=J1, excitation=[{"order": 2, **law}], **drives)
+    return tn.Driveline([engine, tn.Shaft(name="shaft", stiffness=K, damping=C), tn.Disk(inertia=J2, **load)])
+
+
+SPEEDS_AT = {"speeds": [5.0, 100.0, 150.0, 500.0], "amplitudes": [10.0, 90.0, 40.0, 120.0], "phases": [0, 1, 0.5, 0]}
+TORQUES_AT = {"torques": [0.0, 20.0, 60.0, 200.0], "amplitudes": [5.0, 60.0, 30.0, 100.0]}
+
+
+def by_speed(speed: np.ndarray) -> np.ndarray:
+    complex_ones = np.array(SPEEDS_AT["amplitudes"]) * np.exp(1j * np.array(SPEEDS_AT["phases"]))
+    points = SPEEDS_AT["speeds"]
+    return np.abs(np.interp(speed, points, complex_ones.real) + 1j * np.interp(speed, points, complex_ones.imag))
+
+
+@pytest.mark.parametrize(
+    ("law", "load", "amplitude"),
+    [
+        (SPEEDS_AT, {}, by_speed),
+        ({"share": 0.5}, {"quadratic_load": 1e-3, "viscous_load": 0.1}, lambda w: 0.5 * (1e-3 * w**2 + 0.1 * w)),
+        (TORQUES_AT, {"quadratic_load": 1e-3},
+         lambda w: np.interp(1e-3 * w**2, TORQUES_AT["torques"], TORQUES_AT["amplitudes"])),
+    ],
+)  # fmt: skip
+def test_amplitudes_that_follow_speed_or_torque(law: dict[str, object], load: dict[str, float], amplitude) -> None:  # type: ignore[no-untyped-def]
+    """Piecewise in the speed, against the closed form; the load damps what it goes with."""
+    found = tn.certify_peaks(driven(law, **load), {}, SPEEDS, gap=0.05)
+    speed = np.linspace(*SPEEDS, 20_001)
+    s, own = 2j * speed, load.get("viscous_load", 0.0) + 2 * load.get("quadratic_load", 0.0) * speed
+    # J₁ s² φ₁ = A + T, (J₂ s² + d s) φ₂ = −T, T = (k + c s)(φ₂ − φ₁), seen from the shaft
+    compliance = 1 / (K + C * s) + 1 / (J1 * s**2) + 1 / (J2 * s**2 + own * s)
+    true = float(np.abs(amplitude(speed) / (J1 * s**2) / compliance).max())
+    assert found.verdict == "proved"
+    assert found.vibratory_torque[0] * (1 - 1e-4) <= true <= found.vibratory_torque_bound[0] <= 1.06 * true
+
+
+def test_what_a_torque_that_scatters_makes_is_refused() -> None:
+    line = driven({"share": 0.5}, quadratic_load=1e-3)
+    with pytest.raises(
+        tn.InputError, match=r"engine\.excitation 1 = 'Disk 2\.quadratic_load': goes with the mean torque"
+    ):
+        tn.certify_peaks(line, {"Disk 2.quadratic_load": 0.05}, SPEEDS)
+    with pytest.raises(tn.InputError, match="does not cover"):
+        tn.certify_peaks(driven(SPEEDS_AT), {}, (60.0, 600.0))

@@ -19,14 +19,17 @@ from trunnion.design.assessment.measures import measures, name_of, rating_name
 from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.quantities import TORQUE, QuantityKind, eye_unit, shown
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.harmonics import line_harmonics
 from trunnion.errors import InputError
 from trunnion.response.peaks.peak_limits import peak_limits
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.units import figures, rounded_up
 
-BOXES, LEAST = 24, 3
-"""Boxes of a line, and of each of its load cases at least."""
+BOXES, LEAST, WORTH = 24, 3, 8
+"""Boxes of a line, and of each of its load cases at least; where it has fewer, none is worth its time."""
+CHEAP = 100
+"""Springs times harmonics up to which a box takes some hundredths of a second."""
 EASY = 0.6
 """Share of a limit up to which a value is bounded first."""
 BELOW = 1e-6
@@ -97,6 +100,7 @@ def _bounds(subject: AssessmentInput, able: Sequence[Check], asked: dict[str, Bo
     # Loaded where needed: they bring the compiler with them.
     from trunnion.response.peaks.peaks_below import AskedPeak, peaks_below
 
+    allowed = _allowed(subject.cases[0].assembly)
     peaks, owner = list[AskedPeak](), list[str]()
     for check in able:
         one, limit = asked[check.name], check.limit * (1 - check.required_margin)
@@ -106,14 +110,22 @@ def _bounds(subject: AssessmentInput, able: Sequence[Check], asked: dict[str, Bo
     for case in subject.cases:
         upper[upper > limits] = np.inf  # what one case leaves open no other proves
         left = np.flatnonzero(upper <= limits)
-        if not len(left):
+        if not len(left) or not allowed:
+            upper[left] = np.inf
             break
-        most = max(BOXES // len(subject.cases), LEAST)
+        most = max(allowed // len(subject.cases), LEAST)
         found = peaks_below(case.assembly, (case.low, case.high), tuple(peaks[k] for k in left), most)
         upper[left] = np.maximum(upper[left], found.upper)
         boxes, ended = boxes + found.boxes, ended or found.ended
     names = np.array(owner)
     return {name: ProvedBound(float(upper[names == name].max()) * asked[name].per, boxes, ended) for name in set(owner)}
+
+
+def _allowed(assembly: Assembly) -> int:
+    """Boxes that a line may take."""
+    acting = sum(one.acts for one in line_harmonics(assembly))
+    boxes = int(BOXES * min(1.0, CHEAP / (max(len(assembly.topology.compliances), 1) * (1 + acting))))
+    return boxes if boxes >= WORTH else 0
 
 
 def _said(check: Check, asked: dict[str, BoundedCheck], found: dict[str, ProvedBound], cases: int) -> Check:
@@ -133,7 +145,7 @@ def _said(check: Check, asked: dict[str, BoundedCheck], found: dict[str, ProvedB
         beyond = f"{_above(one.value, limit)} what is allowed"
         why = f"{_boxes(one.boxes)} bound it by {_at_most(one.value, kind)} only, {beyond}"
     else:
-        why = one.ended or f"{_boxes(one.boxes)} {'does' if one.boxes == 1 else 'do'} not suffice"
+        why = one.ended or _too_few(one.boxes)
     return replace(check, because=f"{check.because}; {SEARCHED}: {why}", proof=SEARCHED, bound=one.value)
 
 
@@ -141,6 +153,10 @@ def _above(bound: float, value: float) -> str:
     """ "7.2 % above", "2.4 times"."""
     share = bound / value
     return f"{figures(100 * (share - 1), 2)} % above" if share < 2 else f"{figures(share, 2)} times"
+
+
+def _too_few(boxes: int) -> str:
+    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice" if boxes else "each box takes long here"
 
 
 def _boxes(number: int) -> str:

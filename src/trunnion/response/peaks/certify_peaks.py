@@ -20,7 +20,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.certificate.box_space import BoxSpace
-from trunnion.floquet.certificate.requirements import require_linear
+from trunnion.floquet.certificate.certify import require_provable
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.response.peaks.peak_search import PeakSearch
 from trunnion.response.peaks.peaks_below import require_enclosed
@@ -213,11 +213,11 @@ def certify_peaks(
     if not 0 < gap < np.inf:
         raise InputError("must be positive", key="gap", value=gap, remedy="0.05, say")
     assembly = assemble(line)
-    require_enclosed(assembly, span)
+    require_provable(assembly)
     given = assembly.line.tolerances_by_path if tolerances is None else tolerances
     spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
     space = BoxSpace(assembly, spreads, span)
-    require_linear(assembly, span, space.ranges(np.array([np.zeros(space.size), np.ones(space.size)])))
+    require_enclosed(assembly, span, space.ranges(np.array([np.zeros(space.size), np.ones(space.size)])))
     found = PeakSearch.of(space, gap, most_boxes, progress or (lambda part: None))
     found.run()
     return _certificate(space, found, gap)

@@ -33,6 +33,7 @@ from trunnion.floquet.certificate.box_equations import (
     box_line,
 )
 from trunnion.floquet.certificate.waves import OUTWARD, Wave, affine, turning
+from trunnion.response.peaks.amplitude_chords import amplitude_chord, follows
 
 UNEVEN_BY_SPEED = 1e-9
 """Share by which an amplitude may go with the speed otherwise than its law says."""
@@ -83,25 +84,34 @@ def forced_box(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence
             raise NotEnclosed from error
 
 
-def require_forcing(assembly: Assembly, speeds: tuple[float, float]) -> None:
-    """Refuse excitations whose amplitude goes with the speed in another way than its square.
+def require_forcing(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange] = ()) -> None:
+    """Refuse excitations whose amplitude goes with the speed along a curve, or with a tolerance.
 
     Raises
     ------
-    InputError : names the disk and the excitation.
+    InputError : names the disk and the excitation; a table that does not cover the speeds.
     """
-    table = assembly.table(3, np.array([speeds[0], sum(speeds) / 2, speeds[1]]))
+    table = assembly.table(1 + 2 * len(ranges), sum(speeds) / 2)
+    for k, own in enumerate(ranges):
+        for row, end in ((1 + 2 * k, own.low), (2 + 2 * k, own.high)):
+            changed = table[row : row + 1]  # a view: the table itself is written
+            own.columns.put(changed, end)
     for one in line_harmonics(assembly):
-        if not one.acts:
+        if not (one.acts and isinstance(one, DiskTorque) and follows(one)):
             continue
         size = one.size(assembly, table)
-        if isinstance(one, DiskTorque) and one.law.stated_as == "quadratic_amplitude":
-            size = size / table[:, 0] ** 2
-        if np.ptp(np.abs(size)) > UNEVEN_BY_SPEED * np.abs(size).max() or np.ptp(size.imag) > 1e-6 * np.abs(size).max():
+        moved = np.flatnonzero(np.abs(size - size[0]) > UNEVEN_BY_SPEED * np.abs(size).max())
+        if len(moved):
             raise InputError(
-                "goes with the speed along a curve, which is not enclosed", element=one.name,
-                key=f"excitation {one.number}", value=float(np.abs(size).max()),
-                remedy="state an amplitude, its largest, or a quadratic_amplitude",
+                "goes with the mean torque, which scatters, and is not enclosed then",
+                element=one.name, key=f"excitation {one.number}", value=ranges[(int(moved[0]) - 1) // 2].label,
+                remedy="leave that tolerance out, or state an amplitude, its largest",
+            )  # fmt: skip
+        if amplitude_chord(one, assembly, speeds) is None:
+            raise InputError(
+                "goes with a mean torque that goes with the speed along a curve, which is not enclosed",
+                element=one.name, key=f"excitation {one.number}", value=float(np.abs(size).max()),
+                remedy="state an amplitude, its largest, a quadratic_amplitude, or amplitudes at speeds",
             )  # fmt: skip
     co = assembly.coefficients(assembly.table(1, speeds[0]))
     for oil in co.oils:
@@ -239,6 +249,8 @@ class _ForcedLine:
 
     def _size(self, one: LineHarmonic) -> Wave:
         """A e^{i phase}, over Ω² where it goes by that."""
+        if isinstance(one, DiskTorque) and follows(one):
+            return self._following(one)
         assembly, ranges, co = self.line.assembly, self.ranges, self.line.co
         table = assembly.table(1 + 2 * len(ranges), co.speed.mean.real)
         for k, own in enumerate(ranges):
@@ -252,6 +264,17 @@ class _ForcedLine:
         kept = {v: slope for v, slope in slopes.items() if slope}
         rest = (STATED + UNEVEN_BY_SPEED) * float(np.abs(size).max())
         return affine(complex(size[0]), kept, self.line.parameters, self.line.last, rest)  # type: ignore[arg-type]
+
+    def _following(self, one: DiskTorque) -> Wave:
+        """A e^{i phase} of one that follows from the speed."""
+        speed, last = self.line.co.speed, self.line.last
+        middle, half = speed.mean.real, float(speed.parts[1, last].real)
+        found = amplitude_chord(one, self.line.assembly, (middle - half, middle + half))
+        if found is None:
+            raise ZeroDivisionError
+        slopes = {1: found.slope} if half else {}
+        rest = found.apart * OUTWARD + 8 * STATED * found.largest
+        return affine(found.centre, slopes, self.line.parameters, last, rest)  # type: ignore[arg-type]
 
     def _on_states(self, g: dict[int, Wave], found: BoxEntries, order: Fraction, frequency: float) -> dict[int, Wave]:
         """Of torques on the unknowns, those on the states."""

@@ -25,6 +25,8 @@ from trunnion.waiting import time_is_up, to_the_end
 
 AROUND = 64
 """Speeds looked at before the first box."""
+BELOW = 1e-6
+"""Share by which a bound may lie below what was computed: more than rounding makes of both."""
 LEAST = 1e-3
 """What springs carry below this share of the largest is bounded by that."""
 
@@ -97,7 +99,10 @@ class PeakSearch:
             for half in halves:
                 self._judge(half)
             self.report_progress(min(self._closed, 0.999))
-        self.done = bool(np.all(self._within(self.upper))) and self.counterexample is None
+        with np.errstate(invalid="ignore"):
+            wrong = bool(np.any(self.upper < self.computed * (1 - BELOW)))
+        self.done = bool(np.all(self._within(self.upper))) and self.counterexample is None and not wrong
+        self.ended = self.ended or ("a bound lies below what was computed, so one of both is wrong" if wrong else "")
 
     def _look_around(self) -> None:
         """What the line in the middle of the tolerances takes over the range: what matters is known then."""

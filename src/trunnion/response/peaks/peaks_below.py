@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from trunnion.arrays import Array, Flags
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.steady_base import require_steady_base
+from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.box_space import BoxSpace, halved
 from trunnion.floquet.certificate.certify import require_provable
 from trunnion.floquet.certificate.requirements import require_linear
@@ -37,8 +39,8 @@ class PeakBounds:
     ended: str = ""
 
 
-def require_enclosed(assembly: Assembly, speeds: tuple[float, float]) -> None:
-    """Refuse lines whose equations or excitations are not enclosed.
+def require_enclosed(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange] = ()) -> None:
+    """Refuse lines whose equations or excitations are not enclosed over all values of ``ranges``.
 
     Raises
     ------
@@ -46,7 +48,8 @@ def require_enclosed(assembly: Assembly, speeds: tuple[float, float]) -> None:
     """
     require_provable(assembly)
     require_steady_base(assembly, assembly.table(4, np.linspace(*speeds, 4)))
-    require_forcing(assembly, speeds)
+    require_linear(assembly, speeds, ranges)
+    require_forcing(assembly, speeds, ranges)
 
 
 def peaks_below(
@@ -59,7 +62,6 @@ def peaks_below(
     InputError : the line's equations are not enclosed.
     """
     require_enclosed(assembly, speeds)
-    require_linear(assembly, speeds, ())
     found = _Halving(BoxSpace(assembly, (), speeds), np.array([one.quantity for one in asked]), most_boxes)
     limit, easy = np.array([one.limit for one in asked]), np.array([one.easy for one in asked])
     found.run(limit, easy)
