@@ -269,19 +269,24 @@ def assemble(line: Driveline | Assembly, load_case: str | None = None) -> Assemb
     return made
 
 
-_RUNNING: deque[Assembly] = deque(maxlen=512)
+_RUNNING: dict[tuple[int, float], Assembly] = {}
+"""Lines with a torque converter by the description and input speed, or by how it runs and input speed, oldest first."""
+MOST_RUNNING = 1024
 
 
 def _assembled_at(line: Driveline, speed: float, runs: Driveline | None = None) -> Assembly:
     """A line with a torque converter at an input ``speed`` [rad/s]; ``runs`` where it is known how it runs there."""
-    for known in tuple(_RUNNING):
-        if known.runs_at == speed and (known.stated is line or (runs is not None and known.line is runs)):
-            return known
+    known = _RUNNING.get((id(line if runs is None else runs), speed))
+    if known is not None and (known.stated is line or (runs is not None and known.line is runs)):
+        return known
     runs = running_line(line, speed) if runs is None else runs
     made = Assembly(runs, pack(runs), topology(runs), line, speed)
     laws = zip(made.topology.joints, joint_laws(made, made.table(1)), strict=True)
     require_even(runs, made.topology, [s for s, law in laws if law.nonuniform])
-    _RUNNING.append(made)
+    for same in (line, runs):
+        _RUNNING[id(same), speed] = made
+    for oldest in list(_RUNNING)[:-MOST_RUNNING]:
+        _RUNNING.pop(oldest, None)
     return made
 
 

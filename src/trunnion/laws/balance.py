@@ -83,21 +83,22 @@ def balances(curves: Geared, low: float, high: float) -> tuple[TorqueBalance, ..
 
 def _roots(curves: Geared, low: Array, high: Array) -> Iterator[float]:
     """Roots of f in pieces (piece,) without a knot between their ends, in no order: all are looked at together, and
-    where no polynomial follows f, their halves are."""
+    where no polynomial follows f, their halves are; of wide ones by ratio."""
     while len(low):
         middle, half = (low + high) / 2, (high - low) / 2
         torques = _at_input(curves, middle[:, None] + half[:, None] * _POINTS)
         acting = np.abs(torques).sum(axis=0).max(axis=-1)
         series = torques.sum(axis=0) @ _TO_SERIES.T
-        followed = (np.abs(series[:, -TAIL:]).max(axis=-1) <= FOLLOWED * acting) & (high <= 4 * low)
+        wide = high > 4 * low
+        followed = (np.abs(series[:, -TAIL:]).max(axis=-1) <= FOLLOWED * acting) & ~wide
         followed |= 2 * half <= NARROWEST * high
         for i in np.flatnonzero(followed & np.isfinite(acting)):
             above = np.flatnonzero(np.abs(series[i]) > ROUNDING * acting[i])
             if above.size and abs(series[i, 0]) <= np.abs(series[i, 1:]).sum() + ZERO * acting[i]:
                 smooth = Chebyshev(series[i, : above[-1] + 1], (low[i], high[i]))
                 yield from _balanced(curves, smooth, float(middle[i]), float(half[i]))
-        halved = ~followed & np.isfinite(acting)
-        low, high = np.append(low[halved], middle[halved]), np.append(middle[halved], high[halved])
+        cut, at = ~followed & np.isfinite(acting), np.where(wide, np.sqrt(low * high), middle)
+        low, high = np.append(low[cut], at[cut]), np.append(at[cut], high[cut])
 
 
 def _balanced(curves: Geared, smooth: Chebyshev, middle: float, half: float) -> Iterator[float]:

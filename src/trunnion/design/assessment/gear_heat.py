@@ -11,16 +11,18 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
-from trunnion.design.assessment.check import Check, Rule, Status, judged, percent
+from trunnion.design.assessment.check import Check, Rule, Status
+from trunnion.design.assessment.converter_heat import POINTS as CONVERTER_POINTS
+from trunnion.design.assessment.mean_heat import heat_check, speeds
 from trunnion.driveline.loss_curves import loses
-from trunnion.driveline.quantities import POWER, against, shown
+from trunnion.driveline.quantities import POWER, shown
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.gear_losses import lost_power
 from trunnion.equations.loads import gear_losses
 
 RULE = Rule("P lost ≤ P over the mean speeds", "the maker's sheet", "yours", "gear-heat")
 POINTS = 257
-"""Speeds at which it is looked at."""
+"""Speeds at which it is looked at; where a torque converter runs otherwise at each, those of its heat."""
 
 
 def gear_heat(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
@@ -29,23 +31,19 @@ def gear_heat(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Chec
     lossy = [i for i, element in enumerate(case.assembly.line.elements) if loses(element)]
     if not lossy:
         return
-    speed = np.linspace(case.low, case.high, POINTS if case.high > case.low else 1)
+    speed = speeds(case, POINTS if case.assembly.stated is None else CONVERTER_POINTS)
     power = _power(case.assembly, speed)
     for i in lossy:
         lost, rating = power[i], getattr(case.assembly.line.elements[i], "heat_rating", None)
-        title, at = f"heat of {names[i]}", int(power[i].argmax())
-        value, there = float(lost[at]), float(speed[at])
+        title = f"heat of {names[i]}"
         if rating is None:
-            most = f"{shown(value, POWER, digits=4)} at {subject.shown(there)}"
+            at = int(lost.argmax())
+            most = f"{shown(float(lost[at]), POWER, digits=4)} at {subject.shown(float(speed[at]))}"
             yield Check(title, Status.NOT_APPLICABLE, RULE, f"{names[i]} states no heat_rating; it loses {most}")
             continue
-        margin = 1 - value / float(rating)
-        yield Check(
-            title, judged(margin), RULE,
-            f"{against(value, float(rating), POWER)} at {subject.shown(there)}, {percent(margin)}{case.suffix}",
-            margin=margin, value=value, limit=float(rating), unit="W", speed=there, load_case=case.name,
-            inputs="mean torques and speeds of the meshes", error=_error(lost, at), element=names[i],
-            covered=((case.low, case.high),),
+        yield heat_check(
+            subject, case, RULE, title=title, element=names[i], speed=speed, power=lost, rating=float(rating),
+            inputs="mean torques and speeds of the meshes",
         )  # fmt: skip
 
 
@@ -59,10 +57,3 @@ def _power(assembly: Assembly, speed: Array) -> dict[int, Array]:
         for i, power in lost.items():
             found[i] = np.concatenate([found[i], power]) if i in found else power
     return found
-
-
-def _error(power: Array, at: int) -> float:
-    """What the top between two points may rise above the higher one: nothing at an end of the range."""
-    if not 0 < at < len(power) - 1:
-        return 0.0
-    return float(max(2 * power[at] - power[at - 1] - power[at + 1], 0.0))
