@@ -277,3 +277,20 @@ def test_a_limit_is_unknown_where_part_of_its_range_is(untold: tuple[float, floa
     assert found.kind.tolist() == [LimitKind.UNKNOWN] and np.isnan(found.smallest)
     assert not len(found.windows[0]) and not len(found.common_windows)
     assert "it is not known" in found.sentence
+
+
+@pytest.mark.slow
+def test_damping_of_a_gear_stage_reaches_to_the_tip() -> None:
+    """The bound of ρ, of a stiff mesh a hundred times its error, does not cut the tongue short: with a little less
+    damping than stated the line is unstable, by single integrations, with a little more it is stable."""
+    line = tn.load(EXAMPLES / "gear-stage.toml")
+    found = tn.minimum_damping(line, ("1070 rpm", "1085 rpm"), maximum=1.0, rows=5)
+    ((end, _),) = found.ends
+    assert found.smallest is not None and end is not None
+
+    def radius(share: float) -> float:
+        factor = share * found.smallest
+        damped = line.replace("coupling", damping=1.2 * factor).replace("gears", mesh_damping=1500 * factor)
+        return float(tn.stability(damped.replace("mixer shaft", loss_factor=0.03 * factor), end.speed).spectral_radius)
+
+    assert radius(1 - 2e-6) > 1 > radius(1 + 2e-6)

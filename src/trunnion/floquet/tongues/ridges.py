@@ -22,13 +22,14 @@ _T = np.linspace(-1.0, 1.0, LOOKS)
 _FIT = np.linalg.pinv(np.vander(_T, 5, increasing=True))
 
 
-def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Array]:
-    """Where ρ is highest between ``low`` and ``high`` on rows ``v``, and ρ − 1 there less its error; each (points,).
+def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Array, Array]:
+    """Where ρ is highest between ``low`` and ``high`` on rows ``v``, ρ − 1 there less its error, and that error; each
+    (points,).
 
     The last round fits a quartic, so that the place is known far better than its points are apart.
     """
     centre, half = (low + high) / 2, (high - low) / 2
-    best, top = centre.copy(), np.full(len(low), -np.inf)
+    best, top, off = centre.copy(), np.full(len(low), -np.inf), np.zeros(len(low))
     here = np.arange(len(low))
     for _ in range(ROUNDS):
         u = np.clip(centre[here, None] + half[here, None] * _T, low[here, None], high[here, None])
@@ -36,13 +37,13 @@ def ridge(region: Region, low: Array, high: Array, v: Array) -> tuple[Array, Arr
         height, error = (found.radius - 1).reshape(u.shape), found.error.reshape(u.shape)
         known = np.where(np.isfinite(height - error), height - error, -np.inf)
         at = known.argmax(axis=1)[:, None]
-        seen, over, off = (np.take_along_axis(part, at, 1)[:, 0] for part in (u, known, error))
-        best[here], top[here] = _fitted(u, height, off, seen, over, centre[here], half[here])
+        seen, over, off[here] = (np.take_along_axis(part, at, 1)[:, 0] for part in (u, known, error))
+        best[here], top[here] = _fitted(u, height, off[here], seen, over, centre[here], half[here])
         centre[here], half[here] = seen, half[here] / 4
         here = here[_misfit(height) >= SMOOTH * np.ptp(height, axis=1) + ROUNDING]
         if not len(here):
             break
-    return best, top
+    return best, top, off
 
 
 def _misfit(height: Array) -> Array:
@@ -75,7 +76,8 @@ def tips(
     """Where tongues close between a row without them, ``outside``, and one with them, ``inside`` (tongues,), in v.
 
     centre, slope, width: of each tongue at its row ``inside`` and how its middle moves with v; walls (tongues, 2):
-    bounds in u that keep neighbours out. Returns u and v of the tips and whether each was found.
+    bounds in u that keep neighbours out. Returns u and v of the tips and whether each was found. A tongue is told from
+    none by more than the error of ρ; its tip is where ρ itself is 1, lest that error, a bound, cut it short.
     """
 
     def window(v: Array, which: Places) -> tuple[Array, Array]:
@@ -85,18 +87,23 @@ def tips(
         low, high = np.maximum(middle - reach, walls[which, 0]), np.minimum(middle + reach, walls[which, 1])
         return np.minimum(low, high), np.maximum(low, high)
 
-    def height(v: Array, which: Places) -> Array:
-        return ridge(region, *window(v, which), v)[1]
-
     everyone = np.arange(len(inside))
-    found = (height(outside, everyone) < 0) & (height(inside, everyone) > 0)
+    (_, below, error), (_, above, _) = (ridge(region, *window(v, everyone), v) for v in (outside, inside))
+    found = (below < 0) & (above > 0)
+    # Without damping ρ is 1 outside as well, and only its error tells where it grows.
+    falls = below + error < 0
+
+    def height(v: Array, which: Places) -> Array:
+        _, known, off = ridge(region, *window(v, which), v)
+        return known + np.where(falls[which], off, 0.0)
+
     v = inside.copy()
     pick = np.flatnonzero(found)
     if len(pick):
         exact = TIP * (region.box.v1 - region.box.v0)
         v[pick] = bracketed(lambda at, own: height(at, pick[own]), outside[pick], inside[pick], exact)
     low, high = window(v, everyone)
-    u, top = ridge(region, low, high, v)
+    u, top, _ = ridge(region, low, high, v)
     # Highest at an end of the window is the flank of a neighbour that came in.
     inner = np.minimum(u - low, high - u) > ASIDE * (high - low)
     return u, v, found & np.isfinite(top) & inner

@@ -194,7 +194,7 @@ def _near_tips(region: Region, closed: dict[WindowEnd, Point]) -> list[Array]:
     at = tip[:, 1] + share * (v - tip[:, 1])
     middle = tip[:, 0] + share * ((low + high) / 2 - tip[:, 0])
     reach = 0.75 * np.sqrt(share) * (high - low) + 2 * np.abs(middle - tip[:, 0])
-    top, height = ridge(region, middle - reach, middle + reach, at)
+    top, height, _ = ridge(region, middle - reach, middle + reach, at)
     outer = np.stack([np.maximum(top - 2 * reach, region.box.u0), np.minimum(top + 2 * reach, region.box.u1)])
     over = region.above_one(outer.ravel(), np.tile(at, 2)).reshape(2, -1)
     good = np.flatnonzero((height > 0) & (over < 0).all(axis=0))

@@ -272,7 +272,7 @@ def _growths(region: Region, shapes: list[ClosedTrace]) -> list[tuple[float, tup
     rough = _rate(region, (low + high) / 2, v, np.maximum(region.above_one((low + high) / 2, v), 0.0))
     own = [np.flatnonzero(owner == k) for k in range(len(shapes))]
     pick = np.concatenate([o[np.argsort(-rough[o])[:FASTEST]] for o in own] or [np.zeros(0, dtype=np.intp)])
-    u, top = ridge(region, low[pick], high[pick], v[pick])
+    u, top, _ = ridge(region, low[pick], high[pick], v[pick])
     rate, x, y = _rate(region, u, v[pick], top), region.x(u), region.y(v[pick])
     found = []
     for k in range(len(shapes)):
