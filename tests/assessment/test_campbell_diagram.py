@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -9,6 +11,8 @@ from typer.testing import CliRunner
 import trunnion as tn
 from trunnion.cli import app
 from trunnion.modes.loaded_modes import matched
+from trunnion.pictures import campbell_diagram as pictures
+from trunnion.pictures.picture import Texts
 
 J1, J2, K, C = 0.2, 0.8, 1e4, 2.0
 
@@ -182,3 +186,19 @@ def test_the_command_writes_a_picture(tmp_path):
     assert found.exit_code == 0, found.output
     assert (tmp_path / "campbell.png").stat().st_size > 10_000
     assert "crossed" in found.stdout
+
+
+def test_of_a_ship_the_engine_excites_and_the_operating_speed_is_seen():
+    """An engine's throws are said once, as the engine; names of lines lie neither on each other nor on that speed."""
+    line = tn.load(Path(__file__).parents[2] / "examples" / "six-cylinder-ship.toml")
+    found = tn.campbell_diagram(line, [tn.rpm(300), tn.rpm(780)])
+    assert "order 2 (engine) on mode" in str(found) and "engine.throw 1, " not in str(found)
+    assert len(next(one for one in found.lines if one.order == 2.0).causes) == 6
+    panel = pictures.campbell_diagram(found, unit="rpm", operating=line.operation).panels[0]
+    names = [one for one in panel.items if isinstance(one, Texts)]
+    places = [(float(one.x[0]), float(one.y[0])) for one in names]
+    assert len(places) == len(found.lines)
+    wide, high = panel.x.high - panel.x.low, panel.y.high - panel.y.low
+    assert all(abs(x - 750.0) > 0.03 * wide for x, _ in places)
+    for k, (x, y) in enumerate(places):
+        assert all(abs(x - a) > 0.05 * wide or abs(y - b) > 0.025 * high for a, b in places[:k])

@@ -9,7 +9,7 @@ the composite takes them over if it can state them; else it dissolves into its p
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import groupby
@@ -54,6 +54,12 @@ class StatedChain:
             return self.names.index(name)
         parts = enumerate(self.parts)
         return next(i for i, (own, e) in parts if isinstance(e, Composite) and name.startswith(f"{own}."))
+
+
+def owners(parts: Iterable[tuple[str, Element]], names: Iterable[str]) -> tuple[str, ...]:
+    """What ``names`` of ``parts`` are called in the file: of a composite's, the composite once."""
+    owned = {name: one.part_of for name, one in parts}
+    return tuple(dict.fromkeys(str(owned[name][0]) if owned.get(name) else name for name in names))
 
 
 def default_names(elements: Sequence[Element]) -> tuple[str, ...]:

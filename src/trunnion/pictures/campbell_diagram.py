@@ -45,13 +45,13 @@ def campbell_diagram(
     if seen:
         gain = np.log2(np.maximum([c.amplification for c in seen], 1.0))
         says = [
-            f"{c.line.name} ({', '.join(c.line.causes)}) on mode {c.mode}, "
+            f"{c.line.name} ({', '.join(c.line.owners)}) on mode {c.mode}, "
             f"amplification {amplification_words(c.amplification)}"
             for c in seen
         ]
         places, sizes = [(c.speed * x, c.frequency * y) for c in seen], 5 + 2.2 * np.minimum(gain, 6.0)
         items.append(points_at(places, "crossing", "crossing, larger with 1/(2ζ)", sizes, says))
-    items += _names_of_lines(result, top, x, y)
+    items += _names_of_lines(result, top, x, y, operating)
     last = result.frequency[-1]
     named = [m for m in np.argsort(last) if last[m] < top]
     texts = [f"{result.mode[m]}:  {last[m] * y:.4g} {frequency_unit}" for m in named]
@@ -73,15 +73,24 @@ def _ends(result: CampbellDiagram, line: ExcitationLine) -> Array:
     return np.array([low, line.standstill, high] if low < line.standstill < high else [low, high])
 
 
-def _names_of_lines(result: CampbellDiagram, top: float, x: float, y: float) -> list[Item]:
-    """Each line's name near where it leaves the picture, lines of one slope together."""
+def _names_of_lines(result: CampbellDiagram, top: float, x: float, y: float, operating: Operation | None) -> list[Item]:
+    """Each line's name near where it leaves the picture, beside the operating speed and names that would lie on it."""
     found: list[Item] = []
+    placed: list[tuple[float, float]] = []
+    wide, high = 0.07 * float(result.speed[-1] - result.speed[0]), 0.03 * top
+    taken = [operating.speed] if operating and operating.speed else []
     for line in result.lines:
         begin, end = map(float, _ends(result, line)[-2:])
         if line.order and line.at(end) > top:
             end = line.standstill + top / abs(line.order)
         at = begin + 0.93 * (end - begin)
-        if end > begin and not (line.order and line.at(at) > top):
+        while at > begin and (
+            any(abs(at - speed) < wide / 2 for speed in taken)
+            or any(abs(at - speed) < wide and abs(float(line.at(at)) - height) < high for speed, height in placed)
+        ):
+            at -= wide / 4
+        if at > begin and end > begin and not (line.order and line.at(at) > top):
             text = line.name.removeprefix("order ") if not line.frequency else line.name
+            placed.append((at, float(line.at(at))))
             found.append(Texts([at * x], [float(line.at(at)) * y], [text], "excitation name"))
     return found

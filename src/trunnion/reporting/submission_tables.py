@@ -410,19 +410,11 @@ def crossings(contents: SubmissionContents) -> Table:
             "mode": one.mode,
             "frequency [Hz]": one.frequency * HERTZ.factor,
             "excitation": one.line.name,
-            "by": ", ".join(_owners(contents, one.line.causes)),
+            "by": ", ".join(one.line.owners),
             "amplification": one.amplification,
         }
         for one in found
     )
-
-
-def _owners(contents: SubmissionContents, names: Iterable[str]) -> dict[str, None]:
-    """Elements, each composite once for those of its parts that are among ``names``."""
-    owners = {
-        name: one.part_of for name, one in zip(contents.seen.line.names, contents.seen.line.elements, strict=True)
-    }
-    return dict.fromkeys(str(owners[name][0]) if owners.get(name) else name for name in names)
 
 
 def heats(contents: SubmissionContents) -> Table:

@@ -203,7 +203,7 @@ def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table
         {
             f"input speed [{speed_unit}]": c.speed * Words(speed_unit).factor,
             "excitation": c.line.name,
-            "by": ", ".join(c.line.causes),
+            "by": ", ".join(c.line.owners),
             "mode": c.mode,
             f"frequency [{frequency_unit}]": c.frequency * Words(frequency_unit).factor,
             "amplification": c.amplification,

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.arguments import one_number, speeds_of
+from trunnion.driveline.composite import owners
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import aligned_matrices
@@ -61,6 +62,9 @@ class ExcitationLine:
     frequency: float = variable("", "rad/s", name="fixed_frequency")
     causes: tuple[str, ...] = internal("elements that excite")
     torque: float = variable("", "N*m", "of disks, the largest", default=np.nan)
+    owners: tuple[str, ...] = internal(
+        "elements of the file that excite: of an engine's throws, the engine", default=()
+    )
 
     @property
     @computed(variable("", "1", "elements that excite"))
@@ -175,7 +179,7 @@ class CampbellDiagram(Result):
             yield f"  mode {number}: {size}, {self.named(int(number))}"
         for c in self.crossings:
             yield (
-                f"  {self.words.speed(float(f'{c.speed:.5g}'))}: {c.line.name} ({', '.join(c.line.causes)}) on mode "
+                f"  {self.words.speed(float(f'{c.speed:.5g}'))}: {c.line.name} ({', '.join(c.line.owners)}) on mode "
                 f"{c.mode} ({c.frequency / (2 * np.pi):.4g} Hz), amplification {amplification_words(c.amplification)}"
             )
         if not self.lines:
@@ -259,6 +263,7 @@ def campbell_diagram(
 def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine, ...]:
     """Everything that excites at ``speeds`` [rad/s], equal lines together, ascending."""
     topo, names = assembly.topology, assembly.line.names
+    named = tuple(zip(names, assembly.line.elements, strict=True))
     found: dict[tuple[float, float], dict[str, None]] = {}
     torques: dict[tuple[float, float], float] = {}
     for one in line_harmonics(assembly):
@@ -278,7 +283,8 @@ def excitation_lines(assembly: Assembly, speeds: Array) -> tuple[ExcitationLine,
         for rate in mesh.stiffness_rates:
             found.setdefault((float(rate), 0.0), {})["mesh stiffness"] = None
     return tuple(
-        ExcitationLine(k, f, tuple(causes), torques.get((k, f), np.nan)) for (k, f), causes in sorted(found.items())
+        ExcitationLine(k, f, tuple(causes), torques.get((k, f), np.nan), owners(named, causes))
+        for (k, f), causes in sorted(found.items())
     )
 
 
