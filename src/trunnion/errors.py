@@ -97,6 +97,10 @@ class InputError(TrunnionError, ValueError):
         return " ".join(f"{head}{self.problem}{tail}".split())
 
 
+class NothingToDraw(InputError):
+    """A result without a picture, which only matters where one was asked for."""
+
+
 class ComputationError(TrunnionError, RuntimeError):
     """The input was fine and the computation still failed; says at which point and which knob to turn.
 

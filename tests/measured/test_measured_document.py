@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pages
+from edges import write_edges
 from typer.testing import CliRunner
 
 import trunnion as tn
@@ -41,22 +42,6 @@ def test_examples_run_in_order() -> None:
         got = np.abs(found.amplitude[:, found.row(k), found.column("hub")])
         assert np.abs(got - true).max() < 5e-3 * true.max()
         assert np.mean(np.abs(got - true) < found.half_width[:, found.row(k), found.column("hub")]) > 0.9
-
-
-def write_edges(run: tn.Measurement, path: Path) -> None:
-    """Times of edges as a counter writes them, with the description beside."""
-    longest = max(len(one.times) for one in run.pulses)
-    rows = np.full((longest, len(run.pulses)), np.nan)
-    for column, one in enumerate(run.pulses):
-        rows[: len(one.times), column] = one.times
-    names = ",".join(one.name for one in run.pulses)
-    np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt="%.12g")
-    channels = [
-        f'[[channel]]\ncolumn = "{one.name}"\nkind = "edges"\npulses_per_turn = {one.pulses_per_turn}\n'
-        f'at = "{one.at}"\nclock = "{one.clock}"\n'
-        for one in run.pulses
-    ]
-    path.with_suffix(".channels.toml").write_text("".join(channels), encoding="utf-8")
 
 
 def test_the_command(tmp_path: Path) -> None:

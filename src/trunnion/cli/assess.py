@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
-
-import typer
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import trunnion as tn
 from trunnion.cli import output
@@ -54,30 +52,15 @@ def assess(
     )  # fmt: skip
 
 
-@Command(writes=NOTHING)
-def campbell_diagram(
-    line: Line,
-    *,
-    picture: Annotated[
-        Path | None, typer.Option("--output", "-o", metavar="PATH", help="Picture ending in .png, .pdf or .svg.")
-    ] = None,
-    unit: SpeedUnit,
-) -> CommandOutput:
+@Command("campbell-diagram")
+def campbell_diagram(line: Line, *, unit: SpeedUnit) -> CommandOutput:
     """Example: trunnion campbell-diagram truck.toml --load-case climb -o campbell.png"""
     import numpy as np
 
-    from trunnion.pictures.formats import check_format
     from trunnion.reporting.ranges import speed_range
 
-    if picture is not None:
-        check_format(picture)
     result = tn.campbell_diagram(line, np.linspace(*speed_range(line), DIAGRAM_POINTS))
-    if picture is None:
-        return CommandOutput(result)
-    from trunnion.pictures.draw_matplotlib import save
-
-    save(result.plot(unit=unit, operating=line.operation).figure.figure, picture)
-    return CommandOutput(result, more=lambda: output.say(f"  written: {picture}"))
+    return CommandOutput(result, draw=partial(result.plot, operating=line.operation))
 
 
 @Command("envelope")

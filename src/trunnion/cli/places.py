@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trunnion.cli import output
-from trunnion.errors import InputError
+from trunnion.errors import InputError, NothingToDraw
 
 if TYPE_CHECKING:
     from trunnion.results.outcome import Outcome
@@ -96,8 +97,12 @@ class CommandOutput:
         if to:
             return [self._write(path, unit) for path in to]
         with folder_written_whole(DEFAULT_FOLDER) as temporary:
-            names = [temporary / f"{stem}.{ending}" for ending in ("png", "nc")]
-            found = self.files(temporary / stem) if self.files else [self._write(name, unit) for name in names]
+            if self.files is not None:
+                found = self.files(temporary / stem)
+            else:
+                found = [self._write(temporary / f"{stem}.nc", unit)]
+                with suppress(NothingToDraw):  # none was asked for
+                    found.insert(0, self._write(temporary / f"{stem}.png", unit))
         return [DEFAULT_FOLDER / path.name for path in found]
 
     def _write(self, path: Path, unit: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -54,9 +55,9 @@ def _plain(found: Any) -> dict[str, object]:
         "tables": [_table(comparison) for comparison in found.tables],
         "errata": _table(found.errata),
         "argument": list(found.argument.steps) if found.argument else [],
-        "conclusions": [vars(c) for c in found.conclusions],
+        "conclusions": [asdict(c) for c in found.conclusions],
     }
 
 
 def _table(comparison: Any) -> dict[str, object]:
-    return {"title": comparison.title, "note": comparison.note, "rows": [vars(row) for row in comparison.rows]}
+    return {"title": comparison.title, "note": comparison.note, "rows": [asdict(row) for row in comparison.rows]}

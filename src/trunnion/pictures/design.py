@@ -13,7 +13,7 @@ from trunnion.design.envelope import Envelope
 from trunnion.design.optimisation.result import Optimum
 from trunnion.design.sensitivity.result import Sensitivities, SensitivityQuantity, share_of, smaller, too_large
 from trunnion.design.tolerance.tolerance_study import ToleranceStudy
-from trunnion.errors import InputError
+from trunnion.errors import InputError, NothingToDraw
 from trunnion.floquet.certificate.certify import StabilityCertificate
 from trunnion.pictures.picture import (
     EVEN,
@@ -33,7 +33,7 @@ from trunnion.pictures.picture import (
     rows,
     single,
 )
-from trunnion.pictures.shared import axis_of, printed
+from trunnion.pictures.shared import axis_of, histogram, printed
 from trunnion.response.peaks.certify_peaks import PeakCertificate
 from trunnion.results.speeds import speed_factor
 from trunnion.results.units import in_words
@@ -73,7 +73,7 @@ def comparison(found: Comparison, *, most: int = 12) -> Picture:
     if not moved:
         unjudged = found.changes and None in found.verdicts
         remedy = "name speeds, as speeds=(tn.rpm(300), tn.rpm(2400))" if unjudged else "change a value"
-        raise InputError("has nothing to draw: no result differs", element="comparison", remedy=remedy)
+        raise NothingToDraw("has nothing to draw: no result differs", element="comparison", remedy=remedy)
     size = [100 * one.relative for one in moved]
     bars = Bars(range(len(moved)), size, THICK, "bar", found.names[1], lie=True)
     return _in_rows(Axis(f"change from {found.names[0]}", "%"), [one.name for one in moved], [bars])
@@ -160,7 +160,7 @@ def sensitivities(found: Sensitivities, quantity: str | None = None, *, most: in
     effects = found.ranked(chosen.name, most)
     if not effects:
         why = chosen.refused or "follows none of the parameters"
-        raise InputError(f"has nothing to draw: {why}", key="quantity", value=chosen.name, remedy="name another one")
+        raise NothingToDraw(f"has nothing to draw: {why}", key="quantity", value=chosen.name, remedy="name another one")
     factor, label = share_of(chosen)
     tenths = too_large(chosen, effects[0].change)
     size, at = np.array([one.change * factor / 10**tenths for one in effects]), range(len(effects))
@@ -181,7 +181,7 @@ def _chosen(found: Sensitivities) -> SensitivityQuantity:
                 if one.kind == kind and len(found.ranked(one.name, several)) == several:
                     return one
     if not found.quantities:
-        raise InputError("holds no quantity to draw", element="sensitivity", remedy="ask for frequencies, say")
+        raise NothingToDraw("holds no quantity to draw", element="sensitivity", remedy="ask for frequencies, say")
     return found.quantities[0]
 
 
@@ -196,8 +196,8 @@ def envelope(found: Envelope, *, schedule: str = "") -> Picture:
     """Margin of the worst checks over travel or speed of one schedule (default: where the binding check is worst)."""
     named = list(dict.fromkeys(p.schedule for p in found.places if p.schedule))
     if not named:
-        remedy = "state [[operation.schedule]]; str(result) says what load cases do"
-        raise InputError("has nothing to draw: no schedule is judged", element="envelope", remedy=remedy)
+        remedy = "state [[operation.schedule]], or read the words: they say what load cases do"
+        raise NothingToDraw("has nothing to draw: no schedule is judged", element="envelope", remedy=remedy)
     if schedule and schedule not in named:
         raise InputError("is not judged", key="schedule", value=schedule, remedy=f"choose {named[0]}, say")
     bound = found.places[found.where[0]].schedule if found.where else ""
@@ -259,7 +259,7 @@ def tolerance(study: ToleranceStudy) -> Picture:
     fastest = int(np.nanmax(study.growth_rate, axis=1).argmax())
     rates = study.growth_rate[fastest]
     rates = rates[np.isfinite(rates)]
-    counts, ends = np.histogram(rates, bins=int(np.clip(2 * np.sqrt(len(rates)), 12, 60)))
+    counts, ends = histogram(rates, 12)
     rate = Axis(f"growth rate at {Words(study.unit).speed(float(study.speeds[fastest]))}", "1/s")
     across, limit = _limit(rate, float(rates.min()), float(rates.max()))
     up = Axis("lines", "", 0.0, (1.15 if across.low is not None else 1 + MARGIN) * float(np.max(counts)))

@@ -42,6 +42,16 @@ def over_speed(
     return single(speed_axis(x, unit), up, [*items, *marked], height=height, title=title, grid=grid)
 
 
+def histogram(values: Array, fewest: int) -> tuple[Array, Array]:
+    """How many of ``values`` lie in each of at least ``fewest`` bins, and where these end; one bin where all are equal
+    but for rounding."""
+    low, high = float(np.min(values)), float(np.max(values))
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        half = 0.005 * max(abs(low), abs(high)) or 0.5
+        return np.array([len(values)]), np.array([low - half, high + half])
+    return np.histogram(values, bins=int(np.clip(2 * np.sqrt(len(values)), fewest, 60)))
+
+
 def stands(parameter: str, unit: str, value: float, name: str = "") -> Level:
     """A line across where a parameter stands, from its value in SI."""
     return Level(value * Words().parameter(parameter, unit).factor, "stands", name)

@@ -34,7 +34,7 @@ from trunnion.pictures.picture import (
     rows,
     single,
 )
-from trunnion.pictures.shared import axis_of, printed
+from trunnion.pictures.shared import axis_of, histogram, printed
 from trunnion.results.counts import counted
 from trunnion.results.quantity_axes import QuantityAxis
 from trunnion.results.units import figures
@@ -399,8 +399,7 @@ def _histogram(result: Study, shown: ShownQuantity) -> Picture:
         across = Axis("points", "", 0.0, 1.15 * float(size.max()))
         return single(across, rows(names), items, 7.2, 1.7 + 0.4 * len(names), shown.axis.quantity,
                       remark="", key="", grid="")  # fmt: skip
-    bins = int(np.clip(2 * np.sqrt(len(known)), 8, 60))
-    counts, ends = np.histogram(known, bins=bins)
+    counts, ends = histogram(known, 8)
     up = Axis("points", "", 0.0, (1 + MARGIN) * float(counts.max()))
     if counts.max() > CROWDED * len(known):
         up = Axis("points, logarithmic").logarithmic(0.5, 3.0 * float(counts.max()))
