@@ -116,6 +116,8 @@ def test_stable_limit(run, here):
     assert data["smallest"] == pytest.approx(result.smallest) and "crossing" in data["kind"]
     shown = run(*call, "-o", "l.png")
     assert shown.exit_code == 0 and f"{np.rad2deg(result.smallest):.6g}°" in shown.stdout
+    one = parsed(run(*call[:-1], "1.6", "--json", "-o", "one.svg"))
+    assert one["speed"] == [1.6] and one["limit"] == pytest.approx([result.limit[2]], rel=1e-9)
 
 
 REFUSED = [
@@ -128,7 +130,7 @@ REFUSED = [
     (("order-response", "line.toml", "--orders", "two"), "is not a list of orders"),
     (("order-response", "line.toml", "--spring", "Shaft 3"), "is not a shaft or mesh of the line; did you mean"),
     (("order-response", "line.toml", "-o", "r.xls"), "has no ending that names a format"),
-    (("stable-limit", "line.toml", "--speed", "1500"), "is not a rising range"),
+    (("stable-limit", "line.toml", "--speed", "1500:1400"), "is not a rising range"),
     (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness"), "needs a range"),
     (("stable-limit", "line.toml", "-p", "Shaft 1.stiffness:1000:2000:20:log"), "is searched evenly; leave out :log"),
     (("speed-sweep", "duffing"), "is neither a file nor a name of the catalogue"),

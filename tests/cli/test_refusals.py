@@ -90,6 +90,7 @@ CASES = [
     (("analyze", "line.toml", "-o", "no/such/page.html"), ("lies in no folder", "create the folder no/such")),
     (("analyze", "line.toml", "-o", "empty.toml"), ("is a file, not a folder",)),
     (("analyze", "line.toml", "-o", "empty.toml/deep"), ("cannot be made, empty.toml is a file",)),
+    (("new", "-o", "x.toml"), ("no starter is named", "trunnion new two-shaft --output x.toml")),
     (("new", "two-shaft", "-o", "line.toml"), ("line.toml", "exists already", "--force")),
     (("catalogue", "-o", "a.toml"), ("--output = 'a.toml': belongs to one driveline",)),
     (

@@ -64,6 +64,7 @@ def test_what_is_missing_is_said(study, here: Path) -> None:
     [
         (("stauts", "s.zarr"), 'is nothing that is asked of a store; did you mean "status"?'),
         (("status",), "STORE: is missing; write: trunnion study status truck.zarr"),
+        (("status", "s.zarr", "-o", "s.csv"), "--output = 's.csv': is nothing that it writes"),
         (("show", "nothing.zarr"), "is not a store of a study; name the folder that a study wrote"),
         (("study.tml",), 'study.tml: file not found; did you mean "study.toml"?'),
         (("export", "s.zarr"), "--output: is missing; give a file ending in one of .nc, .csv, .parquet"),

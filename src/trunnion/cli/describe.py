@@ -97,6 +97,9 @@ def new(
     from trunnion.driveline.starter import starter as starter_text
 
     if starter is None:
+        if output is not None:
+            remedy = f"write: trunnion new two-shaft --output {output}, say"
+            raise InputError("no starter is named", key="--output", value=str(output), remedy=remedy)
         rows = [{"starter": name, "what it is": about} for name, about in STARTERS.items()]
         if as_json:
             write_json("new", {"starters": rows})

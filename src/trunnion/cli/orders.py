@@ -57,9 +57,7 @@ def _even_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
     import numpy as np
 
     (low, *rest), counted = _stated_speeds(asked, text, key)
-    if not rest:
-        raise InputError("is not a rising range", key=key, value=text, remedy=SPEED_EXAMPLE)
-    return np.linspace(low, rest[0], counted or FEW)
+    return np.linspace(low, rest[0], counted or FEW) if rest else np.array([low])
 
 
 def _stated_speeds(asked: CommandInput, text: str, key: str) -> tuple[tuple[float, ...], int]:

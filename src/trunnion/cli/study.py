@@ -106,6 +106,9 @@ def study(
 
     if not dry_run:
         require_all()
+    if outputs and what not in ("show", "export"):
+        remedy = "leave it out, and write: trunnion study export STORE --output PATH, once the study has run"
+        raise InputError("is nothing that it writes", key="--output", value=str(outputs[0]), remedy=remedy)
     if what in OF_STORES:
         if store is None:
             raise InputError("is missing", key="STORE", remedy=f"write: trunnion study {what} truck.zarr")

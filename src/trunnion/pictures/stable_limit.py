@@ -11,6 +11,7 @@ from trunnion.design.limits.result import LimitKind, StableLimit
 from trunnion.driveline.operation import Operation
 from trunnion.pictures.picture import Axis, Item, Key, Level, Line, Picture, Points, Shapes, Texts, edges, single
 from trunnion.pictures.shared import axis_of, speed_axis
+from trunnion.results.counts import counted
 from trunnion.results.words import Words
 
 ENDS = "ends of what is stable at every speed"
@@ -43,7 +44,7 @@ def stable_limit(
     items += _columns(limit, columns, up.factor) if limit.whole is None else _regions(limit, up.factor, factor)
     # Between single points a line would claim what is not so.
     few = len(x) == 1 or limit.whole is not None
-    name = f"largest stable value at {len(limit.speed)} speeds" if bounded else ""
+    name = f"largest stable value at {counted(len(limit.speed), 'speed')}" if bounded else ""
     shown = np.where(beyond, np.nan, y)
     items.append(
         Points(x, shown, "largest stable point", name) if few else Line(x, shown, "largest stable", name)
@@ -52,7 +53,10 @@ def stable_limit(
         items.append(Key("end of stable", ENDS))
     for k, other in enumerate(o for o in limit.others if np.any(o.reached <= limit.high)):
         reached = np.where(other.reached <= limit.high, other.reached * up.factor, np.nan)
-        items.append(Line(x, reached, f"other limit {k}", other.name))
+        alone = len(x) == 1  # as wide as what is unstable there
+        items.append(
+            Line(columns if alone else x, reached.repeat(2) if alone else reached, f"other limit {k}", other.name)
+        )
     across = speed_axis(columns if len(x) == 1 else x, unit)
     items += _values(values or {}, limit, up.factor, across)
     if operating and operating.speed:
