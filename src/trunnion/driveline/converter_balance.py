@@ -8,7 +8,6 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import brentq
 
 from trunnion.arrays import Array
 from trunnion.driveline.chain import ElementChain
@@ -239,4 +238,6 @@ def _crossings(at: Array, left: Callable[[float], float], slope: Callable[[float
 
 def _zero(of: Callable[[float], float], low: float, high: float) -> float:
     """Between two places where a function has unlike signs."""
+    from scipy.optimize import brentq  # which takes longer to import than most lines to judge
+
     return float(brentq(of, low, high, xtol=1e-13 * low, rtol=4 * np.finfo(float).eps))

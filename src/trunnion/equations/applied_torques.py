@@ -14,7 +14,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array
 from trunnion.driveline.applied_torque import AppliedTorque, FrictionTorque, TorqueFunction
@@ -22,6 +21,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_regimes import line_kernel
 from trunnion.errors import InputError
 from trunnion.laws.formula import Formula, formula
+from trunnion.laws.monotone_cubic import monotone_cubic
 from trunnion.laws.torque_curve import KlossCurve
 
 POWERS = 4
@@ -93,7 +93,7 @@ class PlacedTorque:
     @cached_property
     def _through(self) -> Array:
         """Powers (4, piece) of the monotone cubic between its knots."""
-        return np.asarray(PchipInterpolator(self.axes[0].knots, np.array(self.stated.torque)).c[::-1])
+        return np.asarray(monotone_cubic(self.axes[0].knots, self.stated.torque).c[::-1])
 
     @cached_property
     def called(self) -> CalledFunction | None:

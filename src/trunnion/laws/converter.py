@@ -12,14 +12,17 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array
 from trunnion.laws.balance import balances as all_balances
+from trunnion.laws.monotone_cubic import monotone_cubic
 from trunnion.laws.torque_curve import TorqueCurve
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 STANDS = 1e-6
 """Share of the highest ratio of speeds below which no balance is looked for: the turbine stands."""
@@ -41,12 +44,12 @@ class ConverterCurves:
     @cached_property
     def capacity(self) -> PchipInterpolator:
         """K over ν."""
-        return PchipInterpolator(self.ratios, self.capacities, extrapolate=False)
+        return monotone_cubic(self.ratios, self.capacities)
 
     @cached_property
     def torque_ratio(self) -> PchipInterpolator:
         """μ over ν."""
-        return PchipInterpolator(self.ratios, self.torque_ratios, extrapolate=False)
+        return monotone_cubic(self.ratios, self.torque_ratios)
 
     def pump(self, ratio: Array | float) -> Array:
         """K."""

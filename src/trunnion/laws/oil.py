@@ -8,12 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array, Complex
+from trunnion.laws.monotone_cubic import monotone_cubic
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class Isotherm:
     @cached_property
     def _through(self) -> PchipInterpolator:
         logs = np.log([self.storage, self.loss]).T
-        return PchipInterpolator(np.log(self.frequencies), logs, extrapolate=False)
+        return monotone_cubic(np.log(self.frequencies), logs)
 
     def logs(self, frequency: Any) -> Array:
         """Log K′ and log K″ (…, 2) at frequencies [rad/s]; NaN beyond its own."""

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from trunnion.arrays import Array
+from trunnion.laws.monotone_cubic import monotone_cubic
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -154,9 +155,7 @@ class TableCurve:
 
     @cached_property
     def _through(self) -> PchipInterpolator:
-        from scipy.interpolate import PchipInterpolator
-
-        return PchipInterpolator(np.array(self.speeds), np.array(self.torques), extrapolate=False)
+        return monotone_cubic(self.speeds, self.torques)
 
     @property
     def range(self) -> tuple[float, float]:

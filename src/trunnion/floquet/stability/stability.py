@@ -47,7 +47,6 @@ from trunnion.results.units import with_error
 from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.results.verdict import MEANING, Verdict, verdicts
 from trunnion.steady.orders.forced_response import LINEAR_RANGE, LinearResponse, linear_response
-from trunnion.steady.shooting.periodic_orbit import speed_in_words
 from trunnion.systems.periodic_linear import PeriodicLinearSystem
 
 if TYPE_CHECKING:
@@ -305,6 +304,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
     topo = assembly.topology
     turns = require_period(assembly.line, topo)
     from trunnion.steady.free.periodic_steady_state import periodic_steady_state
+    from trunnion.steady.shooting.periodic_orbit import speed_in_words
 
     require_time(assembly, speed, by_shooting, "stability about its own periodic motion")
     motion = periodic_steady_state(assembly.line, speed, tolerance=OWN * tolerance)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from trunnion.arrays import Array
 from trunnion.driveline.applied_torque import AppliedTorque, TorqueFunction
 from trunnion.driveline.excitation import Excitation
+from trunnion.laws.monotone_cubic import monotone_cubic
 
 
 def torque_text(one: AppliedTorque) -> str | None:
@@ -50,7 +50,7 @@ def lines(points: Array, values: Array, variable: str = "speed") -> str:
 
 def _cubic(points: Array, values: Array) -> str:
     """The monotone cubic through points, from its first one on; below, its first value."""
-    pieces = PchipInterpolator(points, values).c[::-1]
+    pieces = monotone_cubic(points, values).c[::-1]
     u = f"max(speed - ({float(points[0])!r}), 0)"
     a, b, c, d = (float(one) for one in pieces[:, 0])
     said = [f"({a!r}) + {u}*(({b!r}) + {u}*(({c!r}) + ({d!r})*{u}))"]
