@@ -26,10 +26,8 @@ from trunnion.app.pool import SUPERSEDED, Pool
 from trunnion.app.views import VIEWS
 from trunnion.app.views.base import View, ViewStep, links
 from trunnion.app.warming import WARMING
-from trunnion.design.assessment.stated_limits import unlimited
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import loads
-from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError, TrunnionError
 
 PAUSE = 0.05
@@ -276,6 +274,9 @@ class Session:
 
     def state_limits(self) -> None:
         """Give every spring without one a limit to fill in, by kind, and go where it stands."""
+        from trunnion.design.assessment.stated_limits import unlimited  # no first page needs them
+        from trunnion.equations.coefficients import assemble
+
         line = self.document.line
         kinds = {type(line.elements[line.index(name)]).__name__: None for name in unlimited(assemble(line))}
 

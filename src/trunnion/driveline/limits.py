@@ -175,6 +175,8 @@ class Limit(Addressed):
             yield InputError(lacking[0] or "", **where, remedy=_remedy(concerned[0][1], key))
 
 
+WITHOUT_LIMIT = "torque without limit"
+"""Name of the check that lists what could have one and has none."""
 LIMIT_KINDS = {key: kind for key in Limit.model_fields if (kind := Limit.quantity_of(key)) is not None}
 """Physical kinds of its quantities."""
 Limits = Annotated[

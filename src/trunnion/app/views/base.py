@@ -19,13 +19,11 @@ from trunnion.app.parts.widgets import Html, ProgrammaticChange, faint, joined, 
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.files import dumps
 from trunnion.driveline.operating_speed import known_speed, speed_unit
-from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
 from trunnion.pictures.overlaid import largest
 from trunnion.pictures.picture import Picture
 from trunnion.reporting import ranges
 from trunnion.results.speeds import speed_factor
-from trunnion.steady.orders.forced_response import shaft_names
 
 Setting = str | float | int | bool | None
 """Of a view; one whose default is None is a number that is found by itself where none is typed."""
@@ -484,6 +482,9 @@ def speed_range(line: Driveline) -> tuple[float, float]:
 
 def springs_of(line: Driveline) -> list[str]:
     """Names of the shafts and meshes that twist."""
+    from trunnion.equations.coefficients import assemble  # no first page needs them
+    from trunnion.steady.orders.forced_response import shaft_names
+
     return list(shaft_names(assemble(line)))
 
 

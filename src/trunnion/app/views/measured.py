@@ -15,10 +15,8 @@ from trunnion.app.parts.received import ReceivedFile
 from trunnion.app.parts.widgets import column, items, markup, pane, wrapped
 from trunnion.app.views.base import Setting, VariantPane, View, ViewStep, bounded, count, select, springs_of
 from trunnion.driveline.driveline import Driveline
-from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError, TrunnionError
 from trunnion.measured.signals.channel_file import KINDS, description_of
-from trunnion.measured.tracking.places import even_places
 
 FIRST, MOVES, NOWHERE, UNUSED = "the first with pulses", "the first that moves", "nowhere", "not used"
 MOST_COLUMNS = 24
@@ -309,6 +307,9 @@ class MeasuredView(View):
 
 def places_of(line: Driveline) -> list[str]:
     """Where a channel may be: disks, the driven end, springs."""
+    from trunnion.equations.coefficients import assemble  # no first page needs them
+    from trunnion.measured.tracking.places import even_places
+
     assembly = assemble(line)
     disks = [name for _, name in assembly.topology.points]
     return list(dict.fromkeys([*even_places(assembly), *disks, *springs_of(line)]))

@@ -23,7 +23,6 @@ from trunnion.app.views.base import (
     unit_of,
 )
 from trunnion.driveline.driveline import Driveline
-from trunnion.motion.orbits.frequency_response import methods_of
 from trunnion.pictures.picture import Axis, single
 
 PERIODIC, RUN_UP, TRANSIENT, RATTLE = "periodic response", "run-up", "transient", "rattle over speed"
@@ -224,6 +223,8 @@ class MotionView(View):
                  {"spring": spring, "name": name, "unit": unit_of(line)[0]}, title=name, soft=True)
             for way, name in SWEEPS.items()
         ]  # fmt: skip
+        from trunnion.motion.orbits.frequency_response import methods_of  # no first page needs it
+
         known = [m for m in METHODS if m in methods_of(line)]
         return steps + [
             ViewStep(method.replace(" ", "_"),

@@ -12,8 +12,6 @@ from trunnion.app.parts.calls import LINE, Call
 from trunnion.app.parts.variants import with_number
 from trunnion.app.parts.widgets import column, markup, pane
 from trunnion.app.views.base import Host
-from trunnion.design.assessment.stated_limits import unlimited
-from trunnion.equations.coefficients import assemble
 from trunnion.errors import TrunnionError
 
 MOST = 2
@@ -38,9 +36,15 @@ class RemedyButtons:
         """A verdict on another line, or under another load, makes old remedies void."""
         self.keywords = keywords
         self.search.visible = needed
-        self.limits.visible = needed and bool(unlimited(assemble(self.session.document.line)))
+        self.limits.visible = needed and self._lacks_limits()
         if self._asked_now() != self.question:
             self.list.objects = []
+
+    def _lacks_limits(self) -> bool:
+        from trunnion.design.assessment.stated_limits import unlimited  # no first page needs them
+        from trunnion.equations.coefficients import assemble
+
+        return bool(unlimited(assemble(self.session.document.line)))
 
     def _asked_now(self) -> tuple[str, Mapping[str, Any]]:
         """The line and the load that remedies would be looked for."""

@@ -9,8 +9,8 @@ from trunnion.app.parts.canvas import Canvas
 from trunnion.app.parts.widgets import Html, column, items, joined, markup, pane
 from trunnion.app.views.base import VariantPane, View, ViewStep, load_cases, select, speed_range, unit_of
 from trunnion.app.views.remedy_buttons import RemedyButtons
-from trunnion.design.assessment.stated_limits import WITHOUT_LIMIT
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.limits import WITHOUT_LIMIT
 from trunnion.pictures.picture import Picture
 
 ALL = "as stated and every load case"

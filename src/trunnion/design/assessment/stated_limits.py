@@ -18,13 +18,12 @@ from trunnion.design.assessment.check import Check, Rule, Status
 from trunnion.design.assessment.compared import at_largest, unanswered
 from trunnion.design.assessment.measures import name_of, of_limit
 from trunnion.design.assessment.response_curve import SWING, WHOLE, course
-from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
+from trunnion.driveline.limits import LIMIT_KINDS, WITHOUT_LIMIT, OneLimit
 from trunnion.driveline.quantities import shown
 from trunnion.equations.coefficients import Assembly
 
 OF_ALL = Rule("largest |mean + vibratory| over the cycle ≤ limit", "the description", "yours", "own-limits")
 OF_SWING = Rule("half of peak-to-peak over the cycle ≤ limit", "the description", "yours", "own-limits")
-WITHOUT_LIMIT = "torque without limit"
 HELD = "a ConstantSpeed holds its rotation"
 JUDGED = {
     "max_torque": OF_ALL,

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import median_filter
 
 from trunnion.arrays import Array, Flags, Integers, Places
 
@@ -153,6 +152,8 @@ def _step_between(before: Array, after: Array, number: Array, beyond: Array, deg
 
 
 def _usual(gap: Array) -> Array:
+    from scipy.ndimage import median_filter  # which names of channels do not need
+
     return np.asarray(median_filter(gap, size=min(NEIGHBOURS, len(gap)), mode="mirror"))
 
 
