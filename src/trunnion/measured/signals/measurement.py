@@ -20,6 +20,8 @@ from trunnion.results.units import figures
 
 TURN = 2 * np.pi
 USUAL_PITCH_ERROR = 0.02
+MENDS = ("missing", "double", "doubtful", "swings")
+"""What is known of the mending of a pulse train."""
 """Standard deviation of the position of an edge, as a share of the pitch, where nobody knows better."""
 
 
@@ -65,6 +67,7 @@ class PulseTrain(Portable):
     missing: int = field(init=False, default=0)
     double: int = field(init=False, default=0)
     doubtful: tuple[float, ...] = field(init=False, default=())
+    swings: bool = field(init=False, default=False)
 
     def __post_init__(self) -> None:
         teeth = whole_number(self.pulses_per_turn, f"{self.name}.pulses_per_turn", 1)
@@ -83,16 +86,15 @@ class PulseTrain(Portable):
             )  # fmt: skip
         if self.count is None:
             found = mended(times, teeth)
-            number, missing, double, doubtful = found.number, found.missing, found.double, found.doubtful
-            times = times[found.kept]
+            number, times = found.number, times[found.kept]
+            mends = {key: getattr(found, key) for key in MENDS}
         else:
-            number, missing, double, doubtful = np.asarray(self.count, dtype=np.int64), 0, 0, ()
+            number, mends = np.asarray(self.count, dtype=np.int64), {}
         if len(times) < 2 or number[-1] - number[0] < 2 * teeth:
             raise InputError(
                 f"holds less than two turns of {teeth} pulses", element=self.name, key="times", value=len(times),
                 remedy="record longer, or correct pulses_per_turn",
             )  # fmt: skip
-        mends = {"missing": missing, "double": double, "doubtful": doubtful}
         for key, value in {"times": times, "number": number, **mends}.items():
             object.__setattr__(self, key, value)
         object.__setattr__(self, "count", number)
@@ -115,10 +117,9 @@ class PulseTrain(Portable):
     def within(self, first: float, last: float) -> PulseTrain:
         """The edges between two times [s]; their teeth keep their numbers."""
         kept = (self.times >= first) & (self.times <= last)
-        mends = {"missing": self.missing, "double": self.double, "doubtful": self.doubtful}
         found = replace(self, times=self.times[kept], count=self.number[kept])
-        for key, value in mends.items():
-            object.__setattr__(found, key, value)
+        for key in MENDS:
+            object.__setattr__(found, key, getattr(self, key))
         return found
 
 
@@ -311,6 +312,12 @@ def _mends(one: PulseTrain) -> Iterator[Finding]:
             Gravity.CAUTION,
             f"{one.name}: how many pulses are missing after {places} s cannot be told surely, and angles behind may be "
             "off by whole teeth; take what lies between such gaps.",
+        )
+    if one.swings:
+        yield Finding(
+            Gravity.CAUTION,
+            f"{one.name}: its speed swings so far within a turn that slow pulses and missing ones look alike, and no "
+            "turn is whole enough to tell them by: how many are missing is uncertain, angles may be off by teeth.",
         )
     yield Finding(gravity, f"{one.name}: {words} of {one.number[-1] - one.number[0] + 1} pulses mended{index}.")
 

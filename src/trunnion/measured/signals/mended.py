@@ -4,6 +4,7 @@ Nothing is invented for a pulse that is missing: the edges that are there keep t
 
 The gaps beside a long one are uneven by pitch errors and vibration, so that their mean counts forty missing pulses no
 better than by chance. Where several are missing in a row, both sides are fitted by one polynomial with a step instead.
+Of a shaft that swings far the turn before tells (``repeating``).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Array, Flags, Integers, Places
+from trunnion.measured.signals.repeating import repeating, swings_far
 
 NEIGHBOURS = 15
 """Gaps whose median is taken for the usual one."""
@@ -35,7 +37,8 @@ LEAST_SPREAD, FROM_WHOLE = 0.1, 0.3
 class MendedEdges:
     """Which edges (edge,) are kept, numbers of these (kept,), how many were missing and how many double.
 
-    doubtful : times [s] at which gaps begin whose missing pulses cannot be counted surely.
+    doubtful : times [s] at which gaps begin whose missing pulses cannot be counted surely. swings : whether the shaft
+    swings so far that slow pulses and missing ones look alike, and no turn repeats another from which they are told.
     """
 
     kept: Flags
@@ -43,6 +46,7 @@ class MendedEdges:
     missing: int
     double: int
     doubtful: tuple[float, ...]
+    swings: bool = False
 
 
 def mended(times: Array, teeth: int) -> MendedEdges:
@@ -50,6 +54,11 @@ def mended(times: Array, teeth: int) -> MendedEdges:
 
     times : rising [s] (edge,). teeth : of the wheel.
     """
+    by_turns = repeating(times, teeth)
+    if by_turns is not None:
+        kept, number = by_turns.kept, by_turns.number
+        missing = int(number[-1]) + 1 - len(number)
+        return MendedEdges(kept, number, missing, int((~kept).sum()), by_turns.doubtful)
     kept = np.ones(len(times), dtype=bool)
     for _ in range(MOST_PASSES):
         double = _double(times[kept])
@@ -60,7 +69,9 @@ def mended(times: Array, teeth: int) -> MendedEdges:
     steps = _steps(gap)
     doubtful = _recounted(times[kept], steps, teeth)
     number = np.concatenate([[0], np.cumsum(steps)]).astype(np.int64)
-    return MendedEdges(kept, number, int((steps - 1).sum()), int((~kept).sum()), doubtful)
+    lost, twice = int((steps - 1).sum()), int((~kept).sum())
+    swings = bool(lost or twice) and swings_far(gap, teeth)
+    return MendedEdges(kept, number, lost, twice, doubtful, swings)
 
 
 def _steps(gap: Array) -> Integers:
