@@ -12,6 +12,7 @@ from oracles.long_trees import ORDER, forced_motion, random_tree
 from oracles.sampling import quick_only
 
 import trunnion as tn
+from trunnion.equations import linear
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
 from trunnion.steady.orders import spectrum as responses
@@ -126,3 +127,23 @@ def test_memory_grows_with_the_length() -> None:
     finally:
         tracemalloc.stop()
     assert np.isfinite(found.amplitude).all()
+
+
+def test_entries_put_at_once_are_those_put_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Straight trees with ratios, forks, branches and loads that go with the speed."""
+    line = random_tree(9, driven=True)  # has no mesh, and branches behind ratios
+    for name, element in zip(line.names, line.elements, strict=True):
+        if element.kind == "HookeJoint":
+            line = line.replace(name, angle=0.0)
+    last = [name for name, element in zip(line.names, line.elements, strict=True) if element.kind == "Disk"][-1]
+    line = line.replace(last, load_torque=3.0, viscous_load=0.2, quadratic_load=1e-3)
+    together = tn.order_response(line, [90.0, SPEED])
+    monkeypatch.setattr(linear, "AT_ONCE", 0)
+    apart = tn.order_response(line, [90.0, SPEED])
+    np.testing.assert_allclose(together.torque, apart.torque, atol=1e-12 * np.abs(apart.torque).max())
+    np.testing.assert_allclose(together.mean_torque, apart.mean_torque, rtol=1e-12)
+    topology = assemble(line).topology
+    station = next(station for station, place in topology.disks if line.names[place] == last)
+    turning = abs(topology.mean_speeds[station]) * np.array([90.0, SPEED])
+    carried = np.abs(together.mean_torque[:, -1])
+    np.testing.assert_allclose(carried, 3.0 + 0.2 * turning + 1e-3 * turning**2, rtol=1e-12)

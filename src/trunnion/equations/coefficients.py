@@ -36,6 +36,7 @@ from trunnion.equations.coupling_tables import table_stiffness
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave, OilLink
 from trunnion.equations.loads import exciting_load, mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
+from trunnion.equations.plain_springs import PlainSprings, plain_springs
 from trunnion.equations.sliders import refuse_friction
 from trunnion.equations.slip_capacity import refuse_slipping
 from trunnion.equations.stage_laws import has_stages, impact_damping, spring_damping, stage_law
@@ -468,6 +469,10 @@ def _station_inertia(assembly: Assembly, table: Array) -> Array:
     return inertia
 
 
+def _plain_springs(assembly: Assembly) -> PlainSprings:
+    return plain_springs(assembly.packed, assembly.topology)
+
+
 def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool, free: bool) -> LineCoefficients:
     topo, column = assembly.topology, assembly.packed.column
     loads = station_loads(topo, column, table)
@@ -477,7 +482,14 @@ def _coefficients(assembly: Assembly, table: Array, twisted: bool, damped: bool,
     torque = static if twisted else np.zeros_like(static)
     stiffness, damping, twist, loss = (np.zeros_like(static) for _ in range(4))
     shift = np.zeros((len(table), len(topo.stations)))
-    for e, compliance in enumerate(topo.compliances):
+    plain = assembly.derived(_plain_springs)
+    stiffness[:, plain.compliance] = table[:, plain.stiffness]
+    if damped:
+        damping[:, plain.compliance] = table[:, plain.damping]
+    np.divide(torque, stiffness, out=twist, where=stiffness > 0)
+    plain.put_shift(shift, table, twist)
+    for e in plain.others:
+        compliance = topo.compliances[e]
         shafts = compliance.shafts
         each = [shaft_stiffness(assembly, table, i, compliance.number, static[:, e]) for i in shafts]
         stiffness[:, e] = _stiffness(each)

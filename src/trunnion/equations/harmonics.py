@@ -55,7 +55,8 @@ def base_of_excitation(
 ) -> BaseOfExcitation:
     """``untwisted`` are the coefficients without static twist, whose straight line turns uniformly."""
     motion = base_motion(topo, coefficients, tau)
-    uniform = base_motion(topo, untwisted.straight, tau)
+    alike = untwisted is coefficients and not any(law.nonuniform for law in coefficients.joints)
+    uniform = motion if alike else base_motion(topo, untwisted.straight, tau)
     turning = turning_of(topo, coefficients, tau).value if topo.graph else None
     return BaseOfExcitation(motion.relative, motion.angle - uniform.angle, turning)
 

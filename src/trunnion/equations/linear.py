@@ -25,7 +25,7 @@ from typing import Protocol
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Flags, Integers
 from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.graph_matrices import graph_matrices
@@ -76,12 +76,18 @@ def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) ->
     return LineMatrices(mass, damping, stiffness, forcing, ratio, wave)
 
 
+Place = int | Integers
+AT_ONCE = 512
+"""Cases times times up to which one step for many springs is cheaper than one each: their entries are copied for it."""
+
+
 class Entries(Protocol):
-    """Entries of a matrix by row and column, each (case, time), that numbers are added to in place."""
+    """Entries of a matrix by row and column, each (case, time), that numbers are added to in place; of several at once
+    (entry, case, time)."""
 
-    def __getitem__(self, place: tuple[int, int]) -> Array: ...
+    def __getitem__(self, place: tuple[Place, Place]) -> Array: ...
 
-    def __setitem__(self, place: tuple[int, int], values: Array) -> None: ...
+    def __setitem__(self, place: tuple[Place, Place], values: Array) -> None: ...
 
 
 def put_entries(
@@ -103,7 +109,14 @@ def put_entries(
     ratio_seen, wave = np.zeros((cases, times, len(topo.compliances))), stiffness_waves(topo, coefficients, tau)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
     loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
-    for s in np.flatnonzero(acting[0].any(axis=0) | loaded).tolist():
+    inert, springs = (NONE, NONE)
+    if cases * times <= AT_ONCE and not coefficients.waves:
+        inert, springs = alike(topo, loaded)
+    if len(inert):
+        at, moment = topo.unknown_of[inert], coefficients.inertia[:, None, inert]
+        mass[at, at] += np.moveaxis(moment, 2, 0)
+        forcing[..., at] -= moment * (motion.acceleration[..., inert] * speed[..., None] ** 2)
+    for s in np.setdiff1d(np.flatnonzero(acting[0].any(axis=0) | loaded), inert).tolist():
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]
         if i < 0:
@@ -128,7 +141,11 @@ def put_entries(
         damping[i, i] += j1 * w + r**2 * growth
         stiffness[i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
-    for e, (compliance, (far, near)) in enumerate(zip(topo.compliances, topo.ends, strict=True)):
+    if len(springs):
+        _put_springs(topo, coefficients, springs, damping, stiffness, forcing)
+        ratio_seen[..., springs] = 1.0
+    for e in np.setdiff1d(np.arange(len(topo.compliances)), springs).tolist():
+        compliance, (far, near) = topo.compliances[e], topo.ends[e]
         ref = topo.reference[topo.group_of(compliance.near)]
         k, c, torque = (
             part[:, e, None] for part in (coefficients.stiffness, coefficients.damping, coefficients.torque)
@@ -154,6 +171,49 @@ def put_entries(
             stiffness[far, near] -= k * r + c * r_dot
             stiffness[near, far] -= k * r
     return ratio_seen, wave
+
+
+NONE = np.zeros(0, dtype=np.intp)
+
+
+def alike(topo: Topology, loaded: Flags) -> tuple[Integers, Integers]:
+    """Stations whose inertia alone counts and is the first of its group, and springs between the first stations of two
+    groups that share no unknown in front: entries that are put at once.
+
+    ``loaded`` (station,): where outer torques act.
+    """
+    reference = np.array(topo.reference)
+    inert = [s for s in reference[np.array(topo.coordinate) >= 0].tolist() if not loaded[s]]
+    ends = np.array(topo.ends, dtype=np.intp).reshape(-1, 2)
+    onward = np.bincount(ends[ends[:, 1] >= 0, 1], minlength=topo.size)
+    springs = [
+        e
+        for e, (far, near) in enumerate(topo.ends)
+        if far >= 0 and near >= 0 and onward[near] == 1
+        and topo.compliances[e].near == reference[topo.group_of(topo.compliances[e].near)]
+    ]  # fmt: skip
+    return np.array(inert, dtype=np.intp), np.array(springs, dtype=np.intp)
+
+
+def _put_springs(
+    topo: Topology,
+    coefficients: LineCoefficients,
+    springs: Integers,
+    damping: Entries,
+    stiffness: Entries,
+    forcing: Array,
+) -> None:
+    """Add those that ``alike`` names, between stations that turn as the unknowns do."""
+    far, near = np.array(topo.ends, dtype=np.intp)[springs].T
+    for matrix, part in ((damping, coefficients.damping), (stiffness, coefficients.stiffness)):
+        values = part.T[springs, :, None]
+        matrix[far, far] += values
+        matrix[near, near] += values
+        matrix[far, near] -= values
+        matrix[near, far] -= values
+    torque = coefficients.torque[:, None, springs]
+    forcing[..., far] -= torque
+    forcing[..., near] += torque
 
 
 def _graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:

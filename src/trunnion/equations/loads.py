@@ -8,7 +8,7 @@ share of what is left as a constant torque, a motor with the slope that it has w
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,6 +25,8 @@ from trunnion.errors import InputError
 from trunnion.laws.torque_curve import PowerCurve
 
 Column = Callable[[int, str], int]
+STATED = ("load_torque", "viscous_load", "quadratic_load")
+"""What a disk states of its load: constant, by the speed and by its square."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +92,16 @@ def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
     loads = StationLoads(*np.zeros((3, len(table), len(topo.stations))))
     for station, lost in topo.lost:
         loads.constant[:, station] += lost
-    for (station, place), (name, rotor) in zip(topo.disks, topo.rotors, strict=True):
+    plain = _plain(topo, column)
+    if plain:
+        stations, columns = zip(*plain.values(), strict=True)
+        for into, of_all in zip(
+            (loads.constant, loads.viscous, loads.quadratic), zip(*columns, strict=True), strict=True
+        ):
+            _add_up(into, stations, table[:, of_all])
+    for k, ((station, place), (name, rotor)) in enumerate(zip(topo.disks, topo.rotors, strict=True)):
+        if k in plain:
+            continue
         load = rotor.load_of(_numbers(column, table, place))
         turning = table[:, 0] * abs(topo.mean_speeds[station])
         if not isinstance(load, PowerCurve):
@@ -104,6 +115,26 @@ def _described(topo: Topology, column: Column, table: Array) -> StationLoads:
         loads.viscous[:, station] += load.viscous
         loads.quadratic[:, station] += load.quadratic
     return loads
+
+
+def _add_up(into: Array, stations: Sequence[int], values: Array) -> None:
+    """Add ``values`` (case, rotor) to those (case, station) of their ``stations``, several of which may be one."""
+    if len(set(stations)) == len(stations):
+        into[:, stations] += values
+    else:
+        np.add.at(into.T, np.array(stations), values.T)
+
+
+def _plain(topo: Topology, column: Column) -> dict[int, tuple[int, tuple[int, ...]]]:
+    """Of rotors that resist by what they state and no more: station, and columns of the three; they are read at once,
+    as most of a long line are such."""
+    return {
+        k: (station, tuple(column(place, key) for key in STATED))
+        for k, ((station, place), (_, rotor)) in enumerate(zip(topo.disks, topo.rotors, strict=True))
+        if isinstance(rotor, Loaded)
+        and type(rotor).load_of is Loaded.load_of
+        and type(rotor).resistance is Loaded.resistance
+    }
 
 
 def _note_lag(loads: StationLoads, station: int, rotor: Rotor, number: Numbers, slope: Array) -> None:
@@ -170,11 +201,11 @@ def refuse_curves(topo: Topology, remedy: str) -> None:
 
 def _of_disks(topo: Topology, column: Column, table: Array, key: str) -> Array:
     """One number of those disks and machines that state it, added up by station (case, station)."""
-    found = np.zeros((len(topo.stations), len(table)))
+    found = np.zeros((len(table), len(topo.stations)))
     stating = [(station, at) for station, place in topo.disks if (at := column(place, key)) >= 0]
     if stating:
-        np.add.at(found, [station for station, _ in stating], table[:, [at for _, at in stating]].T)
-    return np.ascontiguousarray(found.T)
+        _add_up(found, [station for station, _ in stating], table[:, [at for _, at in stating]])
+    return found
 
 
 def accelerating_loads(
@@ -210,6 +241,22 @@ def mean_load(topo: Topology, loads: StationLoads, speed: Array) -> Array:
     turning = np.abs(topo.mean_speeds) * np.asarray(speed)[:, None]
     by_speed = (loads.viscous + loads.quadratic * turning) * turning
     return np.asarray(loads.constant + np.where((loads.viscous != 0) | (loads.quadratic != 0), by_speed, 0.0))
+
+
+def own_loads(topo: Topology, column: Column, table: Array) -> Array:
+    """Mean torques (case, rotor) [N m] that disks and machines resist with, their shares of the drive in them."""
+    found = np.zeros((len(table), len(topo.disks)))
+    plain = {} if topo.free and given_shares(topo, column, table).any() else _plain(topo, column)
+    for k, (_, place) in enumerate(topo.disks):
+        if k not in plain:
+            found[:, k] = own_load(topo, column, table, place)
+    if plain:
+        places, (stations, columns) = list(plain), zip(*plain.values(), strict=True)
+        constant, viscous, quadratic = (table[:, of_all] for of_all in zip(*columns, strict=True))
+        turning = table[:, :1] * np.abs(topo.mean_speeds[list(stations)])
+        by_speed = (viscous + quadratic * np.abs(turning)) * turning
+        found[:, places] = constant + np.where((viscous != 0) | (quadratic != 0), by_speed, 0.0)
+    return found
 
 
 def own_load(topo: Topology, column: Column, table: Array, place: int) -> Array:

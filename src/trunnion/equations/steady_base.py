@@ -12,7 +12,7 @@ from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly, joint_laws
 from trunnion.equations.gear_losses import sliding
 from trunnion.equations.graph_matrices import require_fixed_speeds
-from trunnion.equations.loads import drive_places, gear_losses, given_shares, loads_on_unknowns, mean_loads, own_load
+from trunnion.equations.loads import drive_places, gear_losses, given_shares, loads_on_unknowns, mean_loads, own_loads
 from trunnion.errors import InputError
 
 BALANCED = 1e-9
@@ -136,7 +136,8 @@ def _require_equal_legs(assembly: Assembly, table: Array) -> None:
     load = mean_loads(topo, assembly.packed.column, table)
     felt, legs = loads_on_unknowns(topo, load), topo.rigid[:, int(topo.free) :]
     left = np.abs(felt @ legs).max(initial=0.0)
-    if left > BALANCED * np.abs(_own_loads(assembly, table)).max(initial=0.0) * np.abs(legs).max(initial=0.0):
+    own = own_loads(topo, assembly.packed.column, table)
+    if left > BALANCED * np.abs(own).max(initial=0.0) * np.abs(legs).max(initial=0.0):
         raise InputError(
             "drives legs whose loads differ, so that they turn faster and faster against each other",
             element=assembly.line.names[topo.knot], key="load_torque",
@@ -218,16 +219,10 @@ def _at_input(assembly: Assembly, table: Array) -> Array:
         found = gear_losses(topo, assembly.packed.column, table)
         rubs = found.friction * np.abs([sliding(topo, rub) for rub in topo.rubs])
         gears = np.hstack([rubs, found.drag * np.abs(topo.mean_speeds[[station for station, _ in topo.drags]])])
-    rotors = _own_loads(assembly, table) * np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
+    turning = np.abs(topo.mean_speeds[[station for station, _ in topo.disks]])
+    rotors = own_loads(topo, assembly.packed.column, table) * turning
     lost = [torque * abs(topo.mean_speeds[station]) for station, torque in topo.lost]
     return np.hstack([rotors, np.broadcast_to(lost, (len(table), len(lost))), gears])
-
-
-def _own_loads(assembly: Assembly, table: Array) -> Array:
-    """Mean torques that disks and machines resist with (cases, rotor) [N m], rigidly tied to each other or not."""
-    topo, column = assembly.topology, assembly.packed.column
-    found = [own_load(topo, column, table, place) for _, place in topo.disks]
-    return np.array(found).reshape(len(found), len(table)).T
 
 
 def _driving(assembly: Assembly, table: Array) -> tuple[int, int]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.linear import put_entries
+from trunnion.equations.linear import Place, put_entries
 from trunnion.equations.topology import Topology
 
 
@@ -25,16 +25,19 @@ class TreeEntries:
         self.parent = parent
         self.own, self.down, self.up = (np.zeros((len(parent), cases, times)) for _ in range(3))
 
-    def _at(self, row: int, column: int) -> Array:
-        if row == column:
-            return np.asarray(self.own[row])
-        return np.asarray(self.down[row] if self.parent[row] == column else self.up[column])
+    def _of(self, row: Place, column: Place) -> tuple[Array, Place]:
+        """The array that holds such entries, and by which of the two they lie in it."""
+        if np.array_equal(row, column):
+            return self.own, row
+        return (self.down, row) if np.array_equal(self.parent[row], column) else (self.up, column)
 
-    def __getitem__(self, place: tuple[int, int]) -> Array:
-        return self._at(*place)
+    def __getitem__(self, place: tuple[Place, Place]) -> Array:
+        every, at = self._of(*place)
+        return np.asarray(every[at])
 
-    def __setitem__(self, place: tuple[int, int], values: Array) -> None:
-        self._at(*place)[...] = values
+    def __setitem__(self, place: tuple[Place, Place], values: Array) -> None:
+        every, at = self._of(*place)
+        every[at] = values
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from trunnion.driveline.operating_speed import settled_speeds, speed_unit
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import disk_torques, line_harmonics
-from trunnion.equations.loads import load_slope
+from trunnion.equations.loads import load_slope, station_loads
 from trunnion.equations.steady_base import has_joint_angles, has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
@@ -189,12 +189,12 @@ def _result(
         springs=shaft_names(assembly),
         inertias=tuple(name for _, name in topo.points),
         joints=tuple(assembly.line.names[topo.stations[j].element] for j in topo.joints),
-        stress_factor=_stress_factor(assembly),
+        stress_factor=assembly.derived(_stress_factor),
         spectrum=spectrum,
         judged=judged,
         remarks=tuple(_remarks(assembly, spectrum, unexcited)) if remarked else (),
         unit=speed_unit(assembly.line),
-        limits=_limits(assembly),
+        limits=assembly.derived(_limits),
         rated=tuple(has_rating(assembly, c) for c in range(len(topo.compliances))),
     )
 
@@ -256,7 +256,11 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
     yield from _wound_up(assembly, spectrum.speed)
     yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)
-    yield from left_out("order_response", assembly.line)
+    yield from assembly.derived(_left_out)
+
+
+def _left_out(assembly: Assembly) -> tuple[Finding, ...]:
+    return left_out("order_response", assembly.line)
 
 
 def _falls_away(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
@@ -264,8 +268,8 @@ def _falls_away(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding
     topo = assembly.topology
     if not topo.free or topo.graph:
         return
-    co = assembly.coefficients(assembly.table(len(spectrum.speed), spectrum.speed), any_frequency=True)
-    slope = load_slope(topo, co.viscous, co.quadratic, spectrum.speed) * topo.mean_speeds**2
+    loads = station_loads(topo, assembly.packed.column, assembly.table(len(spectrum.speed), spectrum.speed))
+    slope = load_slope(topo, loads.viscous, loads.quadratic, spectrum.speed) * topo.mean_speeds**2
     total = slope.sum(axis=1)
     worst = int(total.argmin())
     if total[worst] < -ROUNDING * np.abs(slope).max():

@@ -416,7 +416,9 @@ class _SpectrumProblem:
         return np.divide(last, largest, out=np.zeros_like(last), where=largest > 0)
 
     def _base(self, table: Array, co: LineCoefficients, tau: Array) -> BaseOfExcitation:
-        plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
+        plain = co
+        if co.twist.any():
+            plain = self.assembly.coefficients(table, statically_twisted=False, any_frequency=True)
         return base_of_excitation(self.topo, co, plain, tau)
 
     def _sources(
