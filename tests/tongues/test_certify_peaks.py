@@ -116,7 +116,8 @@ def attacked(kind: str, seed: int, boxes: int, points: int) -> tuple[int, float]
     for i, (mass, link) in enumerate(zip(line.masses, line.links, strict=True)):
         numbers.append((f"m{i}.inertia", mass.inertia))
         if link is not None and link.kind == "shaft":
-            numbers += [(f"s{i}.stiffness", link.stiffness), (f"s{i}.damping", link.damping)]
+            numbers += [(f"s{i}.stiffness", link.stiffness)]
+            numbers += [(f"s{i}.damping", link.damping)] if link.damping and not link.loss else []
             numbers += [(f"j{i}.angle", link.angle)] if link.angle else []
     picked = [numbers[k] for k in rng.permutation(len(numbers))[: int(rng.integers(0, 4))]]
     shares = {path: 10 ** rng.uniform(-3, -1.3) for path, _ in picked}
@@ -130,8 +131,9 @@ def attacked(kind: str, seed: int, boxes: int, points: int) -> tuple[int, float]
     best = {key: np.zeros(len(getattr(found, key))) for key in ASKED}
     for k in range(points):
         share = rng.uniform(-1, 1, 1 + len(picked))
-        share = np.sign(share) if k % 3 == 0 else share
-        speed = np.array([middle * (1 + wide * share[0])])
+        share = np.sign(share) if k % 3 == 0 else share  # corners, tops as they were found, and inside
+        at = rng.choice(found.peak_speed) * (1 + 1e-3 * wide * share[0]) if k % 3 == 1 else np.nan
+        speed = np.array([np.clip(at, *speeds) if np.isfinite(at) else middle * (1 + wide * share[0])])
         values = {path: number * (1 + shares[path] * s) for (path, number), s in zip(picked, share[1:], strict=True)}
         for key, value in _values(_changed(line, values), speed).items():
             best[key] = np.maximum(best[key], value)

@@ -137,6 +137,8 @@ def margins(found: Assessment) -> Picture:
     return _in_rows(across, [f"{k + 1}. {row['check']}" for k, (row, _) in enumerate(drawn)], items)
 
 
+FAR_LIMIT = 3.0
+"""Times the largest bound up to which a limit is drawn."""
 _STATUS = {
     "exceeded": ("exceeded", "exceeded"), "satisfied": ("satisfied", "satisfied"),
     "beyond guideline": ("undeciding, bad", "beyond guideline"), "within guideline": ("undeciding", "within guideline"),
@@ -292,16 +294,26 @@ def _limit(across: Axis, slowest: float, fastest: float) -> tuple[Axis, list[Ite
 
 
 def peak_certificate(found: PeakCertificate) -> Picture:
-    """Bounds of the vibratory torque of every spring as bars, what was reached as marks; open ones have no bar."""
+    """Bounds of the vibratory torque of every spring as bars, what was reached and what is allowed as marks; springs
+    without a bound have no bar and say so."""
     known = [k for k, torque in enumerate(found.vibratory_torque) if np.isfinite(torque)]
-    bound = np.nan_to_num(found.vibratory_torque_bound[known], posinf=0.0)
-    reached, places = found.vibratory_torque[known], np.arange(len(known))
+    bound, reached = found.vibratory_torque_bound[known], found.vibratory_torque[known]
+    names, places = [found.springs[k] for k in known], np.arange(len(known))
+    open_ones = [k for k in places.tolist() if not np.isfinite(bound[k])]
+    high = 1.05 * max([*np.where(np.isfinite(bound), bound, reached), *reached, 0.0]) or 1.0
+    limits = {one.name: one.limit for one in found.allowed if one.measure == "vibratory torque"}
+    allowed = [(limits[name], k) for k, name in enumerate(names) if limits.get(name, np.inf) <= FAR_LIMIT * high]
+    high = max([high, *(1.05 * limit for limit, _ in allowed)])
     items: list[Item] = [
-        Bars(places, bound, 0.7, "bar 0", "proved not to be exceeded", lie=True),
-        points_at(np.column_stack((reached, places)), "after", "reached"),
+        Bars(places, np.where(np.isfinite(bound), bound, 0.0), 0.7, "bar 0", "proved not to be exceeded", lie=True),
+        points_at(np.column_stack((reached, places)), "reached peak", "reached"),
     ]
-    names = [found.springs[k] for k in known]
-    return single(Axis("vibratory torque ±", "N m"), rows(names), items, 7.2, 1.6 + 0.5 * len(names), key="below")
+    if allowed:
+        items.append(points_at(allowed, "allowed peak", "allowed"))
+    if open_ones:
+        items.append(Texts(reached[open_ones], open_ones, ["  no bound"] * len(open_ones), beside="right"))
+    across = Axis("vibratory torque ±", "N m", 0.0, float(high))
+    return single(across, rows(names), items, 7.2, 1.6 + 0.5 * len(names), key="below")
 
 
 def certificate(found: StabilityCertificate) -> Picture:

@@ -176,6 +176,8 @@ LOOKS: dict[str, Look] = {
     "worse": Look(VERMILION, 2.2),
     "before": _mark("circle", INK, 7.0, WHITE),
     "after": _mark("circle", INK, 7.0),
+    "reached peak": _mark("circle", WHITE, 7.0, INK),
+    "allowed peak": _mark("diamond", INK, 8.0, WHITE),
     "bounds": Look("#c8c8c8", 4.0, layer=1.0),
     "begin": _mark("square", INK, 8.0, WHITE),
     "taken": _mark("circle", INK, 9.0),

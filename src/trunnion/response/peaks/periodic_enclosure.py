@@ -141,10 +141,10 @@ class _Window:
         size[line.last] = 0.0
         strong = np.flatnonzero(size > cut * size.max(initial=0.0)) if size.any() else np.array([line.last])
         margin = int(np.abs(strong - line.last).max()) + (1 if line.last else 0)
-        places = [at for _, at in carrier.members]
+        low, high = _reached(line, carrier, cut)
         most = max(WIDEST // line.h.shape[2], 1)
-        margin = max(min(margin, (most - (max(places) - min(places) + 1)) // 2), 0)
-        h = np.arange(min(places) - margin, max(places) + margin + 1)
+        margin = max(min(margin, (most - (high - low + 1)) // 2), 0)
+        h = np.arange(low - margin, high + margin + 1)
         order = float(carrier.order) + h * float(line.rate)
         turn: Complex = np.asarray(1j * (order * line.speed[0] + carrier.frequency), dtype=complex)
         return cls(line, h, order, turn, carrier.frequency)
@@ -308,6 +308,17 @@ class _Window:
             parts[:, start : start + 2 * last + 1] += force.direct
             rest = rest + force.direct_rest
         return CarrierResponse(int(self.h[0]) - last, parts, rest * OUTWARD, np.asarray(blame))
+
+
+def _reached(line: ModalForced, carrier: Carrier, cut: float) -> tuple[int, int]:
+    """First and last harmonic that forces act at, but for what is small; as many as there may be unknowns."""
+    places = [at for _, at in carrier.members]
+    sizes = [np.abs(force.parts[0]).sum(axis=1) for force, _ in carrier.members]
+    least = cut * max(size.max() for size in sizes)
+    strong = [at - line.last + np.flatnonzero(size > least) for size, at in zip(sizes, places, strict=True)]
+    every = np.concatenate([places, *strong])
+    room = max((WIDEST // line.h.shape[2] - (max(places) - min(places) + 1)) // 2, 0)
+    return max(int(every.min()), min(places) - room), min(int(every.max()), max(places) + room)
 
 
 @dataclass(frozen=True)
