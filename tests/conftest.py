@@ -42,12 +42,15 @@ STUDIES = {
 
 
 LONGEST = [
-    *("test_features.py", "test_integration.py", "test_by_hand.py", "test_report.py", "test_charts_hold_their_word.py"),
-    *("test_tongues.py", "test_commands.py", "test_process.py", "test_stability_charts.py", "test_random_chains.py"),
-    *("test_boundaries.py", "test_applications.py", "test_stable_limit.py", "test_store.py", "test_windows.py"),
-    *("test_speeds_in_text_and_pictures.py", "test_pool.py", "test_fmu.py", "test_periods_and_verdicts.py"),
-    *("test_tolerance_study.py", "test_hostile_names.py", "test_windows_hold.py", "test_formulas.py"),
-    *("test_captured_run_ups.py", "test_examples.py", "test_sensitivity.py", "test_submission.py"),
+    *("test_features.py", "test_integration.py", "test_in_the_browser.py", "test_examples.py"),
+    *("test_boundaries.py", "test_hostile_names.py", "test_report.py", "test_applications.py", "test_pool.py"),
+    *("test_charts_hold_their_word.py", "test_live_page.py", "test_stable_limit.py"),
+    *("test_stability_charts.py", "test_exported_code.py", "test_speeds_in_text_and_pictures.py"),
+    *("test_process.py", "test_views.py", "test_periods_and_verdicts.py", "test_variants.py"),
+    *("test_transients_in_the_app.py", "test_dashboard.py", "test_whose_result.py", "test_server.py"),
+    *("test_captured_run_ups.py", "test_submission.py", "test_charts_about_steady_states.py"),
+    *("test_every_command.py", "test_sensitivity.py", "test_tolerance_study.py", "test_workers.py"),
+    *("test_largest_values.py",),
 ]
 """Files that take longest, the longest first. The first two need different kernels, so that none is compiled twice."""
 

@@ -10,11 +10,13 @@ import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 from served import ROOT, Server, start_server
+from typer.testing import Result
 
 from trunnion.app.serve import left
 
@@ -220,10 +222,13 @@ def test_a_port_in_use_is_refused(server: Server) -> None:
     assert "--port" in lines[0]
 
 
-@pytest.mark.parametrize("arguments", [("--port", "99999"), ("--threads", "0"), ("missing.toml",)])
-def test_bad_arguments_are_refused(arguments: tuple[str, ...]) -> None:
-    code, lines = refused("app", "--no-browser", *arguments)
+def test_bad_arguments_are_refused(run: Callable[..., Result]) -> None:
+    """Those that are refused before anything is served in this process, which a server would leave its marks on."""
+    code, lines = refused("app", "--no-browser", "--port", "99999")
     assert (code, len(lines)) == (2, 1)
+    for arguments in (("--threads", "0"), ("missing.toml",)):
+        told = run("app", "--no-browser", *arguments)
+        assert told.exit_code == 2 and told.stderr.count("\n") == 1, told.stderr
 
 
 def test_a_browser_that_goes_away_while_it_is_written_to_leaves_no_traceback() -> None:

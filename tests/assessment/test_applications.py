@@ -334,7 +334,12 @@ def test_the_table_of_angles_holds_one_acceleration() -> None:
     assert all(acceleration[rpm] < 1000.0 for rpm in (500.0, 1000.0, 4000.0, 4500.0, 5000.0))
 
 
-@pytest.mark.parametrize("rpm", [120.0, 499.0, 500.0, 1750.0, 2400.0, 3499.0, 3501.0, 5000.0, 5001.0, 8000.0])
+# Below the table, at its first row, between two rows and above it.
+@pytest.mark.parametrize(
+    "rpm",
+    [120.0, 499.0, 500.0, 3501.0, 5001.0]
+    + [pytest.param(rpm, marks=pytest.mark.slow) for rpm in (1750.0, 2400.0, 3499.0, 5000.0, 8000.0)],  # type: ignore[list-item]
+)
 def test_a_steeper_joint_is_never_judged_more_kindly(rpm: float) -> None:
     """From angle to angle: within, then beyond; below the table's first row, then not judged."""
     found = [tn.assess(one_joint(d, rpm)).check("angle of joint").status for d in np.arange(0.5, 14.0, 0.75)]
@@ -355,12 +360,13 @@ def test_equal_within_one_degree_up_to_rounding() -> None:
 # ---- What is shipped -------------------------------------------------------------------------------------------------
 
 
-LONG = ("dumper", "four-wheel-drive", "passenger-car", "rolling-mill-strip")
+QUICK = ("gear-stage", "pto-shaft", "six-cylinder-ship", "steering-column")
+"""One of each kind: gears, joints in a row, an engine with its damper, joints in space."""
 
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(path, id=path.stem, marks=[pytest.mark.slow] if path.stem in LONG else []) for path in EXAMPLES],
+    [pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else [pytest.mark.slow]) for path in EXAMPLES],
 )
 def test_an_example_has_a_whole_verdict(path: Path) -> None:
     """It states application and limits; nothing that decides is left open, and every margin is more than a hair."""
@@ -394,8 +400,8 @@ def test_the_take_off_grows_unstable_where_it_is_raised() -> None:
     assert found.sentence.startswith("exceeded over 4 places: parametric stability binds at hitch 500 mm")
 
 
-SLOW = ("4x4-free", "car", "marine")
-"""Free–free lines with joint angles: every speed takes a motion of its own."""
+SLOW = ("4x4-free", "car", "marine", "tractor")
+"""Free–free lines with joint angles, every speed of which takes a motion of its own, and a long one."""
 
 
 @pytest.mark.parametrize(

@@ -24,28 +24,24 @@ program.main()
 HEAVY = ("numba", "scipy", "xarray", "matplotlib", "h5py", "pint", "pandas")
 
 
-@pytest.mark.parametrize(
-    "action",
-    [
-        "import trunnion",
-        "from trunnion.cli import main; sys.argv = ['trunnion', '--help']; run(main)",
-        "from trunnion.cli import main; sys.argv = ['trunnion', 'analyze', '--help']; run(main)",
-        "from trunnion.cli import main; sys.argv = ['trunnion', 'new']; run(main)",
-    ],
-    ids=["import", "help", "help of a command", "list of starters"],
-)
-def test_light_imports(start, action):
+def test_light_imports(start):
+    """The package, help, help of a command and the list of starters, one after the other."""
     script = (
         "import sys\n"
-        "def run(main):\n"
-        "    try:\n        main()\n"
+        "def loaded(by):\n"
+        f"    print('HEAVY', by, [name for name in {HEAVY!r} if name in sys.modules])\n"
+        "import trunnion\n"
+        "loaded('import')\n"
+        "from trunnion.cli import main\n"
+        "for words in (['--help'], ['analyze', '--help'], ['new']):\n"
+        "    try:\n        main(words)\n"
         "    except SystemExit as leave:\n        assert not leave.code\n"
-        f"{action}\n"
-        f"print('HEAVY', [name for name in {HEAVY!r} if name in sys.modules])\n"
+        "    loaded(words)\n"
     )
     code, out, err = finished(start(program=("-c", script)))
     assert code == 0, err
-    assert out.splitlines()[-1] == "HEAVY []"
+    said = [line for line in out.splitlines() if line.startswith("HEAVY")]
+    assert len(said) == 4 and all(line.endswith(" []") for line in said), said
 
 
 def test_the_answer_loads_no_compiler(start):
@@ -110,8 +106,20 @@ def test_a_narrow_encoding_does_not_break_the_output(start):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="a console of its own would get the Ctrl-C")
-@pytest.mark.parametrize("later", [False, True], ids=["while it starts", "while it computes"])
-@pytest.mark.parametrize("asked", ["SIGINT", "SIGTERM", "SIGHUP"])
+@pytest.mark.parametrize(
+    ("asked", "later"),
+    [
+        # A signal is heard the same way while it computes, whichever it is: Ctrl-C stands for the others.
+        pytest.param(
+            asked,
+            later,
+            id=f"{asked}-while it {'computes' if later else 'starts'}",
+            marks=[pytest.mark.slow] * (later and asked != "SIGINT"),
+        )
+        for asked in ("SIGINT", "SIGTERM", "SIGHUP")
+        for later in (False, True)
+    ],
+)
 def test_who_is_asked_to_end_leaves_nothing(start, here, later, asked):
     """Ctrl-C, and what a scheduler, a service or a closing terminal sends."""
     before = sorted(os.listdir(here))

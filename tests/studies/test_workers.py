@@ -83,7 +83,8 @@ def test_a_store_that_workers_do_not_see(tmp_path, client, monkeypatch) -> None:
         tn.study(stated(tmp_path / "a.zarr"), line=line(), client=client)
 
 
-def test_a_scheduler_that_is_not_there(tmp_path) -> None:
+def test_a_scheduler_that_is_not_there(tmp_path, monkeypatch) -> None:
+    monkeypatch.setattr("trunnion.studies.runner.CALLED", "1s")
     with pytest.raises(tn.InputError, match=r'scheduler = .*: answers nothing; write "tcp://host:8786"'):
         tn.study(stated(tmp_path / "a.zarr"), line=line(), scheduler="tcp://127.0.0.1:9")
 

@@ -52,6 +52,8 @@ ASKED_AFTER = 5.0
 """Seconds between questions who is there, each of which costs milliseconds."""
 ATTEMPTS = 3
 """Times that a block is tried alone before its points are suspected one by one."""
+CALLED = "10s"
+"""How long a scheduler that is called may take to answer."""
 LOST = "the scheduler has gone; all blocks that were done are kept: run the study again to resume"
 
 
@@ -499,7 +501,7 @@ def workers_of(scheduler: str) -> Iterator[Any]:
     """
     distributed = scale("distributed")
     try:
-        client = distributed.Client(scheduler, timeout="10s", set_as_default=False)
+        client = distributed.Client(scheduler, timeout=CALLED, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
         why = "answers nothing" if isinstance(error, OSError | TimeoutError) else f"is not an address ({error})"
         raise InputError(why, key="scheduler", value=scheduler,
