@@ -178,11 +178,13 @@ class Excitation(Record):
 
     @property
     def covers(self) -> str:
-        """The range of its table in words."""
+        """The range of its table in words, with four figures: mean torques follow from pressures."""
         kinds = {"speeds": (SPEED, "rpm"), "torques": (TORQUE, None)}
-        return " and ".join(
-            f"{shown(points[0], *kinds[over])} to {shown(points[-1], *kinds[over])}" for over, points in self.axes
-        )
+
+        def end(over: str, value: float) -> str:
+            return str(shown(float(f"{value:.4g}") if over == "torques" else value, *kinds[over]))
+
+        return " and ".join(f"{end(over, points[0])} to {end(over, points[-1])}" for over, points in self.axes)
 
 
 _READ = listed(Excitation, "harmonic torque")

@@ -5,8 +5,9 @@ Nothing here is drawn, and nothing compiled that the answer does not need: chart
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -219,7 +220,8 @@ def beyond_findings(subject: AssessmentInput, assessment: Assessment) -> list[Fi
             check for k, case in enumerate(cases) for check in by_case(there, case, growth=not (k and case.costly))
         )
         counting = weighed(checks, subject.line.operation)
-        found += [_beyond(c, side) for c in counting if c.exceeded and c.name not in inside]
+        gaps = [f"; {there.ranges([(g.low, g.high)])} not judged: {g.why}" for case in cases for g in case.span.gaps]
+        found += [_beyond(c, side, gaps) for c in counting if c.exceeded and c.name not in inside]
         undecided = [case.answer for known, case in zip(subject.cases, cases, strict=True) if known.response]
         reasons = [answer for answer in undecided if isinstance(answer, str)]
         whole = "; ".join(reasons)
@@ -238,8 +240,10 @@ def _just(side: str) -> str:
     return f"Just {side} the range (up to {100 * BEYOND:.0f} %)"
 
 
-def _beyond(check: Check, side: str) -> Finding:
-    return Finding(Gravity.CAUTION, f"{_just(side)} {check.name} would be exceeded: {check.because}.")
+def _beyond(check: Check, side: str, gaps: Sequence[str]) -> Finding:
+    """In words, without the ``gaps`` of its search, which are said by themselves."""
+    because = reduce(lambda text, gap: text.replace(gap, ""), gaps, check.because)
+    return Finding(Gravity.CAUTION, f"{_just(side)} {check.name} would be exceeded: {because}.")
 
 
 def capital(text: str) -> str:

@@ -21,6 +21,7 @@ from trunnion.design.assessment.check import Check
 from trunnion.driveline.driveline import Driveline
 from trunnion.modes.mass_elastic import HolzerTable
 from trunnion.reporting import submission_tables as tables
+from trunnion.reporting.first_sheet import first_sheet
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
 from trunnion.reporting.page import HtmlPage, environment
 from trunnion.reporting.pictures import ReportPicture, picture
@@ -34,8 +35,6 @@ from trunnion.waiting import to_the_end
 
 MOST_CURVES, MOST_UNLIMITED = 10, 3
 """Checks that are drawn over speed, and springs without a check."""
-FIRST_FINDINGS = 3
-"""Findings on the first sheet."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +94,9 @@ def _beside_checks(contents: SubmissionContents) -> Iterator[Finding]:
 
 def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], source: Path | None) -> str:
     seen, made = contents.seen, datetime.now().astimezone()
-    first = [one for one in _beside_checks(contents) if one.gravity is not Gravity.NOTE][:FIRST_FINDINGS]
+    grave = [one for one in _beside_checks(contents) if one.gravity is not Gravity.NOTE]
+    malfunction = tables.exceeded_by_malfunction(contents)
+    checks, first = first_sheet(contents, malfunction, grave)
     name, digest = fingerprint(seen.line, source)
     facts: dict[str, Any] = {
         "title": seen.line.name or "Driveline",
@@ -103,13 +104,14 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "verdict": seen.assessment.sentence,
         "status": str(seen.assessment.verdict).replace(" ", "-"),
         "footer": _footer(seen.line),
-        "malfunction": tables.exceeded_by_malfunction(contents),
+        "malfunction": malfunction,
         "title_block": tables.title_block(seen.line.document, made.strftime("%Y-%m-%d")),
         "signatures": tables.signatures(seen.line.document),
         "particulars": tables.particulars(contents),
-        "first_checks": tables.first_checks(contents),
-        "more_checks": tables.more_checks(contents),
+        "first_checks": checks,
+        "more_checks": tables.more_checks(contents, len(checks.rows)),
         "first_findings": first,
+        "more_findings": len(grave) - len(first),
         "findings": seen.findings,
         "rests_on": seen.assessment.rests_on,
         "switched_off": seen.assessment.switched_off,

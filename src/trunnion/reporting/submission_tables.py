@@ -95,7 +95,7 @@ def _power(watts: float) -> str:
 
 
 def first_checks(contents: SubmissionContents) -> Table:
-    """The checks that decide, the binding one first, as many as fit on the first sheet."""
+    """The checks that decide, the binding one first, eight at most."""
     words = Words(contents.seen.unit)
     judged = [check for check in contents.seen.assessment.checks if check.exceeded or check.satisfied or check.missing]
     rows = [
@@ -105,10 +105,10 @@ def first_checks(contents: SubmissionContents) -> Table:
     return Table(heads, tuple(rows))
 
 
-def more_checks(contents: SubmissionContents) -> int:
-    """How many checks that decide stand on later sheets only."""
+def more_checks(contents: SubmissionContents, shown: int) -> int:
+    """How many checks that decide stand on later sheets only, where ``shown`` stand on the first."""
     checks = contents.seen.assessment.checks
-    return max(sum(c.exceeded or c.satisfied or c.missing for c in checks) - FIRST_CHECKS, 0)
+    return sum(c.exceeded or c.satisfied or c.missing for c in checks) - shown
 
 
 def _quantity(value: float, unit: str, words: Words) -> str:

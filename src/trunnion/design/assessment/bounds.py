@@ -85,7 +85,7 @@ def _notes(checks: Sequence[Check], asked: dict[str, BoundedCheck]) -> Iterator[
     if any(check.proof == PROVED for check in checks):
         yield "What is proved holds of the steady motion, which a stable line comes to."
     if any(check.proof == SEARCHED and check.name in asked for check in checks):
-        yield "A few boxes do not prove all that is searched: certify_peaks takes as many as it needs."
+        yield "What is searched and not proved may be proved by trunnion certify-peaks, which takes more time for it."
     if without := [check.name for check in checks if check.proof == SEARCHED and check.name not in asked]:
         yield f"Searched, not proved, for no bound is computed: {few(without)}."
 
@@ -156,7 +156,7 @@ def _above(bound: float, value: float) -> str:
 
 
 def _too_few(boxes: int) -> str:
-    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice" if boxes else "each box takes long here"
+    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice" if boxes else "of so many springs and excitations that takes longer than this command spends on it"
 
 
 def _boxes(number: int) -> str:

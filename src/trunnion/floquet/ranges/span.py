@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.driveline.composite import owners
 from trunnion.driveline.excitation import Excitation
 from trunnion.equations.amplitudes import beyond
 from trunnion.equations.coefficients import Assembly
@@ -182,5 +183,7 @@ class Span:
         """Why nothing can be computed at a speed; empty where it can."""
         for law, disk, points, place in self._tables(self.table(np.array([speed]))):
             if beyond(points, place)[0]:
-                return f"the table of {disk} covers {law.covers}; extend it"
+                line = self.assembly.line
+                (whose,) = owners(zip(line.names, line.elements, strict=True), [disk])
+                return f"the table of {whose} covers {law.covers}; extend it"
         return ""
