@@ -11,10 +11,11 @@ import trunnion as tn
 
 WIDTH, HEIGHT = (210 - 30) / 25.4 * 96, (297 - 34) / 25.4 * 96
 """Pixels of an A4 page between its margins."""
+NAMES = ["truck", "harbour-tug", "two-stroke-ship", "six-cylinder-ship", "electric-drive", "passenger-car", "dumper"]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["truck", "harbour-tug", "two-stroke-ship", "six-cylinder-ship", "electric-drive", "passenger-car", "dumper"])
+@pytest.mark.parametrize("name", NAMES)
 def test_the_first_sheet_is_one_page(browser: Any, name: str) -> None:  # noqa: F811
     page = browser.new_page(viewport={"width": round(WIDTH), "height": round(HEIGHT)})
     page.emulate_media(media="print")

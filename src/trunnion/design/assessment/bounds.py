@@ -156,7 +156,9 @@ def _above(bound: float, value: float) -> str:
 
 
 def _too_few(boxes: int) -> str:
-    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice" if boxes else "of so many springs and excitations that takes longer than this command spends on it"
+    if not boxes:
+        return "of so many springs and excitations that takes longer than this command spends on it"
+    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice"
 
 
 def _boxes(number: int) -> str:
