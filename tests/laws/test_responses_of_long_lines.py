@@ -95,6 +95,11 @@ def test_a_joint_at_80_degrees_takes_as_many_side_orders_as_it_needs() -> None:
     assert max(found.order) > 50 and found.cut_off[0] < 1e-11
     assembly = assemble(line)
     assert unbalanced(assembly, found, assembly.table(1, 70.0), np.zeros(1, dtype=np.intp)) < 1e-9
+    response = tn.order_response(line, [70.0])
+    needed = int(14 / -np.log10(np.tan(np.deg2rad(40.0)) ** 2)) + 1  # shares down to 1e-14, and one beyond
+    assert response.side_orders == found.side_orders >= needed == 92
+    assert any(f"{response.side_orders} side orders on either side" in str(one) for one in response.remarks)
+    assert not any("side orders" in str(one) for one in tn.order_response(chain(24, 0.3), [70.0]).remarks)
 
 
 def test_a_response_that_does_not_balance_is_solved_by_whole_matrices(monkeypatch: pytest.MonkeyPatch) -> None:

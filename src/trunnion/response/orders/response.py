@@ -252,11 +252,25 @@ def _remarks(assembly: Assembly, spectrum: OrderSpectrum, unexcited: Array) -> I
             "A loss factor without a frequency has no motion in time: this free–free line with joint angles is taken "
             "about the motion of its rigid shafts, right to first order in what joints and excitations force.",
         )
+    yield from _many_side_orders(spectrum)
     yield from _falls_away(assembly, spectrum)
     yield from _wound_up(assembly, spectrum.speed)
     yield from _nominal_angle(assembly, spectrum)
     yield from _swing_of_clutches(assembly, spectrum)
     yield from assembly.derived(_left_out)
+
+
+def _many_side_orders(spectrum: OrderSpectrum) -> Iterator[Finding]:
+    """How many side orders steep joints ask for, and whether those taken suffice."""
+    left = float(np.nanmax(spectrum.cut_off, initial=0.0))
+    if spectrum.side_orders < MANY_SIDE_ORDERS and left <= ENOUGH:
+        return
+    taken = f"{spectrum.side_orders} side orders on either side of every excitation are solved for"
+    yield Finding(
+        Gravity.NOTE if left <= ENOUGH else Gravity.CAUTION,
+        f"Joint angles or varying meshes make slowly falling side orders: {taken}, of which the outermost have "
+        f"{figures(left, 2)} of the largest torque{'' if left <= ENOUGH else ', the error of what is left out'}.",
+    )
 
 
 def _left_out(assembly: Assembly) -> tuple[Finding, ...]:
@@ -334,6 +348,10 @@ def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Find
         )
 
 
+MANY_SIDE_ORDERS = 40
+"""Side orders from which their number is said: a Hooke's joint at some 70°."""
+ENOUGH = 1e-6
+"""Share of the largest torque up to which outermost side orders are no error worth a word."""
 ALIKE_SWING = 1.5
 """Factor by which a clutch may swing more or less than where its mean was taken, before that is said."""
 LARGEST_SWING = 0.1

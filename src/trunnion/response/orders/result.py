@@ -14,7 +14,7 @@ from trunnion.floquet.stability.where_unstable import where_unstable
 from trunnion.laws.harmonic import turning
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
-from trunnion.results.fields import computed, coordinate, internal, labelled, variable
+from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.result import Result
 from trunnion.results.speeds import order_name
@@ -240,6 +240,13 @@ class OrderResponse(Result):
     def cut_off(self) -> Array:
         """Size of the outermost harmonics kept, relative to the largest torque (speed,); 0 on straight lines."""
         return self.spectrum.cut_off
+
+    @property
+    @computed(attribute())
+    def side_orders(self) -> int:
+        """Side orders that are solved for on either side of every excitation, which joint angles and varying meshes
+        make of it; 0 on straight lines and about a free line's own motion."""
+        return self.spectrum.side_orders
 
     def peak(self, spring: str) -> tuple[float, float]:
         """Largest |torque| of a spring [N m] over all speeds, and the speed it stands at [rad/s]; NaN without a steady

@@ -80,7 +80,8 @@ class OrderSpectrum:
     order (order,) exact, in cycles per turn of the input, and frequency (order,) [rad/s] to add to it; amplitude
     (speed, order, channel) of the deviation from the base motion, base (speed, order, point) [rad] of the base
     motion itself; mean (speed, channel), static part included; cut_off (speed,): the outermost harmonics kept;
-    damping and loss (1 or speed, spring) [N m s/rad, N m/rad]; ``oils`` have theirs at the frequency of each order.
+    damping and loss (1 or speed, spring) [N m s/rad, N m/rad]; ``oils`` have theirs at the frequency of each order;
+    ``side_orders`` kept on either side of an excitation, the most at any speed, 0 where it makes none.
     """
 
     speed: Array
@@ -94,6 +95,7 @@ class OrderSpectrum:
     damping: Array
     loss: Array
     oils: tuple[OilLink, ...] = ()
+    side_orders: int = 0
 
     def take(self, rows: Places | slice) -> OrderSpectrum:
         """At some of its speeds."""
@@ -216,6 +218,7 @@ def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
         oils=tuple(
             oil_in_turn([part.oils[k] for part in parts], speeds) for k in range(min(len(part.oils) for part in parts))
         ),
+        side_orders=max(part.side_orders for part in parts),
     )
 
 

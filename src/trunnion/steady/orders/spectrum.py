@@ -230,13 +230,15 @@ class _SpectrumProblem:
 
     def _plan(self, reach: float) -> tuple[list[CarrierGroup], SideOrders, int]:
         """Groups, the side orders of their harmonics, and samples over the period that resolve them."""
-        if self.fall is None:
-            sides = SideOrders(offsets(self.rates, int(reach)), int(reach))
-        else:
-            sides = SideOrders(side_orders(self.fall, reach), OUTERMOST)
+        sides = self._sides(reach)
         groups = [OWN, *groups_of(self.acting, 1 / self.turns, sides.width)]
         widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
         return groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+
+    def _sides(self, reach: float) -> SideOrders:
+        if self.fall is None:
+            return SideOrders(offsets(self.rates, int(reach)), int(reach))
+        return SideOrders(side_orders(self.fall, reach), OUTERMOST)
 
     def _tree_pays(self) -> bool:
         groups, sides, _ = self._plan(self.reach)
@@ -261,7 +263,9 @@ class _SpectrumProblem:
         damping[:, list(self.topo.converting)] = 0.0  # a part of torques that are no damper's
         springs = (part[rows] if len(part) > 1 else part for part in (damping, self.springs.loss))
         found = total.spectrum(self.numbers[rows, 0], cut_off, *springs)
-        oils = () if self.varies or self.own is not None else self.springs.oils
+        if self.varies and self.own is None:
+            return replace(found, side_orders=sum(offset > 0 for offset in self._sides(self.reach).layers))
+        oils = () if self.own is not None else self.springs.oils
         return replace(found, oils=tuple(one.take(rows) for one in oils)) if oils else found
 
     def _solved(self, table: Array) -> tuple[OrderSum, Array]:
