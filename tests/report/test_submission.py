@@ -328,3 +328,34 @@ def test_a_signer_reads_what_cylinders_do_at_the_operating_speed_and_out_of_work
 
 def test_words_in_a_style_sheet_end_nothing() -> None:
     assert in_css('a"}</style>') == r"a\000022\00007d\00003c\00002fstyle\00003e"
+
+
+@pytest.mark.parametrize("searches", [0, 1, 3])
+def test_what_time_did_not_allow_is_said_and_not_denied(monkeypatch: pytest.MonkeyPatch, searches: int) -> None:
+    """The time ends before anything, after the torques, after two cylinders: none of the rest is called absent."""
+    seen = made().contents.seen
+    with tn.time_limit() as limit:
+        if not searches:
+            limit.stop()
+        shares: list[float] = []
+
+        def count(share: float) -> None:
+            shares.append(share)
+            if len(shares) == searches:
+                limit.stop()
+
+        page = tn.submission(seen, progress=count)
+    contents = page.contents
+    assert len(contents.misfiring) == max(searches - 1, 0)
+    assert len(contents.misfiring) + len(contents.unsearched) == 4
+    assert shares == sorted(shares) and shares[-1] == 1.0
+    for one, whole in zip(contents.misfiring, made().contents.misfiring, strict=False):
+        assert [top.value for top in one.vibratory] == [top.value for top in whole.vibratory]
+    assert contents.complete is bool(searches)
+    assert bool(contents.shafts) is bool(searches)
+    for name in contents.unsearched:
+        assert any(name in sentence and "not computed" in sentence for sentence in contents.left_out) or not searches
+        assert name in page.html
+    assert "not all judged, see section 6" in page.html and "not all computed, see section 10" in page.html
+    assert "has no cylinders" not in page.html and "Nothing becomes warm" not in page.html
+    assert ("Every torque is searched over the whole range" in page.html) is bool(searches)

@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 
 DRAWN = 3.0
 """Seconds that the pictures of a report take: with less left than that none is made."""
-REST, LEAST = 10.0, 0.05
-"""Seconds of processor time, compiling not counted, that report and chart may take where no time is given; seconds at
-least where it is."""
+REST, HANDED_IN, LEAST = 10.0, 60.0, 0.05
+"""Seconds of processor time, compiling not counted, that report and chart may take where no time is given, and the
+report to hand in, which is to be complete; seconds at least where it is."""
 
 
 def analyze(
@@ -68,7 +68,7 @@ def analyze(
             "--within",
             metavar="TIME",
             help='End within this time, "30 s" say, with what is known by then; default: as long as the verdict '
-            "takes, then 10 s of processor time.",
+            "takes, then 10 s of processor time, 60 s with --submission.",
         ),
     ] = None,
     handed_in: Annotated[
@@ -110,8 +110,8 @@ def analyze(
     if not as_json:
         print_findings(given)
     if handed_in:
-        left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-        handed, written = _submitted(given, file, to, left)
+        left = HANDED_IN if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
+        handed, written = _submitted(given, file, to, left, of_processor=seconds is None)
         if as_json:
             output.write_json("analyze", overview_json(at_speed(given), written))
             return
@@ -178,13 +178,15 @@ def _live(seen: Overview, report: Path) -> tuple[Path, tuple[str, ...]]:
     return found.save(beside(report)), left_out
 
 
-def _submitted(given: OverviewAssessment, file: str, to: Path, left: float | None) -> tuple[Submission, list[Path]]:
+def _submitted(
+    given: OverviewAssessment, file: str, to: Path, left: float, *, of_processor: bool
+) -> tuple[Submission, list[Path]]:
     """The report that is handed in, and where it is written."""
     from trunnion.cli.files import REPORTS
     from trunnion.reporting.submission import submission
     from trunnion.writing import folder_written_whole
 
-    with output.stoppable(left), output.progress("report to hand in") as advance:
+    with output.stoppable(left, of_processor=of_processor), output.progress("report to hand in") as advance:
         page = submission(given, source=file, progress=advance)
     with to_the_end():
         if to.suffix.lower() in REPORTS:

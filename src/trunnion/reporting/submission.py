@@ -67,6 +67,8 @@ def submission(
     source : the file the line was read from, for its name and hash.
     progress : called as progress(share done).
 
+    Within ``tn.time_limit(seconds)`` it holds what is known by then; first sheet and section 10 say what is missing.
+
     Raises
     ------
     InputError : the line has no equations of motion, or no steady motion to judge.
@@ -130,6 +132,10 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "heats": tables.heats(contents),
         "rules": tables.rules(contents),
         "left_out": contents.left_out,
+        "unsearched": contents.unsearched,
+        "complete": contents.complete,
+        "all_searched": contents.complete and not any(one.ended for one in contents.misfiring),
+        "met": contents.campbell is not None,
         "range": Words(seen.unit).ends(*seen.speed_range),
         "curves": [key for key in shown if key.startswith("torque of ")],
         "pictures": shown,

@@ -18,13 +18,13 @@ from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.measures import torque_measures
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.operation import Operation
-from trunnion.driveline.silent_cylinders import SILENT, cylinders
+from trunnion.driveline.silent_cylinders import SILENT, Cylinder, cylinders
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.modes.mass_elastic import HolzerTable, holzer
 from trunnion.reporting.overview_assessment import OverviewAssessment
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
-from trunnion.waiting import OutOfTime
+from trunnion.waiting import OutOfTime, keep_time
 
 Found = TypeVar("Found")
 MOST_MODES = 8
@@ -91,7 +91,11 @@ class Malfunction:
 
 @dataclass(frozen=True)
 class SubmissionContents:
-    """Results of the report that is handed in; None or empty where a question does not apply."""
+    """Results of the report that is handed in; None or empty where a question does not apply.
+
+    left_out: what was not computed, or in part, and why; unsearched: cylinders among them, which were not put out of
+    work; complete: whether every torque of every shaft was searched to the end.
+    """
 
     seen: OverviewAssessment
     campbell: CampbellDiagram | None
@@ -102,11 +106,17 @@ class SubmissionContents:
     misfiring: tuple[Malfunction, ...]
     cases: tuple[LoadCaseResponse, ...]
     left_out: tuple[str, ...]
+    unsearched: tuple[str, ...]
+    complete: bool
 
 
 def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = None) -> SubmissionContents:
-    """What belongs on the pages after the verdict; ``progress`` is called as progress(share done)."""
+    """What belongs on the pages after the verdict; ``progress`` is called as progress(share done).
+
+    Where a time limit ends it, what is known by then, and ``left_out`` says what is missing.
+    """
     left_out: list[str] = []
+    done = _Share(progress, seen)
 
     def unless_refused(question: str, answer: Callable[[], Found]) -> Found | None:
         try:
@@ -120,15 +130,16 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
     low, high = seen.speed_range
     speeds = np.linspace(max(low, high / 200), high, 201)
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(seen.assembly, speeds))
+    asked = [case for case in seen.subject.cases if case.response is not None]
     left_out += [f"Torques{case.suffix}: {case.answer}" for case in seen.subject.cases if case.response is None]
-    cases = _searched(case for case in seen.subject.cases if case.response is not None)
+    cases = _searched(asked, left_out, done)
     powers = unless_refused("Torque and power", lambda: tuple(p for case in cases for p in _powers(case)))
     shafts = unless_refused("Torques of the shafts", lambda: _shafts(cases))
     firing = unless_refused("All cylinders firing", lambda: _all_firing(seen, cases)) or ()
     normal = unless_refused("All cylinders firing", lambda: _vibratory(firing)) if firing else None
-    misfiring = unless_refused("Misfire", lambda: tuple(_misfiring(seen, firing, progress)))
+    misfiring, unsearched = _malfunctions(seen, firing if normal else (), left_out, done)
     left_out += [f"Torques{case.suffix}: searched in part, {why}" for case in cases for why in {*case.ended_by}]
-    left_out += [f"Malfunction, {one}: searched in part, {one.ended}" for one in misfiring or () if one.ended]
+    left_out += [f"Malfunction, {one}: searched in part, {one.ended}" for one in misfiring if one.ended]
     return SubmissionContents(
         seen=seen,
         campbell=campbell,
@@ -136,17 +147,39 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
         powers=powers or (),
         shafts=shafts or (),
         firing=normal or (),
-        misfiring=misfiring or (),
+        misfiring=misfiring,
         cases=cases,
         left_out=tuple(left_out),
+        unsearched=unsearched,
+        complete=len(cases) == len(seen.subject.cases) and not any(case.ended_by for case in cases),
     )
 
 
-def _searched(cases: Iterable[LoadCaseResponse]) -> tuple[LoadCaseResponse, ...]:
-    """Cases in which the torques of all springs are searched, not only those that a limit bounds."""
-    known = list(cases)
-    asked = [(word, s) for word in WORDS for s in range(len(known[0].answered.springs))] if known else []
-    return tuple(with_torques(known, tuple(asked)))
+class _Share:
+    """Counts the searches that are done: of every load case, and of every cylinder out of work."""
+
+    def __init__(self, progress: Callable[[float], None] | None, seen: OverviewAssessment) -> None:
+        self.progress, self.done = progress, 0
+        self.all = len(seen.subject.cases) + len(_out_of_work(seen))
+
+    def step(self) -> None:
+        self.done += 1
+        if self.progress is not None:
+            self.progress(min(self.done / self.all, 1.0))
+
+
+def _searched(cases: list[LoadCaseResponse], left_out: list[str], done: _Share) -> tuple[LoadCaseResponse, ...]:
+    """Cases in which the torques of all springs are searched, not only those that a limit bounds; without those that a
+    time limit ended before anything was known."""
+    springs = range(len(cases[0].answered.springs)) if cases else ()
+    found = []
+    for case in with_torques(cases, tuple((word, s) for word in WORDS for s in springs)):
+        if case.response is None:
+            left_out.append(f"Torques{case.suffix}: not computed, {case.answer}")
+        else:
+            found.append(case)
+        done.step()
+    return tuple(found)
 
 
 def _modes(seen: OverviewAssessment, campbell: CampbellDiagram | None) -> list[int]:
@@ -223,28 +256,53 @@ def _vibratory(cases: tuple[LoadCaseResponse, ...]) -> tuple[LargestTorque, ...]
     return tuple(_largest(cases, "vibratory", s) for s in range(len(cases[0].answered.springs)))
 
 
-def _misfiring(
-    seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...], progress: Callable[[float], None] | None
-) -> Iterator[Malfunction]:
-    """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds. Cut out as
-    well where a misfire leaves the gas torque of compression, which is then gone."""
+def _out_of_work(seen: OverviewAssessment) -> list[tuple[str, Cylinder]]:
+    """Every cylinder by the key that puts it out of work. Cut out as well where a misfire leaves the gas torque of
+    compression, which is then gone."""
     parts = seen.line.as_stated.parts
     compressing = {name for name, one in parts if isinstance(one, Engine) and one.compresses}
-    every = [("misfiring", one) for one in cylinders(parts)] if firing else []
-    every += [("cut_out", one) for one in cylinders(parts, "cut_out") if one.owner in compressing] if firing else []
-    for done, (key, one) in enumerate(every, start=1):
+    every = [("misfiring", one) for one in cylinders(parts)]
+    return every + [("cut_out", one) for one in cylinders(parts, "cut_out") if one.owner in compressing]
+
+
+def _malfunctions(
+    seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...], left_out: list[str], done: _Share
+) -> tuple[tuple[Malfunction, ...], tuple[str, ...]]:
+    """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds. Also those
+    of which nothing is known, as where a time limit ended it before."""
+    found, unsearched = [], []
+    for key, one in _out_of_work(seen):
         called = one.owner if one.alone else f"cylinder {one.number} of {one.owner}"
-        failing = tuple(_without(case, one.owner, key, one.number) for case in firing)
-        found = weighed(worst(check for case in failing for check in of_response(seen.subject, case)), seen.operation)
-        yield Malfunction(
-            cylinder=called,
-            vibratory=_vibratory(failing),
-            checks=tuple(check for check in found if check.exceeded or check.satisfied or check.missing),
-            ended="; ".join({why: None for case in failing for why in case.ended_by}),
-            how=SILENT[key],
-        )
-        if progress is not None:
-            progress(done / len(every))
+        try:
+            if not firing:
+                raise ComputationError("there is no response with all cylinders firing to compare with")
+            keep_time()
+            found.append(_malfunction(seen, firing, key, one, called))
+        except (InputError, ComputationError) as error:
+            unsearched.append(f"{called}, {SILENT[key]}")
+            left_out.append(f"Malfunction, {unsearched[-1]}: {error}")
+        except OutOfTime as error:
+            unsearched.append(f"{called}, {SILENT[key]}")
+            left_out.append(f"Malfunction, {unsearched[-1]}: not computed, {error.why}")
+        done.step()
+    return tuple(found), tuple(unsearched)
+
+
+def _malfunction(
+    seen: OverviewAssessment, firing: tuple[LoadCaseResponse, ...], key: str, one: Cylinder, called: str
+) -> Malfunction:
+    failing = tuple(_without(case, one.owner, key, one.number) for case in firing)
+    for case in failing:
+        if case.response is None:
+            raise OutOfTime(case.ended_by[0]) if case.ended_by else ComputationError(str(case.answer))
+    found = weighed(worst(check for case in failing for check in of_response(seen.subject, case)), seen.operation)
+    return Malfunction(
+        cylinder=called,
+        vibratory=_vibratory(failing),
+        checks=tuple(check for check in found if check.exceeded or check.satisfied or check.missing),
+        ended="; ".join({why: None for case in failing for why in case.ended_by}),
+        how=SILENT[key],
+    )
 
 
 def _without(case: LoadCaseResponse, name: str, key: str, number: int) -> LoadCaseResponse:

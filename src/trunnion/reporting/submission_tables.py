@@ -72,14 +72,16 @@ def particulars(contents: SubmissionContents) -> Table:
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
         rows.append(("lowest natural frequencies", f"{lowest} Hz"))
-    if contents.misfiring:
+    if contents.misfiring or contents.unsearched:
         rows.append(("a cylinder out of work", _malfunction(contents)))
+    if contents.left_out:
+        rows.append(("left out", "not all computed, see section 10"))
     return Table(("", ""), tuple(rows))
 
 
 def _malfunction(contents: SubmissionContents) -> str:
     """How the checks end with a cylinder out of work, in a few words; the sheet names those exceeded at its top."""
-    unknown = any(c.missing for one in contents.misfiring for c in one.checks)
+    unknown = contents.unsearched or any(one.ended or any(c.missing for c in one.checks) for one in contents.misfiring)
     if exceeded_by_malfunction(contents):
         return "exceeded, see section 6"
     return "not all judged, see section 6" if unknown else "checks of torque satisfied, section 6"
