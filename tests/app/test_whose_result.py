@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import warnings
 from collections.abc import Awaitable, Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -271,6 +273,21 @@ def test_a_best_value_is_used_for_the_parameter_it_was_found_for(monkeypatch: py
 
     query = {"limits.what": "best value of a parameter", "limits.high": "20", "limits.aim": "irregularity"}
     on_session(work, monkeypatch, view="limits", **query)
+
+
+def test_what_is_superseded_before_it_begins_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two settings changed in one turn of the loop: the first computation never runs, and leaves nothing open."""
+
+    async def work(made: Session, pool: Held) -> None:
+        made.setting_chosen()
+        made.setting_chosen()
+        await asyncio.sleep(0.05)
+        gc.collect()
+
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        on_session(work, monkeypatch)
+    assert not [str(one.message) for one in found if "never awaited" in str(one.message)]
 
 
 def said(made: Session) -> str:

@@ -325,8 +325,7 @@ class Session:
                 self.view.of(side).disown(f"Not of the settings above, which are refused: {error}")
             self.page.failed(str(error))
             return
-        work = self._compute(sides, PAUSE if under_way else 0.0)
-        self.task = asyncio.get_event_loop().create_task(self._watched(work))
+        self.task = self._begun(self._compute(sides, PAUSE if under_way else 0.0))
 
     def _write_address(self) -> None:
         """What a bookmark restores; an address that cannot be read stays, to be copied again."""
@@ -363,9 +362,14 @@ class Session:
 
     def beside(self, work: Any) -> None:
         """Begin a small computation beside that of the view, for a click say."""
-        task = asyncio.get_event_loop().create_task(self._watched(work))
+        task = self._begun(work)
         self.side_tasks.add(task)
         task.add_done_callback(self.side_tasks.discard)
+
+    def _begun(self, work: Any) -> asyncio.Task[None]:
+        task = asyncio.get_event_loop().create_task(self._watched(work))
+        task.add_done_callback(lambda ended: work.close())  # of a task that was superseded before its first step
+        return task
 
     def cancel(self) -> None:
         """End what is under way."""
