@@ -127,7 +127,6 @@ UNEVEN = (
 
 
 MACHINES = ("Motor", "Generator", "Fan", "Pump", "Propeller")
-ELECTRIC, CONSUMERS = MACHINES[:2], MACHINES[2:]
 _STAGED = ("PiecewiseShaft", "Clutch", "DualMassFlywheel")
 _MESHED = ("Ratio", "GearPair", "Belt", "Differential")
 _DAMPER = ("inertia", "ring_inertia", "damping", "stiffness")

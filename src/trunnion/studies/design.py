@@ -213,11 +213,6 @@ class StudyDesign:
         """SI units of the parameters."""
         return tuple(one.unit for one in self._varied)
 
-    @cached_property
-    def nominals(self) -> dict[str, float]:
-        """What the line states, by parameter."""
-        return {one.path: one.nominal for one in self._varied}
-
     @property
     def _varied(self) -> tuple[Scattering | StudyAxis, ...]:
         return (*self._scattering, *self.axes)

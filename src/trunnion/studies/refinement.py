@@ -8,7 +8,7 @@ alone, so that whoever goes on with a study comes to the same ones.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import Any
@@ -43,11 +43,6 @@ class Refinement:
     def of_content(cls, content: Mapping[str, Any]) -> Refinement:
         """What ``content`` says."""
         return cls(**content)
-
-    @property
-    def same_answers(self) -> Refinement:
-        """What two searches share that only differ in how far they go."""
-        return replace(self, halvings=0, most=0)
 
 
 @dataclass(frozen=True, eq=False)
