@@ -116,6 +116,7 @@ class InputRemark(UserWarning):
 
     >>> import warnings, trunnion as tn
     >>> with warnings.catch_warnings(record=True) as remarks:
+    ...     warnings.simplefilter("always", tn.InputRemark)
     ...     _ = tn.Shaft(stiffness=1e4, damping=-1.0)
     >>> print(remarks[0].message)
     Shaft.damping = -1: is negative and feeds energy into the line; write it positive unless that is meant
