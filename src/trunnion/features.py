@@ -373,7 +373,10 @@ ROWS: dict[str, Row] = {
     ),
     "derivatives": _row(refused={**_DRY_FRICTION, **_OTHER_SPEEDS}, said=_BY_PLACE, inert={**_PASSIVE, **_STICKS}),
     "proof": _row(
-        refused=_UNPROVABLE,
+        refused={
+            **_UNPROVABLE,
+            "free start": "bent, it is proved about its own periodic motion where a torque depends on its speed",
+        },
         said=_SERIES,
         inert={**_TORSION, **_EVEN, **_STICKS, **_FORCING},
     ),

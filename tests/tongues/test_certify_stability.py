@@ -322,10 +322,10 @@ SERIES = [tn.Shaft(stiffness=2.0, damping=0.2), tn.Shaft(stiffness=1.0, damping=
 LOOSE = tn.Driveline([tn.ConstantSpeed(), *SERIES, tn.Disk(inertia=1.0)])
 BAD = [
     (lambda: tn.certify_stability(LINE, {"Shaft 1.stiffness": 0.01}, (2.0, 1.0)), "speeds = (2.0, 1.0): must be two"),
-    (lambda: tn.certify_stability(free(0.2), {}, (1.0, 2.0)), "engine: is free–free and has joint angles"),
+    (lambda: tn.certify_stability(free(0.2), {}, (1.0, 2.0)), "driveline: is free–free, has joint angles, and no"),
     (
         lambda: tn.certify_stability(free(0.0), {"HookeJoint 1.angle": ("range", 0.0, 0.1)}, (1.0, 2.0)),
-        "HookeJoint 1.angle: would bend a free–free line",
+        "HookeJoint 1.angle: cannot scatter in a certificate of a free–free line",
     ),
     (
         lambda: tn.certify_stability(with_ratio(), {"Ratio 1.ratio": 0.1}, (1.0, 2.0)),

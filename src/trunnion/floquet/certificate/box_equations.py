@@ -75,7 +75,7 @@ def box_matrix(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence
 
 def box_line(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> BoxLine:
     """The numbers of the box of all ``speeds`` and all values of ``ranges``."""
-    last = _harmonics_needed(assembly, ranges, speeds)
+    last = harmonics_needed(assembly, ranges, speeds)
     return BoxLine(assembly, box_coefficients(assembly, speeds, ranges, last), 1 + len(ranges), last)
 
 
@@ -84,7 +84,7 @@ def period_rate(assembly: Assembly) -> float:
     return 1 / float(require_period(assembly.line, assembly.topology))
 
 
-def _harmonics_needed(assembly: Assembly, ranges: Sequence[NumberRange], speeds: tuple[float, float]) -> int:
+def harmonics_needed(assembly: Assembly, ranges: Sequence[NumberRange], speeds: tuple[float, float]) -> int:
     """So many that the harmonics of every joint fall below ``NEGLIGIBLE``, and products of two joints'."""
     topo, rate = assembly.topology, period_rate(assembly)
     table = assembly.table(2, speeds[0])
@@ -308,7 +308,7 @@ class BoxLine:
             if loaded:
                 sense = float(np.sign(float(topo.speed_ratio[s])))
                 v = r * w
-                speed = _modulus(v) if co.quadratic[s].size else v
+                speed = speed_modulus(v) if co.quadratic[s].size else v
                 growth = co.viscous[s] + co.quadratic[s] * speed * 2.0
                 carried = co.constant[s] * sense + (co.viscous[s] + co.quadratic[s] * speed) * v
                 damping[i][i] = damping[i][i] + (r * r) * growth
@@ -349,7 +349,7 @@ class BoxLine:
         return found
 
 
-def _modulus(v: Wave) -> Wave:
+def speed_modulus(v: Wave) -> Wave:
     """|v| of a speed that keeps its sense."""
     sense = float(np.sign(v.mean.real))
     if not (v - v.mean).size < abs(v.mean):

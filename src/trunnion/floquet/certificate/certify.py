@@ -19,12 +19,19 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.coupling_tables import refuse_torque_tables
-from trunnion.equations.steady_base import has_joint_angles, refuse_dragged, require_steady_base, require_tree
+from trunnion.equations.steady_base import (
+    has_joint_angles,
+    refuse_dragged,
+    require_steady_base,
+    require_tree,
+)
 from trunnion.equations.topology import LinkKind
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.judge import JudgedBox, judge
+from trunnion.floquet.certificate.own_judge import NARROW, OwnMotionLine
+from trunnion.floquet.certificate.own_requirements import require_enclosed, swings_by_itself
 from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.results.drawing import Axes, drawing
@@ -34,6 +41,9 @@ from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
+
+WIDENED = 1.3
+"""By how much wider than the last box the next speeds are tried, about a line's own motion."""
 
 
 @labelled
@@ -53,6 +63,7 @@ class StabilityCertificate(Result):
     undecided_high: Array = variable("open_box variable", words="what stays open, SI units", name="high")
     proved_low: Array = variable("proved_box variable", words="what was proved, SI units")
     proved_high: Array = variable("proved_box variable", words="what was proved, SI units")
+    about_own_motion: bool = attribute("about the periodic motion that the line makes, not that without vibration")
     decay: float = variable("", "1/s", "rate at which every disturbance in what was proved dies out at least")
     units: tuple[str, ...] = internal("of the parameters")
     unit: str = internal("of speeds in print")
@@ -103,6 +114,8 @@ class StabilityCertificate(Result):
         where = "" if self.verdict == "proved stable" else " where proved"
         known = np.isfinite(self.decay)
         yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
+        if self.about_own_motion:
+            yield "  about the line's own periodic motion, proved to exist"
 
 
 @keeps_time
@@ -120,8 +133,9 @@ def certify_stability(
 
     Parameters
     ----------
-    line : whose shafts may branch and close no loop; behind a ConstantSpeed, or with straight joints; about its motion
-        without vibration, as ``stability`` judges it, with the same multipliers set aside.
+    line : whose shafts may branch and close no loop; about its motion without vibration, as ``stability`` judges it,
+        with the same multipliers set aside; a free–free line with joint angles about its own periodic motion, where a
+        torque depends on its speed, and without tolerances.
     tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
         line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
         Normal distributions count as three standard deviations either way.
@@ -148,12 +162,16 @@ def certify_stability(
     span = rising_range(speeds)
     most_boxes = whole_number(most_boxes, "most_boxes", 1)
     assembly = assemble(line)
-    require_provable(assembly)
-    require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
     given = assembly.line.tolerances_by_path if tolerances is None else tolerances
     spreads = read_tolerances(assembly, given) if given or not isinstance(given, dict) else ()
-    space = _Space(assembly, spreads, span)
-    require_linear(assembly, span, space.ranges(np.array([np.zeros(space.size), np.ones(space.size)])))
+    own = swings_by_itself(assembly, spreads)
+    require_provable(assembly, own=own)
+    require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
+    space = _Space(assembly, spreads, span, OwnMotionLine(assembly.line) if own else None)
+    ranges = space.ranges(np.array([np.zeros(space.size), np.ones(space.size)]))
+    if own:
+        require_enclosed(assembly, ranges, span[0])
+    require_linear(assembly, span, ranges)
     found = _BoxSearch(space, most_boxes, progress or (lambda share: None))
     found.run()
     left, proved = found.open_boxes, np.array(found.proved).reshape(-1, 2, space.size)
@@ -169,6 +187,7 @@ def certify_stability(
         undecided_high=space.values(left[:, 1]),
         proved_low=space.values(proved[:, 0]),
         proved_high=space.values(proved[:, 1]),
+        about_own_motion=own,
         decay=min(found.decays, default=np.nan),
         units=tuple(s.unit for s in spreads),
         unit=speed_unit(assembly.line),
@@ -178,9 +197,21 @@ def certify_stability(
     )
 
 
+@dataclass(frozen=True)
 class _Space(BoxSpace):
+    """``own`` : the line about its own motion, where that is asked for."""
+
+    own: OwnMotionLine | None = None
+
+    @property
+    def first_width(self) -> float:
+        """Share of the range of speeds of the first box: about its own motion the whole range is in vain."""
+        return 1.0 if self.own is None else min(NARROW / float(np.log(self.speeds[1] / self.speeds[0])), 1.0)
+
     def judged(self, box: Array, *, by_energy: bool = False) -> JudgedBox:
         """The verdict on one box."""
+        if self.own is not None:
+            return self.own.judged(self.span(box), self.ranges(box))
         return judge(self.assembly, self.span(box), self.ranges(box), by_energy=by_energy)
 
     def unstable_at(self, shares: Array) -> tuple[Driveline, dict[str, float]] | None:
@@ -190,7 +221,7 @@ class _Space(BoxSpace):
             from trunnion.floquet.stability.stability import stability  # brings the compiler with it
 
             verdict = stability(line, speed).verdict
-        except ComputationError:  # too stiff to be followed: no counterexample
+        except ComputationError:  # too stiff to be followed, or no motion was found: no counterexample
             return None
         if verdict is not Verdict.UNSTABLE:
             return None
@@ -217,28 +248,36 @@ class _BoxSearch:
     _todo: list[tuple[float, int, Array]] = field(default_factory=list)
     _kept: list[Array] = field(default_factory=list)
     _count: int = 0
+    _ahead: float = 1.0
+    _width: float = 1.0
 
     @property
     def open_boxes(self) -> Array:
         """Boxes (boxes, 2, variables) that are not proved."""
-        return np.array([*(box for _, _, box in self._todo), *self._kept]).reshape(-1, 2, self.space.size)
+        found = [*(box for _, _, box in self._todo), *self._kept]
+        if self._ahead < 1:
+            found.append(np.array([np.zeros(self.space.size), np.ones(self.space.size)]))
+            found[-1][0, 0] = self._ahead
+        return np.array(found).reshape(-1, 2, self.space.size)
 
     def run(self) -> None:
         """Until everything is proved, a line is unstable, or boxes or time are used up."""
         whole = np.array([np.zeros(self.space.size), np.ones(self.space.size)])
-        self._put(whole)
+        self._ahead, self._width = 0.0, self.space.first_width
+        self._put_next()
         self.ended = time_is_up()
         if self.ended:
             return
-        with to_the_end():  # a box takes tenths of a second at most
-            self.judged += 1
-            found = self.space.judged(whole, by_energy=True)
-            if found.proved:
-                self._todo.clear()
-                self._keep(whole, found)
-                return
+        if self.space.own is None:  # no one energy holds about many motions
+            with to_the_end():  # a box takes tenths of a second at most
+                self.judged += 1
+                found = self.space.judged(whole, by_energy=True)
+                if found.proved:
+                    self._todo.clear()
+                    self._keep(whole, found)
+                    return
         open_share = 1.0
-        while self._todo and self.judged < self.most:
+        while (self._todo or self._put_next()) and self.judged < self.most:
             if ended := time_is_up():
                 self.ended = ended
                 return
@@ -249,12 +288,24 @@ class _BoxSearch:
                 if found.proved:
                     self._keep(box, found)
                     open_share -= float(np.prod(box[1] - box[0]))
+                    self._width = float(box[1, 0] - box[0, 0]) * WIDENED
                 elif found.doubtful and self.refutes and self._refuted(box):
                     self._put(box)
                     return
                 else:
                     self._halve(box, found.blame)
             self.report_progress(min(max(1 - open_share, 0.0), 0.999))
+
+    def _put_next(self) -> bool:
+        """All tolerances at the next speeds, as wide as lately proved; whether any are left."""
+        if self._ahead >= 1:
+            return False
+        box = np.array([np.zeros(self.space.size), np.ones(self.space.size)])
+        to = min(self._ahead + self._width, 1.0)
+        box[:, 0] = self._ahead, 1.0 if 1 - to < self._width / 4 else to
+        self._ahead = float(box[1, 0])
+        self._put(box)
+        return True
 
     def _keep(self, box: Array, found: JudgedBox) -> None:
         self.proved.append(box)
@@ -291,8 +342,10 @@ def proved_over(assembly: Assembly, speeds: tuple[float, float], most_boxes: int
     return not len(found.open_boxes)
 
 
-def require_provable(assembly: Assembly) -> None:
+def require_provable(assembly: Assembly, *, own: bool = False) -> None:
     """Refuse lines whose equations the enclosure does not cover.
+
+    own : about the line's own motion.
 
     Raises
     ------
@@ -300,9 +353,9 @@ def require_provable(assembly: Assembly) -> None:
     """
     line, topo = assembly.line, assembly.topology
     remedy = "tolerance_study() says how probable stability is"
-    if topo.free and has_joint_angles(assembly):
+    if not own and topo.free and has_joint_angles(assembly):
         raise InputError(
-            "is free–free and has joint angles: it moves in its own periodic motion, which no certificate encloses",
+            "is free–free and has joint angles: it moves in its own periodic motion, which this one does not enclose",
             element=line.names[0], remedy="put a ConstantSpeed in front, or " + remedy,
         )  # fmt: skip
     require_tree(assembly, "a certificate does")

@@ -49,16 +49,46 @@ class BoxVerdict:
 
 def check(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> BoxVerdict:
     """Whether P proves that all lines of a box are stable."""
+    return _checked(box, modal, found)[0]
+
+
+def check_tube(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries, left: Array) -> tuple[BoxVerdict, float]:
+    """The same, and the least V at which V falls where z′ = Az + R, |R| ≤ ``left`` (D,) in modal coordinates; infinite
+    where nothing is proved.
+
+    With half the decay rate, C + 2μP ≤ −c < 0 is still an M-matrix. A vector s ≥ 0 with cs ≥ g = |P||R| has
+    2|y|ᵀg ≤ |y|ᵀc|y| + sᵀcs, so that V′ ≤ −2μV + sᵀcs.
+    """
+    verdict, bound = _checked(box, modal, found)
+    if not verdict.proved or bound is None or not verdict.decay > 0:
+        return verdict, np.inf
+    rate = verdict.decay / 2
+    c = bound.whole + 2 * rate * bound.energy
+    c = -(c + 4 * UNIT * np.abs(bound.whole))
+    pushed = bound.energy @ left * OUTWARD
+    try:
+        s = np.linalg.solve(c, pushed * (1 + 1e-6) + 1e-300)
+    except np.linalg.LinAlgError:
+        return verdict, np.inf
+    if not np.all(s >= 0):
+        return verdict, np.inf
+    own, off = np.diagonal(c), np.maximum(np.diag(np.diagonal(c)) - c, 0.0)
+    if not np.all(own * s * (1 - 4 * UNIT) >= (off @ s) * OUTWARD + pushed):
+        return verdict, np.inf
+    return verdict, float(s @ (own * s)) * OUTWARD / (2 * rate)
+
+
+def _checked(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> tuple[BoxVerdict, _Bound | None]:
     many = len(box.parts) - 1
     if not (np.isfinite(found.parts).all() and np.isfinite(box.parts).all() and np.isfinite(box.rest).all()):
-        return BoxVerdict(False, np.inf, np.ones(many))
+        return BoxVerdict(False, np.inf, np.ones(many)), None
     with np.errstate(all="ignore"):
         bound = _Bound.of(box, modal, found)
         proved, excess, weight = _negative(bound.whole)
         proved = proved and bound.invertible and _positive(found)
         blame = np.array([weight @ one @ weight for one in bound.each])
         decay = _decay(bound, float(modal.decay.min())) if proved else 0.0
-    return BoxVerdict(bool(proved), excess, np.nan_to_num(blame), decay)
+    return BoxVerdict(bool(proved), excess, np.nan_to_num(blame), decay), bound
 
 
 def _decay(bound: _Bound, most: float) -> float:

@@ -1,0 +1,85 @@
+"""Which lines are proved about their own periodic motion, and what the others lack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from trunnion.driveline.couplings import Coupling
+from trunnion.driveline.elements import ConstantSpeed, Element, Ratio, Rotor
+from trunnion.driveline.gears import GearPair
+from trunnion.driveline.joints import Joint
+from trunnion.driveline.shafts import Shaft
+from trunnion.equations.coefficients import Assembly
+from trunnion.equations.steady_base import has_joint_angles
+from trunnion.errors import InputError
+from trunnion.floquet.certificate.box_coefficients import ANGLE, NumberRange, staged
+from trunnion.floquet.tolerance.spread import Spread
+
+ENCLOSED = (ConstantSpeed, Coupling, GearPair, Joint, Ratio, Rotor, Shaft)
+"""Elements whose equations of motion are written out."""
+REMEDY = "stability() and tolerance_study() take it"
+
+
+def swings_by_itself(assembly: Assembly, spreads: Sequence[Spread]) -> bool:
+    """Whether a line has no other steady motion than a periodic one: free–free, with joint angles, its own or within
+    their tolerances."""
+    if not assembly.topology.free:
+        return False
+    place = list(assembly.packed.place)
+    keys = {place[column][1] for one in spreads for column in one.columns.index.tolist()}
+    return has_joint_angles(assembly) or ANGLE in keys
+
+
+def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: float) -> None:
+    """Refuse lines whose equations of motion are not enclosed.
+
+    Raises
+    ------
+    InputError : names the element, and why.
+    """
+    line, topo = assembly.line, assembly.topology
+    if ranges:
+        raise InputError(
+            "cannot scatter in a certificate of a free–free line with joint angles, which is about its own periodic "
+            "motion", key=ranges[0].label, remedy="give no tolerances, {}, for the line as it is; or put a "
+            "ConstantSpeed in front",
+        )  # fmt: skip
+    for i, element in enumerate(line.elements):
+        why = "" if isinstance(element, ENCLOSED) else f"a {element.kind} is not enclosed"
+        if why := why or _obstacle(element):
+            raise InputError(f"about the line's own motion {why}", element=line.names[i], remedy=REMEDY)
+    if topo.meshes and any(mesh.stiffness for mesh in topo.meshes):
+        mesh = next(mesh for mesh in topo.meshes if mesh.stiffness)
+        raise InputError(
+            "about the line's own motion teeth whose stiffness varies are not enclosed: they go with time, not with "
+            "the angle of the input", element=line.names[mesh.element], key="stiffness_variation", remedy=REMEDY,
+        )  # fmt: skip
+    for compliance in topo.compliances:
+        if len(compliance.shafts) > 1:
+            raise InputError(
+                "is one of several springs in series, which are not enclosed about the line's own motion",
+                element=line.names[compliance.shafts[1]], remedy="write them as one Shaft, or put a Disk between",
+            )  # fmt: skip
+    _require_speed_held(assembly, speed)
+
+
+def _obstacle(element: Element) -> str:
+    if staged(element):
+        return "springs with stages or play are not enclosed"
+    if isinstance(element, Rotor) and element.tangent:
+        return "a torque along a curve is not enclosed; state its tangent, a viscous_load or quadratic_load"
+    if isinstance(element, Coupling) and element.torques:
+        return "a stiffness over the torque is not enclosed"
+    return ""
+
+
+def _require_speed_held(assembly: Assembly, speed: float) -> None:
+    """Refuse free–free lines whose mean speed no torque holds."""
+    table = assembly.table(1, speed)
+    co = assembly.coefficients(table, statically_twisted=False)
+    if not (co.viscous.any() or co.quadratic.any()):
+        raise InputError(
+            "is free–free, has joint angles, and no torque depends on its speed, which nothing holds then: the "
+            "multiplier of the speed is no exact 1 that could be set aside in a proof", element="driveline",
+            remedy="give what resists a viscous_load or quadratic_load, or put a ConstantSpeed in front",
+        )  # fmt: skip
