@@ -52,6 +52,11 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             if hooke and max(abs(end) for end in ends) >= STEEPEST:
                 worst = max(ends, key=abs)
                 raise InputError("may reach 60° at most in a certificate", key=one.label, value=worst)
+            if hooke and topo.free:
+                raise InputError(
+                    "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
+                    remedy="put a ConstantSpeed in front",
+                )  # fmt: skip
             _require_single(assembly, one, element, key)
             if key in ("damping", "mesh_damping") and ends[0] * ends[1] <= 0:
                 raise InputError(
@@ -158,7 +163,7 @@ def _require_even(assembly: Assembly, speeds: Array) -> None:
         (co.damping, np.abs(co.damping), lambda e: assembly.topology.compliances[e].shafts[0]),
         *((part, np.abs(part), _rotor_at(assembly)) for part in (co.viscous, co.quadratic)),
     ]
-    if not assembly.topology.free:  # there a constant load moves nothing, or is taken with the torque that drives
+    if not assembly.topology.free:  # there a constant load moves nothing, as its joints are straight
         size = np.abs(co.load) + np.abs(co.viscous) * _speed_of(assembly, speeds[-1])
         checks.append((co.load, size, _rotor_at(assembly)))
     for part, size, element in checks:
