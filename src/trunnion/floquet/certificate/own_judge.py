@@ -33,7 +33,7 @@ from trunnion.equations.topology import require_period
 from trunnion.floquet.certificate.box_coefficients import NumberRange, box_coefficients
 from trunnion.floquet.certificate.box_equations import BoxMatrix, harmonics_needed
 from trunnion.floquet.certificate.judge import JudgedBox
-from trunnion.floquet.certificate.own_motion import Motion, MotionEquations, Rates, residuals
+from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, Rates, residuals
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check_tube
@@ -84,7 +84,7 @@ class OwnMotionLine:
 
     def _begun(
         self, speeds: tuple[float, float], ranges: Sequence[NumberRange]
-    ) -> tuple[MotionEquations, Motion, Rates] | None:
+    ) -> tuple[MotionEquations, MotionWaves, Rates] | None:
         middle = sum(speeds) / 2
         row = self.assembly.table(1, middle)
         for one in ranges:
@@ -128,7 +128,7 @@ def _asked(own: MotionEquations, speeds: tuple[float, float]) -> Slowness | None
     return Slowness(asked)
 
 
-def _judged(own: MotionEquations, motion: Motion, found: Rates, speeds: tuple[float, float]) -> JudgedBox | None:
+def _judged(own: MotionEquations, motion: MotionWaves, found: Rates, speeds: tuple[float, float]) -> JudgedBox | None:
     box = _matrix(own, found)
     modal = modal_box(box)
     if modal is None:
@@ -157,7 +157,7 @@ def _judged(own: MotionEquations, motion: Motion, found: Rates, speeds: tuple[fl
     return missed
 
 
-def _covers(own: MotionEquations, motion: Motion, speeds: tuple[float, float]) -> bool:
+def _covers(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> bool:
     """Whether the torque takes the mean speed from below to above all ``speeds``, whatever the tolerances."""
     if not own.assembly.topology.free:
         return True

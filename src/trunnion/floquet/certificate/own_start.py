@@ -1,7 +1,7 @@
 """A periodic motion of a line over the angle of its input, found in floating point: where a proof begins.
 
-The balance of harmonics over time is read off at even angles; Newton's steps on the waves of ``own_motion`` then make
-it a solution to rounding, and to first order in speed and tolerances. Nothing here proves anything.
+The balance of harmonics over time is read off at even angles; Newton's steps on the waves of ``own_equations`` then
+make it a solution to rounding, and to first order in speed and tolerances. Nothing here proves anything.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Complex
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.floquet.certificate.own_motion import Motion, MotionEquations, Rates, motion_of, residuals
+from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, Rates, motion_of, residuals
 from trunnion.numerics import harmonics as fourier
 from trunnion.steady.free.free_balance import SteadyStates
 
@@ -31,7 +31,7 @@ class Slowness:
     asked: Array
 
 
-def begun(own: MotionEquations, motions: SteadyStates) -> Motion:
+def begun(own: MotionEquations, motions: SteadyStates) -> MotionWaves:
     """The first of ``motions`` over the angle of its input."""
     topo, last, speed = own.assembly.topology, own.last, float(motions.speed[0])
     times = 4 * last + 4
@@ -67,7 +67,7 @@ def _waves(angle: Array, h: int) -> Array:
     return np.concatenate([np.ones((len(angle), 1)), np.cos(turned), np.sin(turned)], axis=1)
 
 
-def solved(own: MotionEquations, motion: Motion, slowness: Slowness | None) -> tuple[Motion, Rates] | None:
+def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None) -> tuple[MotionWaves, Rates] | None:
     """The motion near ``motion``, of a free–free line at the ``slowness`` asked for; None where there is none."""
     found, best = own.rates(motion), np.inf
     for _ in range(STEPS):
@@ -84,7 +84,9 @@ def solved(own: MotionEquations, motion: Motion, slowness: Slowness | None) -> t
     return (motion, found) if missing < 1e-6 else None
 
 
-def _stepped(own: MotionEquations, motion: Motion, found: Rates, left: Complex, slowness: Slowness | None) -> Motion:
+def _stepped(
+    own: MotionEquations, motion: MotionWaves, found: Rates, left: Complex, slowness: Slowness | None
+) -> MotionWaves:
     size, wide = own.size, 2 * own.last + 1
     border = 0 if slowness is None else 1
     matrix = np.zeros((size * wide + border, size * wide + border), dtype=complex)

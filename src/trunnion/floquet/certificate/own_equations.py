@@ -30,7 +30,7 @@ Entries = dict[tuple[int, int], Wave]
 
 
 @dataclass(frozen=True)
-class Motion:
+class MotionWaves:
     """States as functions of φ: ``twist`` (spring,) and ``speed`` (unknown,), and the torque at the input [N m] by
     which a free–free line is driven beyond the balance of its loads."""
 
@@ -43,11 +43,11 @@ class Motion:
         """Twists, then speeds."""
         return (*self.twist, *self.speed)
 
-    def widened(self, radii: Array) -> Motion:
+    def widened(self, radii: Array) -> MotionWaves:
         """All motions near it: each state within its radius."""
         states = [Wave(one.parts, one.rest + float(r)) for one, r in zip(self.states, radii, strict=True)]
         many = len(self.twist)
-        return Motion(tuple(states[:many]), tuple(states[many:]), self.drive)
+        return MotionWaves(tuple(states[:many]), tuple(states[many:]), self.drive)
 
 
 @dataclass(frozen=True)
@@ -85,16 +85,16 @@ class MotionEquations:
         """A constant."""
         return BoxLine(self.assembly, self.co, self.parameters, self.last).number(value)
 
-    def input_speed(self, motion: Motion) -> Wave:
+    def input_speed(self, motion: MotionWaves) -> Wave:
         """w₀."""
         topo = self.assembly.topology
         return motion.speed[topo.coordinate[topo.group_of(0)]] if topo.free else self.co.speed
 
-    def rates(self, motion: Motion) -> Rates:
+    def rates(self, motion: MotionWaves) -> Rates:
         """Along ``motion``, and everywhere within the rests of its waves."""
         return _Evaluation(self, motion, self._walk(motion)).rates()
 
-    def _walk(self, motion: Motion) -> Walk:
+    def _walk(self, motion: MotionWaves) -> Walk:
         topo, shift = self.assembly.topology, list(self.co.untwisted_shift)
         for e, compliance in enumerate(topo.compliances):
             s = topo.behind[compliance.shafts[-1], compliance.number]
@@ -105,7 +105,7 @@ class MotionEquations:
 class _Evaluation:
     """Of one motion."""
 
-    def __init__(self, own: MotionEquations, motion: Motion, walk: Walk) -> None:
+    def __init__(self, own: MotionEquations, motion: MotionWaves, walk: Walk) -> None:
         self.own, self.motion, self.walk = own, motion, walk
         self.topo = own.assembly.topology
         self.springs = len(self.topo.compliances)
@@ -243,15 +243,15 @@ def derivative(wave: Wave, rate: float) -> Wave:
     return Wave(wave.parts * order, 1e-15 * float(np.abs(wave.parts * order).sum()))
 
 
-def residuals(own: MotionEquations, motion: Motion, found: Rates) -> list[Wave]:
+def residuals(own: MotionEquations, motion: MotionWaves, found: Rates) -> list[Wave]:
     """x′ of the equations less that of the motion itself."""
     return [rate + -derivative(one, own.rate) for rate, one in zip(found.rates, motion.states, strict=True)]
 
 
-def motion_of(own: MotionEquations, parts: Sequence[Complex], drive: Array) -> Motion:
+def motion_of(own: MotionEquations, parts: Sequence[Complex], drive: Array) -> MotionWaves:
     """States by their parts (1 + parameters, 2K + 1) and the torque's (1 + parameters,)."""
     many, last = len(own.assembly.topology.compliances), own.last
     states = [Wave(np.asarray(one, dtype=complex), 0.0) for one in parts]
     torque = np.zeros((1 + own.parameters, 2 * last + 1), dtype=complex)
     torque[:, last] = drive
-    return Motion(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0))
+    return MotionWaves(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0))
