@@ -96,7 +96,7 @@ def kinetostatics(
     --phase  Also find the best fork offsets.
     --pitch  Spline pitch for --phase, such as "10 deg".
     --turns  Turns of the input; default: until the motion repeats, at most about 100.
-    --points  Points per turn.
+    --points  Points per turn, of the input or of a faster joint.
     """
     result = tn.kinetostatics(
         line, speed, branch=branch, rigid=not elastic, inertia=inertia, output_torque=output_torque, friction=friction,

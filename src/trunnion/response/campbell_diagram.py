@@ -323,13 +323,14 @@ def _crossings(
             at = float(speed[i] + off[i] / (off[i] - off[i + 1]) * (speed[i + 1] - speed[i]))
             yield at, line.order * at + line.frequency, float(ratio[i])
             continue
-        yield _closed_in(assembly, (float(speed[i]), float(speed[i + 1])), float(mode[i]), line)
+        yield closed_in(assembly, (float(speed[i]), float(speed[i + 1])), float(mode[i]), line)
 
 
-def _closed_in(
+def closed_in(
     assembly: Assembly, between: tuple[float, float], first: float, line: ExcitationLine
 ) -> tuple[float, float, float | None]:
-    """The same between two speeds, by halving; ``first``: frequency of the mode at the lower one [rad/s]."""
+    """Speed, frequency and damping ratio where a line that turns forward meets a mode between two speeds, by halving;
+    without a ratio where the mode jumps over it. ``first``: frequency of the mode at the lower speed [rad/s]."""
 
     def here(at: float) -> tuple[float, float, float]:
         values, _ = loaded_modes(assembly, np.array([between[0], at]))

@@ -162,11 +162,12 @@ def of_line(subject: AssessmentInput) -> Iterator[Check]:
     yield from bending(subject, assembly)
 
 
-def _turn(subject: AssessmentInput) -> Kinetostatics | None:
+def _turn(subject: AssessmentInput) -> Kinetostatics | InputError:
+    """The rigid line over a turn at the highest speed, or why it is not known."""
     try:
         return kinetostatics(subject.line, subject.high)
-    except InputError:  # a line clamped at both ends
-        return None
+    except InputError as error:
+        return error
 
 
 def _findings(cases: tuple[LoadCaseResponse, ...], unit: str) -> tuple[Finding, ...]:

@@ -16,17 +16,18 @@ judged. The two accelerations are usual acceptance values. All are taken at the 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from trunnion.design.assessment.assessment_input import AssessmentInput
 from trunnion.design.assessment.check import Check, Rule, Status, above, judged
 from trunnion.design.assessment.compared import guideline
-from trunnion.driveline.driveline import hooke_joints
+from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.quantities import DEGREE, RPM
 from trunnion.driveline.rules import RULES, SPICER
 from trunnion.equations.coefficients import Assembly
+from trunnion.errors import InputError
 from trunnion.response.kinetostatics import Kinetostatics
 from trunnion.response.kinetostatics.limits import EVEN_RUNNING
 from trunnion.response.kinetostatics.measures import ROUNDING, largest
@@ -54,7 +55,7 @@ def allowed_angle(speed: float) -> float:
     return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
 
 
-def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics | None) -> Iterator[Check]:
+def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics | InputError) -> Iterator[Check]:
     """The rules for every Hooke's joint, and for the line's accelerations at its highest speed."""
     joints = hooke_joints(subject.line)
     if not joints:
@@ -65,15 +66,50 @@ def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostati
     ratios = [abs(float(topo.speed_ratio[j])) for j in places]
     for (name, angle), ratio in zip(joints, ratios, strict=True):
         yield from _one(subject, name, abs(angle), ratio * subject.high)
-    if len(joints) == 2:
-        apart = abs(abs(joints[0][1]) - abs(joints[1][1]))
-        said = f"{abs(joints[0][1]) / DEGREE:.4g} and {abs(joints[1][1]) / DEGREE:.4g} deg"
-        yield guideline("equal joint angles", EQUAL, (apart, APART, "rad"), said)
-    else:
-        because = "the rule is for two joints; uniformity judges the line"
-        yield Check("equal joint angles", Status.NOT_APPLICABLE, EQUAL, because)
-    if turn is not None:
+    yield _equal_angles(subject, joints, ratios)
+    if isinstance(turn, Kinetostatics):
         yield from _accelerations(subject, assembly, turn)
+    else:
+        yield _unknown(subject, "acceleration behind the joints", SHAKES, turn)
+
+
+def _equal_angles(subject: AssessmentInput, joints: Sequence[tuple[str, float]], ratios: Sequence[float]) -> Check:
+    """Two joints one behind the other, on shafts of one speed: nothing else can cancel."""
+    because = ""
+    if len(joints) != 2:
+        because = "the rule is for two joints; uniformity judges the line"
+    elif not _behind(subject.line, joints[1][0], joints[0][0]):
+        because = "the two joints are on different branches; uniformity judges each"
+    elif abs(ratios[0] - ratios[1]) > 1e-9 * ratios[0]:
+        because = (
+            "the two joints turn at different speeds, so that neither cancels the other; uniformity judges the line"
+        )
+    if because:
+        return Check("equal joint angles", Status.NOT_APPLICABLE, EQUAL, because)
+    angles = [abs(angle) for _, angle in joints]
+    said = f"{angles[0] / DEGREE:.4g} and {angles[1] / DEGREE:.4g} deg"
+    return guideline("equal joint angles", EQUAL, (abs(angles[0] - angles[1]), APART, "rad"), said)
+
+
+def _path(line: Driveline, name: str) -> list[int]:
+    """Elements from the first to the one called ``name``."""
+    element: int | None = line.names.index(name)
+    path: list[int] = []
+    while element is not None:
+        path.append(element)
+        element = line.parents[element]
+    return path[::-1]
+
+
+def _behind(line: Driveline, name: str, other: str) -> bool:
+    return line.names.index(other) in _path(line, name)
+
+
+def _unknown(subject: AssessmentInput, title: str, rule: Rule, why: InputError) -> Check:
+    """Of a turn that cannot be computed; where two speeds are prescribed nothing is left to be judged."""
+    if any(element.kind == "ConstantSpeed" for element in subject.line.elements[1:]):
+        return Check(title, Status.NOT_APPLICABLE, rule, "the output is prescribed")
+    return Check(title, Status.NOT_JUDGED, rule, f"not judged: {why.element or 'the line'} {why.problem}")
 
 
 def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Iterator[Check]:
@@ -94,22 +130,27 @@ def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Ite
 
 
 def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
-    topo = assembly.topology
-    last = max((topo.speed_ratio[j] for j in topo.joints), key=abs)
+    topo, line = assembly.topology, subject.line
+    ratios = {topo.stations[j].element: abs(float(topo.speed_ratio[j])) for j in topo.joints}
     for branch in turn.branches:
+        bent = [element for element in _path(line, branch) if element in ratios]
+        if not bent:  # nothing on the way there shakes it
+            continue
         end = turn.on_branch(branch)
-        value = float(end.peak_acceleration) * abs(float(last) / end.mean_ratio)
+        value = float(end.peak_acceleration) * ratios[bent[-1]] / abs(end.mean_ratio)
         where = f" on the way to {branch}" if len(turn.branches) > 1 else ""
         yield _acceleration(subject, f"acceleration behind the joints{where}", SHAKES, value, TORSIONAL)
-    inner = [
-        (float(largest(turn.acceleration[s])), name)
-        for s, name in enumerate(turn.shafts)
-        if np.any(turn.acceleration[s]) and not np.allclose(np.abs(turn.acceleration[s] / turn.shaft_ratio[s]),
-                                                            np.abs(turn.output_acceleration / turn.mean_ratio))
-    ]  # fmt: skip
-    if inner:
+    between = [(s, name) for s, name in enumerate(turn.shafts) if _between(line, name, set(ratios))]
+    if inner := [(float(largest(turn.acceleration[s])), name) for s, name in between if np.any(turn.acceleration[s])]:
         value, name = max(inner)
         yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL)
+
+
+def _between(line: Driveline, shaft: str, joints: set[int]) -> bool:
+    """Whether a shaft has joints in front of it and behind it."""
+    place = line.names.index(shaft)
+    behind = any(place in _path(line, line.names[joint])[:-1] for joint in joints)
+    return behind and any(element in joints for element in _path(line, shaft))
 
 
 def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float) -> Check:
@@ -118,13 +159,13 @@ def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float
     return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
 
 
-def uniformity(subject: AssessmentInput, turn: Kinetostatics | None) -> Iterator[Check]:
+def uniformity(subject: AssessmentInput, turn: Kinetostatics | InputError) -> Iterator[Check]:
     """U at the end of every branch, shafts rigid."""
     if not hooke_joints(subject.line):
         yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the line has no Hooke's joint")
         return
-    if turn is None:
-        yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the output is prescribed")
+    if not isinstance(turn, Kinetostatics):
+        yield _unknown(subject, "uniformity", EVEN, turn)
         return
     for branch in turn.branches:
         end = turn.on_branch(branch)

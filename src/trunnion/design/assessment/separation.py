@@ -21,6 +21,7 @@ from trunnion.design.assessment.check import Check, Rule, Status, above
 from trunnion.design.assessment.compared import unanswered
 from trunnion.design.assessment.stated_limits import unlimited
 from trunnion.laws.harmonic import turning
+from trunnion.response.campbell_diagram import ExcitationLine, closed_in
 from trunnion.results.counts import counted, few
 from trunnion.results.speeds import order_name
 from trunnion.results.units import amplification_words
@@ -33,6 +34,8 @@ ALL, ONE = "separation of modes", "separation of mode "
 NEEDS = "; a resonance needs "
 """Between where a mode meets an order and what would judge it."""
 LIMITED = "limits of torque or stress, which are stated"
+STEEP = 0.01
+"""Share by which a mode may change between two speeds and still be taken as met where an order changes its side."""
 
 
 def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Check]:
@@ -48,7 +51,7 @@ def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Che
     without: str | None = None
     frequency = case.modes.imag
     for m in range(frequency.shape[1]):
-        near, order, at, met = _nearest(case.speeds, frequency[:, m], orders)
+        near, order, at, met = _nearest(case, frequency[:, m], orders)
         if not np.isfinite(near):
             continue
         hertz = f"mode {m + case.first} ({frequency[at, m] / (2 * np.pi):.4g} Hz)"
@@ -89,13 +92,27 @@ def shaking_orders(case: LoadCaseResponse) -> Array:
     return np.unique(np.stack([response.order[worth], response.frequency[worth]], axis=1), axis=0)
 
 
-def _nearest(speeds: Array, frequency: Array, orders: Array) -> tuple[float, tuple[float, float], int, bool]:
+def _nearest(case: LoadCaseResponse, frequency: Array, orders: Array) -> tuple[float, tuple[float, float], int, bool]:
     """Smallest |kΩ/ω − 1| over orders and speeds, with the order and the speed's number; 0 where they meet between."""
-    off = np.abs(turning(orders[:, :1], orders[:, 1:], speeds)) / frequency - 1
+    off = np.abs(turning(orders[:, :1], orders[:, 1:], case.speeds)) / frequency - 1
     if not np.any(np.isfinite(off)):
         return np.inf, (0.0, 0.0), 0, False
     size = np.where(np.isfinite(off), np.abs(off), np.inf)
-    crossed = np.any(off[:, 1:] * off[:, :-1] <= 0, axis=1)
+    met = off[:, 1:] * off[:, :-1] <= 0
+    for k, i in np.argwhere(met & (np.abs(np.diff(frequency)) > STEEP * frequency[:-1])):
+        met[k, i], beside = _meets(case, float(frequency[i]), orders[k], int(i))
+        size[k, i] = min(size[k, i], beside)
+    crossed = np.any(met, axis=1)
     size[crossed] = np.where(size[crossed] == size[crossed].min(axis=1, keepdims=True), 0.0, size[crossed])
     k, at = np.unravel_index(int(size.argmin()), size.shape)
     return float(size[k, at]), (float(orders[k, 0]), float(orders[k, 1])), int(at), bool(crossed[k])
+
+
+def _meets(case: LoadCaseResponse, first: float, order: Array, i: int) -> tuple[bool, float]:
+    """Whether a mode that changes much between two speeds is met there, or jumps over an order as a spring changes its
+    stage; then how near it stands just behind the jump."""
+    ends = float(case.speeds[i]), float(case.speeds[i + 1])
+    k, frequency = float(order[0]), float(order[1])
+    forward = 1.0 if k * ends[0] + frequency >= 0 else -1.0
+    at, mode, ratio = closed_in(case.assembly, ends, first, ExcitationLine(forward * k, forward * frequency, ()))
+    return ratio is not None, abs(abs(k * at + frequency) / mode - 1) if ratio is None else np.inf

@@ -124,6 +124,11 @@ class KinematicChain:
         return lcm(*((order * abs(step.speed)).denominator for step in self.steps for order in step.orders))
 
     @property
+    def fastest(self) -> int:
+        """Turns of the fastest joint in one of the input, rounded up, 1 at least."""
+        return ceil(max((abs(step.speed) for step in self.steps if step.orders), default=1))
+
+    @property
     def turns_of_the_slowest(self) -> int:
         """Fewest whole turns of the input after which every joint has been in all its phases."""
         return ceil(max((1 / (order * abs(step.speed)) for step in self.steps for order in step.orders), default=1))

@@ -171,7 +171,8 @@ def irregularity_of(
     if equivalent.is_one_joint(train):
         lines = equivalent.matrices(train, len(offsets), angle=angle, plane=plane, fork_offset=shafts)
         return equivalent.irregularity(lines)
-    input_angle: Array = np.arange(train.turns * POINTS, dtype=np.float64) * (2 * np.pi / POINTS)
+    points = POINTS * train.fastest
+    input_angle: Array = np.arange(train.turns * points, dtype=np.float64) * (2 * np.pi / points)
     drive = drive_jet(input_angle, 1.0, 0.0, 1)[:, None]
 
     def column(values: Mapping[int, Array] | None) -> dict[int, Array]:

@@ -30,8 +30,8 @@ from trunnion.response.kinetostatics.supports import support_forces
 from trunnion.response.kinetostatics.torques import Torques, refuse_locking
 
 FEWEST_POINTS = 8
-MOST_TURNS = 100
-"""Turns of the input that are computed unless more are asked for, or a joint turns so slowly that it needs more."""
+MOST_POINTS = 72_000
+"""Points that are computed unless more turns are asked for, or a joint turns so slowly that it needs more."""
 
 
 def kinetostatics(
@@ -69,8 +69,9 @@ def kinetostatics(
     friction : in the bearings of every cross.
     supports : (shaft, position, position) or (shaft, position) each [m]; see ``supports.support_forces``.
     lengths : joint-to-joint lengths [m] by shaft, where the shaft is not a tube of known length.
-    turns, points : turns of the input, by default those after which the motion repeats, at most 100
-        unless the slowest joint needs more; points per turn.
+    turns : of the input; by default those after which the motion repeats, as far as 72 000 points go (100 turns) unless
+        the slowest joint needs more.
+    points : per turn of the input; behind a step-up so many times more that the fastest joint has as many a turn.
     branch : name of an element on the branch that "the output" is the end of; default the last of the line.
         ``result.on_branch(name)`` gives the same turn with the output of another.
 
@@ -101,7 +102,8 @@ def kinetostatics(
     train = chain(line, _lengths(line, lengths), branch, drive_speed)
     pin_moment = friction.pin_moment if friction else 0.0
     refuse_locking(train, pin_moment)
-    turns = turns or min(train.turns, max(MOST_TURNS, train.turns_of_the_slowest))
+    points *= train.fastest
+    turns = turns or min(train.turns, max(MOST_POINTS // points, train.turns_of_the_slowest))
     input_angle: Array = np.arange(turns * points, dtype=np.float64) * (2 * np.pi / points)
     torque = _output_torques(train, output_torque)
     drive = Drive(input_angle, drive_speed, _acceleration(acceleration), torque, pin_moment, inertia)
