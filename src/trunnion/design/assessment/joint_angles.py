@@ -148,9 +148,10 @@ def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetosta
 
 def _between(line: Driveline, shaft: str, joints: set[int]) -> bool:
     """Whether a shaft has joints in front of it and behind it."""
-    place = line.names.index(shaft)
+    own = max((name for name in line.names if shaft.endswith(name)), key=len)  # "slip tyre" of a tyre
+    place = line.names.index(own)
     behind = any(place in _path(line, line.names[joint])[:-1] for joint in joints)
-    return behind and any(element in joints for element in _path(line, shaft))
+    return behind and any(element in joints for element in _path(line, own))
 
 
 def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float) -> Check:
