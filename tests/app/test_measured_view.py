@@ -278,6 +278,39 @@ def test_a_line_that_moves_does_not_read_the_file_anew(view: Any, monkeypatch: p
     assert len(read) == 1 and first != second and any("later" in one for one in second)
 
 
+def test_a_reference_run_takes_off_errors_of_teeth(view: Any, folder: Path) -> None:
+    """Without it the order that they could hide is named; with it the order is the line's to a tenth of that."""
+
+    def recorded(line: tn.Driveline, speeds: Any, seconds: float, seed: int) -> bytes:
+        wheels = {"pitch_error": 0.02, "wheels": 7, "seed": seed, "jitter": 1e-6}
+        trains = tn.measure(line, speeds, seconds, {"input": 30, "hub": 30}, **wheels).pulses
+        rows = zip(*(one.times[: min(len(t.times) for t in trains)] for one in trains), strict=True)
+        return b"input,hub\n" + "\n".join(f"{a:.9f},{b:.9f}" for a, b in rows).encode()
+
+    small = LINE.replace("joint", angle="2 deg")
+    run, still = recorded(small, (60.0, 90.0), 6.0, 1), recorded(LINE.replace("joint", angle=0.0), 80.0, 6.0, 2)
+    view.session.document.line = small
+    view.settings["orders"] = "2"
+    described = {"name": "run.channels.toml", "text": TOML}
+    drop(view, run, description=described)
+    assert view.keep_still.visible
+    plain = computed(view)["over"]
+    assert any("order 2 may be the wheel's" in one and "reference run" in one for one in plain["findings"])
+    drop(view, still, "still.csv", described, number=2)
+    view._take_as_reference()
+    assert view.steps(small) == [] and view.still_state.object.startswith("Reference run: still.csv")
+    drop(view, run, number=3)
+    assert "its columns as in still.csv" in view.state.object and len(list(folder.glob("trunnion-*"))) == 2
+    found = computed(view)["over"]
+    assert not any("wheel's" in one for one in found["findings"])
+    off = [view.steps(small)[0].call.evaluate(small).off[0, 1]]
+    program = script(tn.dumps(small), {"over": (view.steps(small)[0].call, tn.dumps(small))}, "a test")
+    assert "calibration=tn.pitch_errors(tn.read_measurement('still.csv', " in program and str(folder) not in program
+    view._forget_reference()
+    off.append(view.steps(small)[0].call.evaluate(small).off[0, 1])
+    assert off[0] < 0.1 * off[1] and len(list(folder.glob("trunnion-*"))) == 1
+
+
 def test_fields_stand_for_a_description(view: Any) -> None:
     drop(view, edges())
     assert view.steps(LINE) == []

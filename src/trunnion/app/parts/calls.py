@@ -61,13 +61,14 @@ class Call:
         return bool(self.arguments) and isinstance(self.arguments[0], SentFile)
 
     def _read(self, function: Any) -> Any:
-        """What a call reads of a file; the last one is kept, whatever becomes of the line."""
-        if _READ.get("call") != repr(self):
-            _READ.clear()
+        """What a call reads of a file; the last ones are kept, whatever becomes of the line."""
+        if repr(self) not in _READ:
+            while len(_READ) >= KEPT_FILES:
+                del _READ[next(iter(_READ))]
             FOLDERS.update(Path(one.path).parent for one in self.arguments if isinstance(one, SentFile))
             made = function(*(_value(a, None) for a in self.arguments), **self.keywords)
-            _READ.update({"call": repr(self), "result": made})
-        return _READ["result"]
+            _READ[repr(self)] = made
+        return _READ[repr(self)]
 
     def text(self) -> str:
         """The call as Python."""
@@ -79,7 +80,9 @@ class Call:
 
 
 _READ: dict[str, Any] = {}
-"""What was read of a file last, by its call: a recording takes seconds, which a line that is edited need not wait."""
+"""What was read of files last, by its call: a recording takes seconds, which a line that is edited need not wait."""
+KEPT_FILES = 2
+"""A run and its reference."""
 
 FOLDERS: set[Path] = set()
 """Where files were that the browser sent: whoever is left of a server that was killed deletes them."""

@@ -24,6 +24,7 @@ MOST_COLUMNS = 24
 LONGEST_LABEL = 60
 MOST_TURNS = 1000
 NO_FILE = "No measured file yet: nothing is computed."
+NO_REFERENCE = "No reference run: orders that errors of the teeth could hide are named below the pictures."
 
 
 class _MeasuredPane(VariantPane["MeasuredView"]):
@@ -83,8 +84,9 @@ class MeasuredView(View):
     name = "measured"
     about = (
         "Drop what a bench recorded: its orders are laid over the response, the Campbell diagram and the run-up of the "
-        "line, with a sentence for each order on what differs. The file stays on this machine until another one comes, "
-        "Forget is pressed, or the page is closed; then it is deleted."
+        "line, with a sentence for each order on what differs. A run with the joints straight and without load, "
+        "dropped first and taken as the reference, tells the errors of the teeth, which are taken off. Files stay on "
+        "this machine until another one comes, Forget is pressed, or the page is closed; then they are deleted."
     )
     side = _MeasuredPane
     defaults = {"orders": "", "reference": FIRST, "channel": MOVES, "turns": 8}
@@ -106,8 +108,15 @@ class MeasuredView(View):
         self.forget.on_click(lambda event: self._forget())
         self.state = pane(NO_FILE)
         self.table = column()
+        self.still: tuple[ReceivedFile, dict[str, Any]] | None = None
+        self.keep_still = pn.widgets.Button(label="Take it as the reference run", width=200, visible=False)
+        self.keep_still.on_click(lambda event: self._take_as_reference())
+        self.forget_still = pn.widgets.Button(label="Forget the reference run", width=180, visible=False)
+        self.forget_still.on_click(lambda event: self._forget_reference())
+        self.still_state = pane(NO_REFERENCE)
         chosen = self.row("orders", "reference", "channel", "turns")
-        return column(self.drop, wrapped(self.state, self.forget), self.table, chosen)
+        files = (wrapped(self.state, self.forget, self.keep_still), wrapped(self.still_state, self.forget_still))
+        return column(self.drop, *files, self.table, chosen)
 
     # -- files ----------------------------------------------------------------------------------------------------
 
@@ -122,6 +131,10 @@ class MeasuredView(View):
                 return
         except InputError as error:
             self.drop.say(str(error), alarm=True)
+        else:
+            if self.still is not None:
+                self._take(self.still[1], f"its columns as in {self.still[0].name}; else drop its .channels.toml")
+                return
         self.session.setting_chosen()
         self.session.beside(self._ask_columns(file))
 
@@ -160,20 +173,43 @@ class MeasuredView(View):
         if again:
             self.session.setting_chosen()
 
+    def _take_as_reference(self) -> None:
+        """The file that is there tells the errors of the teeth; the next one is the run."""
+        if self.file is None or self.description is None:
+            return
+        if self.still is not None:
+            self.still[0].close()
+        self.still, self.file = (self.file, self.description), None
+        self.forget_still.visible = True
+        name, size = self.still[0].name, self.still[0].size
+        what = "What repeats with the teeth in it is taken for their error and taken off. Drop the run."
+        self.still_state.object = f"Reference run: {name}, {size} bytes. {what}"
+        self._forget()
+
+    def _forget_reference(self) -> None:
+        """Delete the reference run, and take nothing off any more."""
+        if self.still is not None:
+            self.still[0].close()
+        self.still, self.forget_still.visible, self.still_state.object = None, False, NO_REFERENCE
+        self.session.setting_chosen()
+
     def close(self) -> None:
-        """The page is gone: so is the file."""
+        """The page is gone: so are the files."""
         self.drop.close()
-        if self.file is not None:
-            self.file.close()
+        for file in (self.file, None if self.still is None else self.still[0]):
+            if file is not None:
+                file.close()
 
     def _state(self, how: str = "its columns are to be named below") -> None:
+        self.keep_still.visible = self.file is not None and self.description is not None
         self.state.object = NO_FILE if self.file is None else f"{self.file.name}, {self.file.size} bytes, {how}"
 
     def named(self, sentence: str) -> str:
-        """A sentence with the file's name as the user knows it."""
-        if self.file is None:
-            return sentence
-        return sentence.replace(str(self.file.path), self.file.name).replace(self.file.path.name, self.file.name)
+        """A sentence with the names of files as the user knows them."""
+        for file in (self.file, None if self.still is None else self.still[0]):
+            if file is not None:
+                sentence = sentence.replace(str(file.path), file.name)
+        return sentence if self.file is None else sentence.replace(self.file.path.name, self.file.name)
 
     # -- columns without a description ----------------------------------------------------------------------------
 
@@ -286,6 +322,10 @@ class MeasuredView(View):
         more: dict[str, Any] = {"line": LINE, "window": bounded(self.settings["turns"], 1, MOST_TURNS)}
         if self.settings["reference"] != FIRST:
             more["reference"] = self.settings["reference"]
+        if self.still is not None:
+            still, columns = self.still
+            run = Call("tn.read_measurement", (SentFile(still.name, str(still.path)), columns))
+            more["calibration"] = Call("tn.pitch_errors", (run,))
         tracked = Call("tn.track_orders", (read, self.orders()), more)
         over = Call("tn.compare_measured", (LINE, tracked))
         channel = str(self.settings["channel"])
