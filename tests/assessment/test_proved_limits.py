@@ -49,7 +49,7 @@ def test_what_few_boxes_leave_open_is_searched() -> None:
         assert found.status is found.status.SATISFIED and found.words == "satisfied"
         assert found.proof == "searched, not proved" and "boxes bound it by" in found.because
         assert found.bound > found.limit * (1 - found.required_margin)
-        assert any("certify_peaks" in str(finding) for finding in judged.findings)
+        assert any("certify-peaks" in str(finding) for finding in judged.findings)
 
 
 def test_nothing_is_proved_of_what_is_exceeded_or_stands_at_one_speed() -> None:

@@ -58,7 +58,7 @@ def test_largest_torques_are_found_where_stiffness_moves_the_resonance():
 def test_a_mean_torque_beyond_the_table_is_refused_with_both():
     with pytest.raises(InputError) as caught:
         tn.natural_frequencies(loaded(1200.0))
-    assert str(caught.value).startswith("rubber.torques: end at 1000 N*m, and it carries a mean torque of 1200 N*m; ")
+    assert str(caught.value).startswith("rubber.torques: end at 1000 N m, and it carries a mean torque of 1200 N m; ")
     line = loaded().replace("load", quadratic_load=0.01)
     with pytest.raises(InputError, match=r"rubber.stiffnesses: follows the mean torque, which loads over speed leave"):
         tn.natural_frequencies(line)

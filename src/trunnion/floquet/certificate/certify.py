@@ -10,6 +10,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -30,7 +31,6 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.certificate.box_space import BoxSpace, halved, volume
 from trunnion.floquet.certificate.judge import JudgedBox, judge
-from trunnion.floquet.certificate.own_judge import NARROW, OwnMotionLine
 from trunnion.floquet.certificate.own_requirements import require_enclosed, swings_by_itself
 from trunnion.floquet.certificate.requirements import require_linear
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
@@ -41,6 +41,9 @@ from trunnion.results.result import Result
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import keeps_time, time_is_up, to_the_end
+
+if TYPE_CHECKING:
+    from trunnion.floquet.certificate.own_judge import OwnMotionLine
 
 WIDENED = 1.3
 """By how much wider than the last box the next speeds are tried, about a line's own motion."""
@@ -167,7 +170,7 @@ def certify_stability(
     own = swings_by_itself(assembly, spreads)
     require_provable(assembly, own=own)
     require_steady_base(assembly, assembly.table(4, np.linspace(*span, 4)))
-    space = _Space(assembly, spreads, span, OwnMotionLine(assembly.line) if own else None)
+    space = _Space(assembly, spreads, span, _own_motion(assembly.line) if own else None)
     ranges = space.ranges(np.array([np.zeros(space.size), np.ones(space.size)]))
     if own:
         require_enclosed(assembly, ranges, span[0])
@@ -197,6 +200,13 @@ def certify_stability(
     )
 
 
+def _own_motion(line: Driveline) -> OwnMotionLine:
+    # Loaded where needed: it brings the compiler with it.
+    from trunnion.floquet.certificate.own_judge import OwnMotionLine
+
+    return OwnMotionLine(line)
+
+
 @dataclass(frozen=True)
 class _Space(BoxSpace):
     """``own`` : the line about its own motion, where that is asked for."""
@@ -206,7 +216,7 @@ class _Space(BoxSpace):
     @property
     def first_width(self) -> float:
         """Share of the range of speeds of the first box: about its own motion the whole range is in vain."""
-        return 1.0 if self.own is None else min(NARROW / float(np.log(self.speeds[1] / self.speeds[0])), 1.0)
+        return 1.0 if self.own is None else min(self.own.narrow / float(np.log(self.speeds[1] / self.speeds[0])), 1.0)
 
     def judged(self, box: Array, *, by_energy: bool = False) -> JudgedBox:
         """The verdict on one box."""

@@ -56,6 +56,7 @@ class OwnMotionLine:
     """A line about its own motion, box by box."""
 
     line: Driveline
+    narrow = NARROW
 
     @cached_property
     def assembly(self) -> Assembly:
