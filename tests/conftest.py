@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -170,7 +171,8 @@ QUOTED = re.compile(r"\"(\\.|[^\"\\])*\"|'[^'\n]*'")
 
 def said(result: Result, as_json: bool) -> Iterator[str]:
     """Keys and texts of JSON, units as files have them aside; otherwise all that is printed."""
-    yield result.stderr
+    with suppress(ValueError):  # older versions of click mix it into the other
+        yield result.stderr
     if not (as_json and result.stdout.startswith("{")):
         yield result.stdout
         return
