@@ -528,11 +528,6 @@ class Engine(Composite):
         return tuple(tuple(j + 1 + bank * self.throws for bank in range(banks)) for j in range(self.throws))
 
     @property
-    def mean_reciprocating_inertia(self) -> float:
-        """Mean inertia [kg m²] that the reciprocating mass of one cylinder adds to its throw."""
-        return masses(self)[1]
-
-    @property
     def of_one_cylinder(self) -> tuple[Excitation, ...]:
         """Gas and inertia torques of one cylinder that fires, phases from its own top dead centre."""
         return (*gas(self), *masses(self)[0])

@@ -253,27 +253,15 @@ class OrderResponse(Result):
         state at any of them."""
         return self.largest(self.peak_torque[:, self.springs.index(spring)])
 
-    def leading_order(self, spring: str) -> tuple[float, float, float]:
-        """Order, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order (NaN without orders).
-
-        An excitation fixed in time has order 0; ``leading`` names it.
-        """
-        k, speed, amplitude = self._leading(spring)
-        return float("nan") if k is None else float(self.order[k]), speed, amplitude
-
     def leading(self, spring: str) -> tuple[str, float, float]:
-        """The same with the name of the order, by turns and in time; "none" where none vibrates."""
-        k, speed, amplitude = self._leading(spring)
-        if k is None or not amplitude > 0:
-            return "none", speed, amplitude
-        return order_name(float(self.order[k]), float(self.frequency[k])), speed, amplitude
-
-    def _leading(self, spring: str) -> tuple[int | None, float, float]:
+        """Name, speed [rad/s] and amplitude [N m] of a spring's largest torque by one order, by turns or in time;
+        "none" where none vibrates, NaN without a steady state at any speed."""
         size = np.abs(self.torque[:, :, self.springs.index(spring)])
         if not np.any(np.isfinite(size)):
-            return None, float("nan"), float("nan")
+            return "none", float("nan"), float("nan")
         at, k = np.unravel_index(int(np.nanargmax(size)), size.shape)
-        return int(k), float(self.speed[at]), float(size[at, k])
+        speed, amplitude = float(self.speed[at]), float(size[at, k])
+        return order_name(float(self.order[k]), float(self.frequency[k])) if amplitude > 0 else "none", speed, amplitude
 
     def wave(self, speed: float | None = None) -> OrderWave:
         """Wave form at the speed of the result that is nearest to ``speed`` [rad/s], by default the first."""
