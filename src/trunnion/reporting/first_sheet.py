@@ -18,14 +18,19 @@ ROOM = 975.0
 """Pixels of an A4 page between its margins, less a reserve of two per cent."""
 HEADER, SKETCH, SIGNATURES, REMAINDER = 100.0, 160.0, 125.0, 24.0
 """Title and document, the drawing, the block to sign, and "7 more: section 9" [px]."""
+LEAST_DRAWING = 38
+"""Height of the drawing [mm] that SKETCH holds."""
+MILLIMETRES = 0.9 * 25.4 / 96
+"""Of a pixel that is left over, with a reserve."""
 MOST_FINDINGS = 3
 FEWEST_CHECKS = 4
 
 
 def first_sheet(
     contents: SubmissionContents, malfunction: Sequence[str], grave: Sequence[Finding]
-) -> tuple[Table, list[Finding]]:
-    """The checks and the findings of the first sheet: of both as many as fit, the binding and the gravest first."""
+) -> tuple[Table, list[Finding], int]:
+    """The checks and the findings of the first sheet, of both as many as fit, the binding and the gravest first; and
+    the height of the drawing [mm], which gets what they leave."""
     checks = tables.first_checks(contents)
     room = ROOM - _without_lists(contents, malfunction)
     found: list[Finding] = []
@@ -38,7 +43,8 @@ def first_sheet(
         if _checks(checks, rows) + _findings([*found, one]) > room:
             break
         found.append(one)
-    return replace(checks, rows=checks.rows[:rows]), found
+    left = room - _checks(checks, rows) - _findings(found)
+    return replace(checks, rows=checks.rows[:rows]), found, LEAST_DRAWING + int(max(left, 0.0) * MILLIMETRES)
 
 
 def _without_lists(contents: SubmissionContents, malfunction: Sequence[str]) -> float:
@@ -47,7 +53,7 @@ def _without_lists(contents: SubmissionContents, malfunction: Sequence[str]) -> 
     height += 17.0 * max(_lines(line.description or "", 70) - 2, 0) + 25.0 * (_lines(line.name or "", 34) - 1)
     height += _verdict(contents.seen.assessment.sentence)
     if malfunction:
-        height += _verdict(f"With one cylinder out of work exceeded: {', '.join(malfunction)}; section 6.")
+        height += _verdict(f"With one cylinder out of work exceeded (section 6): {'; '.join(malfunction)}.")
     block = 31.0 + sum(17.0 * _lines(str(row[1]), 24) + 2.0 for row in tables.particulars(contents).rows)
     return height + max(block, 31.0 + 18.0 * len(tables.barred(contents).rows))
 

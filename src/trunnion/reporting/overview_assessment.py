@@ -145,7 +145,9 @@ def _parts(of: AssessableLine) -> dict[str, Any]:
 
 
 def _once(findings: list[Finding]) -> list[Finding]:
-    return list({finding.sentence: finding for finding in findings}.values())
+    """Each once, as sentences that end."""
+    ended = (replace(one, sentence=f"{one.sentence.removesuffix('.')}.") for one in findings)
+    return list({finding.sentence: finding for finding in ended}.values())
 
 
 def _along(case: LoadCaseResponse) -> StabilityOverSpeed | None:

@@ -43,12 +43,18 @@ def environment(*parts: str) -> Environment:
     environment.filters["signs"] = with_signs
     environment.filters["tied"] = tied
     environment.filters["in_css"] = in_css
+    environment.filters["formula"] = formula
     return environment
 
 
 def tied(head: str) -> str:
     """A column head whose unit in brackets stays on one line."""
     return re.sub(r"\[[^\]]*\]", lambda unit: unit[0].replace(" ", TIED), head)
+
+
+def formula(text: str) -> str:
+    """A formula, escaped before, with its indices set low: σ_B, T_Kmax."""
+    return re.sub(r"(?<!\w)(\w)_([A-Za-z]+)", r"\1<sub>\2</sub>", str(text))
 
 
 def in_css(text: str) -> str:

@@ -21,6 +21,7 @@ from trunnion.design.assessment.check import Check
 from trunnion.driveline.driveline import Driveline
 from trunnion.modes.mass_elastic import HolzerTable
 from trunnion.reporting import submission_tables as tables
+from trunnion.reporting import submission_words as words
 from trunnion.reporting.first_sheet import first_sheet
 from trunnion.reporting.overview_assessment import OverviewAssessment, answer, asked, capital, judged
 from trunnion.reporting.page import HtmlPage, environment
@@ -33,6 +34,8 @@ from trunnion.results.speeds import frequency_unit
 from trunnion.results.words import HERTZ, Words
 from trunnion.waiting import to_the_end
 
+SHRUNK = 1.4
+"""How much larger than on the first sheet the drawing must get to be shown again, across the second."""
 MOST_CURVES, MOST_UNLIMITED = 10, 3
 """Checks that are drawn over speed, and springs without a check."""
 
@@ -98,7 +101,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
     seen, made = contents.seen, datetime.now().astimezone()
     grave = [one for one in _beside_checks(contents) if one.gravity is not Gravity.NOTE]
     malfunction = tables.exceeded_by_malfunction(contents)
-    checks, first = first_sheet(contents, malfunction, grave)
+    checks, first, sketch_height = first_sheet(contents, malfunction, grave)
     name, digest = fingerprint(seen.line, source)
     facts: dict[str, Any] = {
         "title": seen.line.name or "Driveline",
@@ -106,7 +109,14 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "verdict": seen.assessment.sentence,
         "status": str(seen.assessment.verdict).replace(" ", "-"),
         "footer": _footer(seen.line),
+        "sketch_height": sketch_height,
+        "sketch_again": _height_across(shown["sketch"]) > SHRUNK * sketch_height,
         "malfunction": malfunction,
+        "malfunction_words": words.malfunction(contents),
+        "ties": words.ties(contents),
+        "assumptions": words.assumptions(contents),
+        "several_cases": len(contents.cases) > 1,
+        "separated": any(check.rule.name == "separation" for check in seen.assessment.checks),
         "title_block": tables.title_block(seen.line.document, made.strftime("%Y-%m-%d")),
         "signatures": tables.signatures(seen.line.document),
         "particulars": tables.particulars(contents),
@@ -154,6 +164,13 @@ def _footer(line: Driveline) -> str:
     return ", ".join(one for one in (of.number if of else "", revision, line.name or "Driveline") if one)
 
 
+def _height_across(drawn: ReportPicture) -> float:
+    """Of a picture as wide as an A4 sheet between its margins [mm]."""
+    assert drawn.figure is not None
+    wide, high = drawn.figure.get_size_inches()
+    return float(180.0 * high / wide)
+
+
 def _mode_title(mode: HolzerTable) -> str:
     return f"Mode {mode.mode}: {HERTZ.speed(mode.frequency)} undamped"
 
@@ -180,15 +197,15 @@ def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
     for check in _with_course(contents):
         assert check.course is not None
         loaded = f", load case {check.load_case}" if check.load_case else ""
-        words = f"{capital(check.name)}: orders, their synthesis and what is allowed over speed{loaded}."
+        caption = f"{capital(check.name)}: orders, their synthesis and what is allowed over speed{loaded}."
         curve = course(check.course, unit=unit, operating=seen.operation)
-        shown[f"torque of {check.name}"] = picture(draw(curve), f"{check.name} over speed by order", words)
+        shown[f"torque of {check.name}"] = picture(draw(curve), f"{check.name} over speed by order", caption)
     for spring, case in _unlimited(contents):
         response = next(one for one in contents.cases if one.name == case).answered
         curve = order_response(response, spring=spring, unit=unit, operating=seen.operation)
         loaded = f", load case {case}" if case else ""
-        words = f"Vibratory torque of {spring}, for which no limit is stated: orders and their synthesis{loaded}."
-        shown[f"torque of {spring}"] = picture(draw(curve), f"Torque of {spring} over speed by order", words)
+        caption = f"Vibratory torque of {spring}, for which no limit is stated: orders and their synthesis{loaded}."
+        shown[f"torque of {spring}"] = picture(draw(curve), f"Torque of {spring} over speed by order", caption)
     return shown
 
 

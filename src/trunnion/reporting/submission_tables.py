@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,21 +16,32 @@ from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, 
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.equations.harmonics import disk_torques
 from trunnion.errors import InputError
-from trunnion.modes.mass_elastic import HolzerTable, masses, springs
+from trunnion.modes.mass_elastic import HolzerTable, SpringRow, masses, springs
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
 from trunnion.results.speeds import order_name
 from trunnion.results.words import HERTZ, Words
 
 EMPTY = "–"
+MILLI = 1e-3
+"""Rotation [rad] of the mass that moves most in a Holzer table."""
 FIRST_CHECKS = 8
 """Checks on the first page, which is one sheet."""
 MOST_EXCITATIONS = 60
+PREFIXES = (("M", 1e6, 1e8), ("k", 1e3, 1e4))
+"""Prefixes of units, their sizes, and from which value on a column reads in them."""
+LAST_FIGURE = 1e-4
+"""Share of a value below which an error changes none of the four figures printed."""
 ROUNDING = 1e-9
 """Share of the largest below which a number is printed as nothing."""
 KIND_OF = {kind.unit: kind for kind in (ANGLE, TORQUE, PRESSURE, POWER, ACCELERATION, RATIO)}
 """Kinds of what checks compare, by the unit that they compare in."""
 VIBRATORY, PEAK, HEAT = "vibratory_torque", "max_torque", "heat rating"
+JOINTS = {
+    "HookeJoint": "Hooke's joint", "IdealJoint": "constant-velocity joint", "RzeppaJoint": "Rzeppa joint",
+    "TripodJoint": "tripod joint", "DoubleCardanJoint": "double Cardan joint",
+}  # fmt: skip
+"""Kinds of joints in words."""
 BY_STRESS = ("max_stress", "ship_shaft")
 """Limits of a shaft that are none of torque."""
 
@@ -143,32 +155,47 @@ def mass_table(contents: SubmissionContents) -> Table:
 
 def spring_table(contents: SubmissionContents) -> Table:
     """Springs of the mass–elastic system, at the speed of the mass behind them."""
+    rows = springs(contents.seen.assembly)
+    prefix, size = _prefix(row.stiffness for row in rows)
     return Table.of(
         {
             "spring": row.name,
             "between": f"{row.between[0]} – {row.between[1]}",
-            "stiffness [kN m/rad]": row.stiffness / 1e3,
-            "referred to the input [kN m/rad]": row.referred / 1e3,
+            f"stiffness [{prefix}N m/rad]": row.stiffness / size,
+            f"referred to the input [{prefix}N m/rad]": row.referred / size,
             "damping [N m s/rad]": row.damping,
-            "loss factor": row.loss,
+            "loss factor": _loss(row),
             "smallest diameter [mm]": 1e3 * row.diameter,
         }
-        for row in springs(contents.seen.assembly)
+        for row in rows
     )
+
+
+def _loss(row: SpringRow) -> str:
+    """As stated, with the frequency from which its damping follows; of one that holds at all frequencies alone."""
+    if np.isfinite(row.loss_frequency):
+        return f"{four(row.stated_loss)} at {HERTZ.speed(row.loss_frequency)}"
+    return four(row.loss) if row.loss else EMPTY
+
+
+def _prefix(values: Iterable[float]) -> tuple[str, float]:
+    """Of a column that reads in N m or N m/rad without many noughts: "", "k" or "M", and its size."""
+    largest = max((abs(one) for one in values if np.isfinite(one)), default=0.0)
+    return next(((name, size) for name, size, least in PREFIXES if largest >= least), ("", 1.0))
 
 
 def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table, Table]:
     """Masses and springs of one mode, at ±1 mrad of the mass that moves most."""
-    milli = 1e-3
     amplitudes, inertial, between = (
         _without_rounding(one) for one in (mode.amplitude, mode.inertia_torque, mode.torque)
     )
     listed = masses(contents.seen.assembly)
+    prefix, size = _prefix([*(MILLI * inertial), *(MILLI * between)])
     balance = [
         {
             "mass": row.name,
             "relative amplitude": float(amplitude),
-            "J ω² θ [N m]": milli * float(torque),
+            f"J ω² θ [{prefix}N m]": MILLI * float(torque) / size,
         }
         for row, amplitude, torque in zip(listed, amplitudes, inertial, strict=True)
     ]
@@ -176,7 +203,7 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
     in_springs = [
         {
             "spring": row.name,
-            "torque [N m]": milli * float(torque),
+            f"torque [{prefix}N m]": MILLI * float(torque) / size,
             "node": f"at {100 * at[row.name]:.0f} % of its twist" if row.name in at else "",
         }
         for row, torque in zip(springs(contents.seen.assembly), between, strict=True)
@@ -209,11 +236,10 @@ def _at_speed(contents: SubmissionContents) -> dict[tuple[str, int], complex]:
         return {}
     row = seen.assembly.table(1, seen.speed)
     for one in disk_torques(seen.assembly):
-        if abs(one.cylinders) > ROUNDING:
-            try:
-                found[one.name, one.number] = complex(one.size(seen.assembly, row)[0] / one.cylinders)
-            except InputError:  # a table that does not hold the speed
-                continue
+        try:
+            found[one.name, one.number] = complex(replace(one, cylinders=1.0).size(seen.assembly, row)[0])
+        except InputError:  # a table that does not hold the speed
+            continue
     return found
 
 
@@ -237,7 +263,14 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
             angle = four(float(np.rad2deg(element.angle)))
             orders = getattr(element, "orders", ())
             counted = f"order{'s' if len(orders) > 1 else ''} {' and '.join(map(str, orders))} of its shaft"
-            yield name, f"{element.kind}, {counted if orders else 'even'}", f"{angle}° bend", "", "", ""
+            yield (
+                name,
+                f"{JOINTS.get(element.kind, element.kind)}, {counted if orders else 'even'}",
+                f"{angle}° bend",
+                "",
+                "",
+                "",
+            )
 
 
 def _firing_throw(name: str, engine: Engine) -> str:
@@ -264,8 +297,8 @@ def engines(contents: SubmissionContents) -> Table | None:
     if not found:
         return None
     across = Table.of(_engine(one) for _, one in found)
-    rows = tuple((head, *(row[i] for row in across.rows)) for i, head in enumerate(across.heads))
-    return Table(("", *(name for name, _ in found)), rows)
+    rows = ((head, *(row[i] for row in across.rows)) for i, head in enumerate(across.heads))
+    return Table(("", *(name for name, _ in found)), tuple(row for row in rows if {*row[1:]} != {EMPTY}))
 
 
 def _engine(engine: Engine) -> dict[str, object]:
@@ -284,7 +317,7 @@ def _engine(engine: Engine) -> dict[str, object]:
         "rod [mm]": millimetres(engine.rod_length),
         "reciprocating mass [kg]": np.nan if mass is None else float(mass),
         "gas torque by": _gas(engine),
-        "crank stiffness by": "as stated" if engine.stiffness_of_throw is None else engine.stiffness_formula.title(),
+        "crank stiffness by": _stiffness(engine),
         "crank damping by": _damping(engine),
     }
 
@@ -300,6 +333,13 @@ def _gas(engine: Engine) -> str:
     return "harmonics as stated" if engine.gas_torque else "none"
 
 
+def _stiffness(engine: Engine) -> str:
+    """Whose number the stiffness of the crank between its throws is."""
+    if engine.rigid:
+        return "none, taken as rigid"
+    return "as stated" if engine.stiffness_of_throw is None else engine.stiffness_formula.title()
+
+
 def _damping(engine: Engine) -> str:
     """What damps the crank between its throws, and whose number it is."""
     if engine.damping_rule is not None:
@@ -312,12 +352,13 @@ def powers(contents: SubmissionContents) -> Table:
     """Mean torque and power of the spring that carries most, over the range."""
     words = Words(contents.seen.unit)
     several = len(contents.cases) > 1
+    prefix, size = _prefix(one.torque for one in contents.powers)
     return Table.of(
         {
             **({"load case": one.case or "as described"} if several else {}),
             f"input speed [{words.unit}]": one.speed * words.factor,
             "in": one.spring,
-            "mean torque [N m]": one.torque,
+            f"mean torque [{prefix}N m]": one.torque / size,
             "power [kW]": one.power / 1e3,
         }
         for one in contents.powers
@@ -327,46 +368,48 @@ def powers(contents: SubmissionContents) -> Table:
 def shafts(contents: SubmissionContents) -> Table:
     """Largest torques of every spring beside the limits stated for it."""
     words, several = Words(contents.seen.unit), len(contents.cases) > 1
+    prefix, size = _prefix(one.peak.value for one in contents.shafts)
     return Table.of(
         {
             "spring": one.spring,
-            "vibratory [N m]": one.vibratory.value,
+            f"vibratory [{prefix}N m]": one.vibratory.value / size,
             f"at [{words.unit}]": one.vibratory.speed * words.factor,
             "leading order": one.leading,
-            "limit of it [N m]": _limit(contents, one.spring, VIBRATORY, "vibratory_torque"),
+            f"its limit [{prefix}N m]": _limit(contents, one.spring, VIBRATORY, "vibratory_torque", size),
             "vibratory stress [MPa]": one.stress / 1e6,
-            "peak [N m]": one.peak.value,
+            f"peak [{prefix}N m]": one.peak.value / size,
             f"peak at [{words.unit}]": one.peak.speed * words.factor,
-            "limit of peak [N m]": _limit(contents, one.spring, PEAK, "maximum_torque"),
+            f"limit of peak [{prefix}N m]": _limit(contents, one.spring, PEAK, "maximum_torque", size),
             **({"load case": one.peak.case or "as described"} if several else {}),
         }
         for one in contents.shafts
     )
 
 
-def _limit(contents: SubmissionContents, spring: str, key: str, rating: str) -> str:
-    """The least limit of torque [N m] that the file or a maker states for a spring; what else bounds it."""
+def _limit(contents: SubmissionContents, spring: str, key: str, rating: str, size: float) -> str:
+    """The least limit of torque, in ``size`` N m, that the file or a maker states for a spring; what else bounds it."""
     names = spring.split(" and ")
     stated = [(one.key, one.value) for one in contents.seen.line.limits_by_element if one.element in names]
     parts = dict(contents.seen.line.parts)
     rated = [getattr(parts[name], rating, None) for name in names if name in parts]
     known = [value for own, value in stated if own == key] + [float(one) for one in rated if one is not None]
     if known:
-        return four(min(known))
+        return four(min(known) / size)
     return "by stress" if any(own in BY_STRESS for own, _ in stated) else EMPTY
 
 
 def misfires(contents: SubmissionContents) -> Table:
     """Every spring with all cylinders firing and with the worst of them out of work."""
     words = Words(contents.seen.unit)
+    prefix, size = _prefix(one.value for one in contents.firing)
 
     def row(s: int, spring: str) -> dict[str, object]:
-        found: dict[str, object] = {"spring": spring, "all firing [N m]": contents.firing[s].value}
+        found: dict[str, object] = {"spring": spring, f"all firing [{prefix}N m]": contents.firing[s].value / size}
         for how in dict.fromkeys(one.how for one in contents.misfiring):
             of_how = [one for one in contents.misfiring if one.how == how]
             worst = max(of_how, key=lambda one: one.vibratory[s].value)
             top = worst.vibratory[s]
-            found[f"one {how} [N m]"] = top.value
+            found[f"one {how} [{prefix}N m]"] = top.value / size
             found[f"{how}, worst"] = worst.cylinder
             found[f"{how}, at [{words.unit}]"] = top.speed * words.factor
         return found
@@ -443,7 +486,7 @@ def barred(contents: SubmissionContents) -> Table:
     """Ranges that may only be passed, and the check that bars them."""
     words = Words(contents.seen.unit)
     return Table.of(
-        {f"barred range [{words.unit}]": words.ends(*ends), "because of": check.name}
+        {f"barred range [{words.unit}]": words.barred([ends]), "because of": check.name}
         for check in contents.seen.assessment.checks
         if check.decides
         for ends in check.barred
@@ -469,5 +512,12 @@ def _rule(check: Check, words: Words) -> dict[str, object]:
         "value": _quantity(check.value, check.unit, words),
         "limit": _quantity(check.limit, check.unit, words),
         f"searched [{words.unit}]": " and ".join(words.ends(*ends) for ends in searched) or EMPTY,
-        "may be low by": _quantity(float(f"{check.error:.1g}"), check.unit, words),
+        "may be low by": _error(check, words),
     }
+
+
+def _error(check: Check, words: Words) -> str:
+    """By one figure where four of the value could change."""
+    if np.isfinite(check.error) and check.error < LAST_FIGURE * abs(check.value):
+        return f"< {100 * LAST_FIGURE:g} %"
+    return _quantity(float(f"{check.error:.1g}"), check.unit, words)

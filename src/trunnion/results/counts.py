@@ -8,8 +8,13 @@ from collections.abc import Sequence
 def few(names: Sequence[str], most: int = 3) -> str:
     """ "a, b and 4 more": at most ``most`` names, or one more where only one would be left."""
     if len(names) <= most + 1:
-        return ", ".join(names)
-    return f"{', '.join(names[:most])} and {len(names) - most} more"
+        return listed(names)
+    return f"{listed(names[:most])} and {len(names) - most} more"
+
+
+def listed(names: Sequence[str]) -> str:
+    """ "a, b, c"; names that hold commas are told apart by semicolons."""
+    return ("; " if any("," in name for name in names) else ", ").join(names)
 
 
 def counted(number: int, noun: str) -> str:

@@ -45,6 +45,14 @@ def rounded_up(value: float, digits: int = 4) -> float:
     return near if near >= value else float(f"{near + 10.0 ** (_place(value) - digits + 1):.{digits - 1}e}")
 
 
+def rounded_down(value: float, digits: int = 4) -> float:
+    """The largest number of so many significant figures that is not above a positive ``value``."""
+    if not (isfinite(value) and value > 0):
+        return value
+    near = float(f"{value:.{digits - 1}e}")
+    return near if near <= value else float(f"{near - 10.0 ** (_place(value) - digits + 1):.{digits - 1}e}")
+
+
 def angle_words(angle: float, most: int = 3) -> str:
     """An angle [rad] in degrees, "14.3°"."""
     return f"{figures(degrees(angle), most)}°"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from trunnion.results import speeds
 from trunnion.results.quantity_axes import QuantityAxis, parameter_axis
 from trunnion.results.stretches import ranges_in_words
-from trunnion.results.units import angle_words, figures, in_words, order_words, range_words
+from trunnion.results.units import angle_words, figures, in_words, order_words, range_words, rounded_down, rounded_up
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,14 @@ class Words:
     def ends(self, low: float, high: float) -> str:
         """ "300 rpm to 2400 rpm"."""
         return range_words(self.speed(low), self.speed(high))
+
+    def barred(self, ranges: Sequence[tuple[float, float]], most: int = 4) -> str:
+        """ "62.08 rpm to 73.08 rpm": so many figures, rounded outward, of ranges that are kept clear of."""
+        return " and ".join(range_words(*(self.speed(end) for end in self._outward(one, most))) for one in ranges)
+
+    def _outward(self, ends: tuple[float, float], most: int) -> tuple[float, float]:
+        low, high = (float(f"{end * self.factor:.9g}") for end in ends)  # without what the change of units rounded
+        return rounded_down(low, most) / self.factor, rounded_up(high, most) / self.factor
 
     def span(self, low: float, high: float, between: str = "to") -> str:
         """ "300 to 2400 rpm": four figures each."""

@@ -109,7 +109,7 @@ def _unknown(subject: AssessmentInput, title: str, rule: Rule, why: InputError) 
     """Of a turn that cannot be computed; where two speeds are prescribed nothing is left to be judged."""
     if any(element.kind == "ConstantSpeed" for element in subject.line.elements[1:]):
         return Check(title, Status.NOT_APPLICABLE, rule, "the output is prescribed")
-    return Check(title, Status.NOT_JUDGED, rule, f"not judged: {why.element or 'the line'} {why.problem}")
+    return Check(title, Status.NOT_JUDGED, rule, f"{why.element or 'the line'} {why.problem}")
 
 
 def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Iterator[Check]:

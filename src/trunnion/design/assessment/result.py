@@ -81,7 +81,7 @@ class Assessment(Result):
         off = {one.rule for one in self.switched_off}
         deciding = [one for one in RULES.values() if one.weight(self.application) is Weight.DECIDES]
         named = [one.name for one in deciding if one.guideline and one.name not in off]
-        guidelines = f"the guidelines {', '.join(named)} decide" if named else "no guideline decides"
+        guidelines = f"the {_guidelines(named)}" if named else "no guideline decides"
         about = APPLICATIONS[self.application]
         return f"Application {self.application} ({about}): {guidelines} beside limits, ratings and physical checks."
 
@@ -107,7 +107,7 @@ class Assessment(Result):
             open_end = f"{names} could not be judged" if names else "no limit is stated"
             return f"not judged: nothing that is judged is exceeded, but {open_end}"
         if self.barred:
-            ranges = " and ".join(self.words.ends(*pair) for pair in self.barred)
+            ranges = self.words.barred(self.barred)
             return f"satisfied where {ranges} is barred and passed quickly: there only transient limits hold"
         assert bind is not None
         return f"satisfied: {bind.name} binds, {bind.because}"
@@ -125,7 +125,7 @@ class Assessment(Result):
             if check.exceeded and passable(check, self.checks, None):
                 for low, high in check.barred:
                     if self.speed is not None and low <= self.speed <= high:
-                        here, ends = self.words.speed(self.speed), self.words.ends(low, high)
+                        here, ends = self.words.speed(self.speed), self.words.barred([(low, high)])
                         return f"; it runs at {here}, within {ends} that it may only pass"
         return ""
 
@@ -167,6 +167,13 @@ def passable(check: Check, checks: tuple[Check, ...], speed: float | None) -> bo
     holds = any(c.name in partner and c.status is Status.SATISFIED for c in checks)
     inside = speed is not None and any(a <= speed <= b for a, b in check.barred)
     return bool(check.barred) and holds and not inside
+
+
+def _guidelines(names: list[str]) -> str:
+    """ "guideline a decides", "guidelines a, b and c decide"."""
+    if len(names) == 1:
+        return f"guideline {names[0]} decides"
+    return f"guidelines {', '.join(names[:-1])} and {names[-1]} decide"
 
 
 def verdict_of(checks: tuple[Check, ...], speed: float | None) -> tuple[Status, tuple[tuple[float, float], ...]]:

@@ -25,9 +25,10 @@ from trunnion.design.assessment.measures import HIGHEST, NO_BAR, of_ship_shaft, 
 from trunnion.design.assessment.response_curve import SWING, course
 from trunnion.design.assessment.stated_limits import bands
 from trunnion.driveline.quantities import PRESSURE
+from trunnion.results.words import Words
 
 SOURCE = "IACS UR M68 in form; check your edition"
-RULE = Rule("±τ ≤ (σ_B + 160)/18 · C_K C_D (3 − 2λ²); · 1.38 for λ ≥ 0.9", SOURCE, "known", "m68")
+RULE = Rule("±τ ≤ (σ_B + 160)/18 · C_K C_D · (3 − 2λ² for λ < 0.9, 1.38 from there on)", SOURCE, "known", "m68")
 PASSING = Rule("±τ ≤ 1.7 τ_C/√C_K in a barred range, none at λ ≥ 0.8", SOURCE, "known", "m68")
 NONE_NAMED = (
     'no shaft is named for it: write ship_shaft = "flange", say, in the [[limit]] of intermediate and propeller shafts'
@@ -70,7 +71,7 @@ def _one(subject: AssessmentInput, case: LoadCaseResponse, name: str, feature: s
     by_order = np.abs(steady.parts(case.answer))
     seen = course(
         case.answer, f"stress of {name}", PRESSURE, SWING, stress,
-        {"continuous, τ_C": found.limits[inside], "passing quickly, τ_T": quickly.limits[inside]},
+        {"continuous operation": found.limits[inside], "passing quickly": quickly.limits[inside]},
         by_order[inside], inside,
     )  # fmt: skip
     inputs = (
@@ -81,8 +82,9 @@ def _one(subject: AssessmentInput, case: LoadCaseResponse, name: str, feature: s
     ratio = case.speeds / numbers.rated
     yield at_largest(
         subject, case, title, RULE, found, PRESSURE, required=steady.margin, words=_words(found), inputs=inputs,
-        where=f" (λ = {ratio[found.at]:.3g})", more=f"; bar {subject.ranges(barred)}" if barred else "", element=name,
-        barred=barred, cause=cause(case, found.at, by_order[found.at]), course=seen,
+        where=f" (λ = {ratio[found.at]:.3g})", element=name, barred=barred,
+        more=f"; bar {Words(subject.unit).barred(barred)}" if barred else "",
+        cause=cause(case, found.at, by_order[found.at]), course=seen,
     )  # fmt: skip
     if barred:
         yield at_largest(

@@ -1,0 +1,117 @@
+"""What a reviewer recomputes from the printed tables alone, and sentences that are true of the line they stand on."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import trunnion as tn
+from trunnion.cli import output
+from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.reporting.page import formula
+from trunnion.reporting.submission import Submission
+from trunnion.reporting.submission_tables import excitations
+from trunnion.results.counts import few
+from trunnion.results.words import Words
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+LINES = ["passenger-car", "two-stroke-ship", "six-cylinder-ship", "harbour-tug", "truck"]
+
+
+@cache
+def found(name: str) -> tn.NaturalFrequencies:
+    return tn.natural_frequencies(tn.load(EXAMPLES / f"{name}.toml"))
+
+
+@cache
+def handed_in() -> Submission:
+    """A car at one speed, with a differential, a rigid crank, loss factors at a frequency and load cases."""
+    line = tn.load(EXAMPLES / "passenger-car.toml")
+    at_one = line.operation.model_copy(update={"speed_range": (262.0, 263.0), "load_cases": ()})
+    return tn.submission(line.but(operation=at_one))
+
+
+def independent(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """P (mass, free), inertias and K of the tables: masses by name, springs between them at the speed of the second."""
+    rows = masses(found(name).assembly)
+    free = [row.name for row in rows if not row.sum_of]
+    turn = np.array([[dict(row.sum_of or ((row.name, 1.0),)).get(one, 0.0) for one in free] for row in rows])
+    of = {row.name: (turn[i], row.speed_ratio) for i, row in enumerate(rows)}
+    drive = (np.zeros(len(free)), 1.0)
+    stiffness = np.zeros((len(free), len(free)))
+    for spring in springs(found(name).assembly):
+        (ahead, fast), (behind, slow) = (of.get(end, drive) for end in spring.between)
+        twist = behind - ahead * slow / fast
+        stiffness += spring.stiffness * np.outer(twist, twist)
+    return turn, np.array([row.inertia for row in rows]), stiffness
+
+
+@pytest.mark.parametrize("name", LINES)
+def test_the_printed_masses_and_springs_have_the_printed_frequencies(name: str) -> None:
+    """Of a differential too, whose second leg turns by a sum and is tied to no crankshaft."""
+    turn, inertia, stiffness = independent(name)
+    squares = np.linalg.eigvals(np.linalg.solve(turn.T @ np.diag(inertia) @ turn, stiffness)).real
+    own = np.sqrt(np.sort(np.abs(squares)))
+    assert own == pytest.approx(found(name).undamped_frequency, rel=1e-6, abs=1e-4 * own[-1])
+    for mode in range(1 + found(name).still, len(found(name).mode) + 1):
+        table = holzer(found(name), mode)
+        whole = turn.T @ table.inertia_torque
+        assert whole == pytest.approx(found(name).assembly.topology.elongations.T @ table.torque, abs=1e-9 * max(
+            np.abs(table.torque).max(), np.abs(whole).max()
+        ))  # fmt: skip
+
+
+def test_a_leg_of_a_differential_stands_in_the_table_with_what_it_turns_by() -> None:
+    rows = {row.name: row for row in masses(found("passenger-car").assembly)}
+    left = rows["left side gear"]
+    assert left.inertia == pytest.approx(0.003) and rows["right side gear"].inertia == pytest.approx(0.003)
+    assert dict(left.sum_of) == pytest.approx({"pinion": 2 * 11 / 37, "right side gear": -1.0})
+    between = {row.name: row.between for row in springs(found("passenger-car").assembly)}
+    assert between["half shaft left"] == ("left side gear", "wheel left")
+    assert "left side gear turns by 0.5946 × pinion − 1 × right side gear" in handed_in().html
+
+
+def test_a_loss_factor_is_printed_as_it_was_stated() -> None:
+    spring = next(row for row in springs(found("two-stroke-ship").assembly) if row.name == "intermediate shaft")
+    assert (spring.stated_loss, spring.loss_frequency) == pytest.approx((0.015, 12 * np.pi))
+    assert spring.damping == pytest.approx(0.015 * spring.stiffness / (12 * np.pi))
+    page = handed_in().html
+    assert "0.02 at 50 Hz" in page and "0.01 at 50 Hz" in page
+    assert "a loss factor stated at a frequency as the viscous damping that has it there" in page
+
+
+def test_every_order_of_a_cylinder_has_its_size_though_the_cylinders_cancel() -> None:
+    rows = {row[1]: row for row in excitations(handed_in().contents).rows if row[0] == "engine, each cylinder"}
+    at = [float(rows[order][4]) for order in ("order 0.5", "order 1", "order 1.5", "order 2")]
+    assert at == pytest.approx([140 + 0.75 * 10, 160, 140, 110], rel=5e-4)  # tables at 2500 of 1000 to 3000 rpm
+
+
+def test_only_what_the_line_has_is_said_of_it() -> None:
+    page = handed_in().html
+    assert "none, taken as rigid" in page and "misfiring, with no gas torque left" in page
+    for words in ("all load cases", "every load case", "meshes stay in contact", "bore [mm]", "S_t", "C_K"):
+        assert words not in page
+    assert "constant-velocity joint" in page and "IdealJoint" not in page
+    assert not re.search(r"\d[ed][-−+]\d\d [A-Zmr°]", page), "a number as programs print it"
+
+
+def test_ranges_to_bar_are_rounded_outward() -> None:
+    rpm = np.pi / 30
+    assert Words("rpm").barred([(62.0849 * rpm, 73.0766 * rpm)]) == "62.08 rpm to 73.08 rpm"
+    assert Words("rpm").barred([(300 * rpm, 700 * rpm), (1071.96 * rpm, 1295.81 * rpm)]) == (
+        "300 rpm to 700 rpm and 1071 rpm to 1296 rpm"
+    )
+
+
+def test_indices_are_set_low_and_names_with_commas_told_apart() -> None:
+    assert formula("±τ ≤ 1.7 τ_C/√C_K, T_Kmax") == "±τ ≤ 1.7 τ<sub>C</sub>/√C<sub>K</sub>, T<sub>Kmax</sub>"
+    assert few(["a", "b"]) == "a, b" and few(["a, passing", "b"]) == "a, passing; b"
+
+
+def test_a_table_of_the_command_line_has_a_dash_for_no_number(capsys: pytest.CaptureFixture[str]) -> None:
+    output.table([{"mode": 1, "frequency [Hz]": float("nan"), "said": None}])
+    assert "nan" not in capsys.readouterr().out
