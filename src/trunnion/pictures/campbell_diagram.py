@@ -51,7 +51,7 @@ def campbell_diagram(
         ]
         places, sizes = [(c.speed * x, c.frequency * y) for c in seen], 5 + 2.2 * np.minimum(gain, 6.0)
         items.append(points_at(places, "crossing", "crossing, larger with 1/(2ζ)", sizes, says))
-    items += _names_of_lines(result, top, x, y, operating)
+    items += _names_of_lines(result, top, x, y, operating, [(c.speed, c.frequency) for c in seen])
     last = result.frequency[-1]
     named = [m for m in np.argsort(last) if last[m] < top]
     texts = [f"{result.mode[m]}:  {last[m] * y:.4g} {frequency_unit}" for m in named]
@@ -73,10 +73,18 @@ def _ends(result: CampbellDiagram, line: ExcitationLine) -> Array:
     return np.array([low, line.standstill, high] if low < line.standstill < high else [low, high])
 
 
-def _names_of_lines(result: CampbellDiagram, top: float, x: float, y: float, operating: Operation | None) -> list[Item]:
-    """Each line's name near where it leaves the picture, beside the operating speed and names that would lie on it."""
+def _names_of_lines(
+    result: CampbellDiagram,
+    top: float,
+    x: float,
+    y: float,
+    operating: Operation | None,
+    marks: list[tuple[float, float]],
+) -> list[Item]:
+    """Each line's name near where it leaves the picture, beside the operating speed, the ``marks`` of crossings and
+    names that would lie on it."""
     found: list[Item] = []
-    placed: list[tuple[float, float]] = []
+    placed = list(marks)
     wide, high = 0.07 * float(result.speed[-1] - result.speed[0]), 0.03 * top
     taken = [operating.speed] if operating and operating.speed else []
     for line in result.lines:

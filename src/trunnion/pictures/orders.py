@@ -48,7 +48,7 @@ def order_response(
     operating : its speed is marked.
     limit : vibratory torque [N m] that the spring bears, as a line across.
     limits : limits of torque [N m] by name, by default those of the description; with "max torque" the largest
-        torque, mean and all, is drawn too.
+        torque, mean included, is drawn too.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def torque_by_order(
         items.append(Level(value, f"limit {i}", f"{name} {printed(shown(value, TORQUE, digits=4))}"))
     if "max torque" in known:
         peak = result.peak_torque[:, column]
-        items.append(Line(x, peak, "largest", "largest torque, mean and all"))
+        items.append(Line(x, peak, "largest", "largest torque, mean included"))
         largest = max(largest, float(np.nanmax(np.nan_to_num(peak), initial=0.0)))
     items += _beyond_the_linear_range(x, result)
     up = Axis("vibratory torque", "N m")

@@ -100,5 +100,5 @@ def capture_map(result: CaptureMap) -> Picture:
     pieces = result.boundary * (along.factor, up.factor)
     if len(pieces):
         parted = np.concatenate([pieces, np.full((len(pieces), 1, 2), np.nan)], axis=1).reshape(-1, 2)
-        items.append(Line(parted[:, 0], parted[:, 1], "captured half", "one half, known to a cell"))
+        items.append(Line(parted[:, 0], parted[:, 1], "captured half", "half of the starting phases captured"))
     return single(Axis(along.quantity, along.unit), Axis(up.quantity, up.unit), items, 7.0, 4.8, grid="")

@@ -46,16 +46,16 @@ FORMULAS = {
     "largest_travel": OF_PENDULUMS.formula,
 }
 TAKEN = {
-    "nominal_torque": "mean, by S_t",
-    "maximum_torque": f"{WHOLE}, by S_t S_z",
-    "vibratory_torque": "sum of amplitudes, each by its S_f: an upper bound",
-    "heat_rating": "mean over the cycle, by S_t",
+    "nominal_torque": "mean, times the temperature factor",
+    "maximum_torque": f"{WHOLE}, times temperature and starting factor",
+    "vibratory_torque": "sum of amplitudes, each times its frequency factor: an upper bound",
+    "heat_rating": "mean over the cycle, times the temperature factor",
     "largest_travel": WHOLE,
 }
 
 
 KINDS = {"heat_rating": POWER, "largest_travel": LENGTH}
-LIMITED = {"vibratory_torque": "T_KW/S_t"}
+LIMITED = {"vibratory_torque": "allowed"}
 """How a picture calls the limit, where it is not a rating by itself."""
 
 

@@ -12,7 +12,7 @@ from trunnion.driveline.quantities import QuantityKind
 from trunnion.response.orders.result import OrderResponse
 
 SWING = "half peak to peak"
-WHOLE = "largest, mean and all"
+WHOLE = "largest, mean included"
 
 
 @dataclass(frozen=True)
