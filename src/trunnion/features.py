@@ -101,7 +101,9 @@ _LIKE = {
 BY_MEAN = "{} loses by its mean torque, in the sense in which power flows; of what vibrates nothing is lost there"
 """What is said of gear losses by what counts them."""
 SET_ASIDE = "the multiplier at 1 is set aside"
-DRAGGED_ALONG = "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is not an instability and set aside"
+DRAGGED_ALONG = (
+    "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is not an instability and is set aside"
+)
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Reason] = {
     LAG: (

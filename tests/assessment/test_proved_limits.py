@@ -47,7 +47,7 @@ def test_what_few_boxes_leave_open_is_searched() -> None:
         judged = tn.assess(line, SPEEDS)
         found = judged.check("max torque of shaft")
         assert found.status is found.status.SATISFIED and found.words == "satisfied"
-        assert found.proof == "searched, not proved" and "boxes bound it by" in found.because
+        assert found.proof == "searched, not proved" and "ranges of speed bound it by" in found.because
         assert found.bound > found.limit * (1 - found.required_margin)
         assert any("certify-peaks" in str(finding) for finding in judged.findings)
 
@@ -98,7 +98,7 @@ def test_no_boxes_no_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounds, "BOXES", 1)
     monkeypatch.setattr(bounds, "LEAST", 1)
     found = tn.assess(two_disks(3 * peak()), SPEEDS).check("max torque of shaft")
-    assert found.proof == "searched, not proved" and "one box do" not in found.because
+    assert found.proof == "searched, not proved" and "one range of speed do" not in found.because
 
 
 def test_json_and_words(tmp_path: Path) -> None:

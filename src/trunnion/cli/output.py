@@ -15,6 +15,7 @@ from contextvars import copy_context
 from enum import Enum
 from functools import cache
 from importlib.abc import MetaPathFinder
+from math import isnan
 from operator import attrgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -77,8 +78,15 @@ def table(rows: Sequence[Mapping[str, object]], title: str = "") -> None:
         side: Literal["left", "right"] = "right" if value is None or isinstance(value, int | float) else "left"
         drawn.add_column(key, justify=side, min_width=max(map(len, key.split())))  # no word of a head is cut
     for row in rows:
-        drawn.add_row(*("" if v is None else f"{v:.6g}" if isinstance(v, float) else str(v) for v in row.values()))
+        drawn.add_row(*map(_cell, row.values()))
     _console().print(drawn)
+
+
+def _cell(value: object) -> str:
+    """Six figures; a dash for a number that there is none of."""
+    if isinstance(value, float):
+        return "–" if isnan(value) else f"{value:.6g}"
+    return "" if value is None else str(value)
 
 
 def findings(found: Sequence[Finding], title: str = "Findings") -> None:

@@ -71,7 +71,7 @@ def with_bounds(subject: AssessmentInput, checks: tuple[Check, ...]) -> tuple[tu
     try:
         found = _bounds(subject, able, asked) if able else {}
     except InputError as error:
-        where = ".".join(part for part in (error.element, error.key) if part)
+        where = ".".join(part for part in (error.element, error.key) if part).replace("driveline", "the line")
         note = f"Values over speed are searched, not proved: {where} {error.problem}."
         unproved = tuple(replace(check, proof=SEARCHED) if check in open_ones else check for check in checks)
         return unproved, (Finding(Gravity.NOTE, note),)
@@ -85,9 +85,9 @@ def _notes(checks: Sequence[Check], asked: dict[str, BoundedCheck]) -> Iterator[
     if any(check.proof == PROVED for check in checks):
         yield "What is proved holds of the steady motion, which a stable line comes to."
     if any(check.proof == SEARCHED and check.name in asked for check in checks):
-        yield "What is searched and not proved may be proved by trunnion certify-peaks, which takes more time for it."
+        yield "trunnion certify-peaks may prove what is searched and not proved here; it takes more time."
     if without := [check.name for check in checks if check.proof == SEARCHED and check.name not in asked]:
-        yield f"Searched, not proved, for no bound is computed: {few(without)}."
+        yield f"Searched, not proved, because no bound is computed for them: {few(without)}."
 
 
 def _not_searched(case: LoadCaseResponse) -> bool:
@@ -157,12 +157,12 @@ def _above(bound: float, value: float) -> str:
 
 def _too_few(boxes: int) -> str:
     if not boxes:
-        return "of so many springs and excitations that takes longer than this command spends on it"
-    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice"
+        return "with so many springs and excitations a proof takes longer than this command spends on it"
+    return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice for a proof"
 
 
 def _boxes(number: int) -> str:
-    return "one box" if number == 1 else f"{number} boxes"
+    return "one range of speed" if number == 1 else f"{number} ranges of speed"
 
 
 def _at_most(value: float, kind: QuantityKind) -> str:

@@ -365,8 +365,8 @@ def require_provable(assembly: Assembly, *, own: bool = False) -> None:
     remedy = "tolerance_study() says how probable stability is"
     if not own and topo.free and has_joint_angles(assembly):
         raise InputError(
-            "is free–free and has joint angles: it moves in its own periodic motion, which this one does not enclose",
-            element=line.names[0], remedy="put a ConstantSpeed in front, or " + remedy,
+            "is free–free and has joint angles: it moves in its own periodic motion, which this proof does not enclose",
+            element="driveline", remedy="put a ConstantSpeed in front, or " + remedy,
         )  # fmt: skip
     require_tree(assembly, "a certificate does")
     refuse_dragged(assembly)
