@@ -28,6 +28,8 @@ MOST_RESONANCES = 30
 MOST_CROSSINGS = 30
 REASONS = 5
 """Satisfied checks printed with their reasons."""
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+POWER_OF_TEN = re.compile("·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+$")
 TIED = "\u00a0"
 """A space at which no line breaks."""
 
@@ -74,15 +76,18 @@ def measured_sentences(contents: Contents) -> list[str]:
 
 def _is_number(text: str) -> bool:
     try:
-        float(text.replace("−", "-").replace("–", "0") or "0")
+        float(POWER_OF_TEN.sub("", text).replace("−", "-").replace("–", "0") or "0")
     except ValueError:
         return False
     return True
 
 
 def four(value: float) -> str:
-    """Four figures with a true minus sign."""
-    return figures(value).replace("-", "−") if np.isfinite(value) else "–"
+    """Four figures with a true minus sign: "−0.1286", "2.4·10⁻⁵"."""
+    if not np.isfinite(value):
+        return "–"
+    digits, _, power = figures(value).replace("-", "−").partition("e")
+    return f"{digits}·10{str(int(power.replace('−', '-'))).translate(RAISED)}" if power else digits
 
 
 def elements(line: Driveline) -> Table:
