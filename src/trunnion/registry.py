@@ -87,7 +87,7 @@ ANALYSES = (
     ),
     Analysis(
         "resonance_speeds",
-        "Named parametric resonance speeds in the operating range, and which of them can open.",
+        "Named parametric resonance speeds in the operating range, and at which of them instability can begin.",
         features="resonances",
         command="trunnion.cli.stability:resonance_speeds",
         view="stability",
@@ -419,7 +419,7 @@ ANALYSES = (
     ),
     Analysis(
         "identify",
-        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and twins.",
+        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals, and what fits as well.",
         features="fitted orders",
         pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
         command="trunnion.cli.measured:identify",

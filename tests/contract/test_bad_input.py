@@ -303,7 +303,7 @@ FATIGUE = [
     (lambda: tn.SNCurve(of="a", miner="haibach", **BEARS), "S-N curve of a.miner = 'haibach': is not a form", "known"),
     (
         lambda: line(sn_curves=[tn.SNCurve(of="Shaft 1", stress_amplitude=1e8, cycles=1, slope=1)]),
-        "S-N curve of Shaft 1.stress_amplitude = '0.1 GPa': needs the outer_diameter of the Shaft",
+        "S-N curve of Shaft 1.stress_amplitude = '100 MPa': needs the outer_diameter of the Shaft",
         "torque_amplitude",
     ),
     (

@@ -86,7 +86,7 @@ def minimum_damping(
     """Example: trunnion minimum-damping two-shaft-cardan --speed 1.4:1.8 --maximum 40
 
     --damping PARAMETER  Damping to vary; default: one factor for all damping of the line.
-    --maximum  Largest damping tried, in SI units.
+    --maximum  Largest damping tried [N m s/rad], or largest factor.
     --margin  Share by which the speeds are widened, 0.1 for 10 %.
     """
     found = tn.minimum_damping(
@@ -161,7 +161,7 @@ def certify_stability(
     """Example: trunnion certify-stability two-shaft-cardan -t "Shaft 1.stiffness=1%" --speed 1.2:1.4
 
     --tolerance, -t PARAMETER=SHARE  What scatters: "Shaft 1.stiffness=1%"; default: the file's, or nothing.
-    --boxes  Largest number of boxes judged; the rest is left undecided.
+    --boxes  Most ranges of speed and tolerances judged one by one; the rest is left undecided.
     --write PATH  Write the line of a counterexample as a driveline file.
     """
     given = dict(tolerance) if tolerance else None
@@ -189,7 +189,7 @@ def certify_peaks(
 
     --tolerance, -t PARAMETER=SHARE  What scatters: "Shaft 1.stiffness=1%"; default: the file's, or nothing.
     --gap  Share by which a bound may stand above what was computed, 0.05 for 5 %.
-    --boxes  Largest number of boxes judged; bounds hold all the same, but are wider.
+    --boxes  Most ranges of speed and tolerances judged one by one; with fewer, bounds hold but are wider.
     --write PATH  Write the line of a counterexample as a driveline file.
     """
     given = dict(tolerance) if tolerance else None
