@@ -419,7 +419,7 @@ ANALYSES = (
     ),
     Analysis(
         "identify",
-        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals, and what else fits.",
+        "Angles, stiffness, damping, inertia or excitation that explain measured orders, with intervals and rivals.",
         features="fitted orders",
         pictures={"Identification.plot": "trunnion.pictures.measured:identification"},
         command="trunnion.cli.measured:identify",
