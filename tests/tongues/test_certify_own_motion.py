@@ -2,14 +2,188 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.bent_pair import PERIOD, BentPair
 
 import trunnion as tn
+from trunnion.floquet.certificate import own_judge
+from trunnion.floquet.certificate.box_coefficients import NumberRange
+from trunnion.floquet.certificate.box_space import BoxSpace
+from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves
+from trunnion.floquet.certificate.own_judge import OwnMotionLine, judged_motion
+from trunnion.floquet.certificate.waves import Wave
+from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
+from trunnion.results.verdict import Verdict
 
 TUG = tn.load(Path(__file__).parents[2] / "examples" / "harbour-tug.toml")
+PAIR = BentPair(95.0)
+SHARES = {"shaft.stiffness": 0.001, "load.inertia": 0.001, "joint.angle": 0.002, "load.load_torque": 0.005}
+NAMES = {"stiffness": "stiffness", "inertia": "inertia", "angle": "angle", "load_torque": "load_torque"}
+
+
+def ranges_of(own: OwnMotionLine, shares: Tolerances) -> list[NumberRange]:
+    return [NumberRange(s.label, s.columns, s.low, s.high) for s in read_tolerances(own.assembly, shares)]
+
+
+def value(wave: Wave, phi: float, p: np.ndarray) -> float:
+    order = np.arange(-wave.last, wave.last + 1)
+    return float((np.concatenate([[1.0], p]) @ wave.parts @ np.exp(2j * order * phi)).real)
+
+
+def box(
+    shares: Tolerances = SHARES, width: float = 2e-4, pair: BentPair = PAIR
+) -> tuple[MotionEquations, MotionWaves, list[NumberRange], tuple[float, float]]:
+    """Equations of a box, nearly its motions, its tolerances and speeds."""
+    own = OwnMotionLine(pair.line)
+    ranges = ranges_of(own, shares) if shares else []
+    speeds = pair.middle * (1 - width), pair.middle * (1 + width)
+    found = own.begun(speeds, ranges)
+    assert found is not None
+    return *found, ranges, speeds
+
+
+def corner(ranges: list[NumberRange], signs: np.ndarray) -> BentPair:
+    numbers = {
+        NAMES[one.label.split(".")[1]]: one.high if s > 0 else one.low for one, s in zip(ranges, signs, strict=True)
+    }
+    return PAIR.at(**numbers)
+
+
+# What encloses contains
+
+
+def test_rates_and_slopes_contain_the_equations() -> None:
+    """At corners of the box, anywhere in a tube around the motion."""
+    own, motion, ranges, _ = box()
+    rng, radii = np.random.default_rng(1), np.array([1e-4, 0.02, 0.03])
+    near = motion.widened(radii)
+    found = own.rates(near)
+    for _ in range(12):
+        signs, drive, phi = rng.choice([-1.0, 1.0], len(ranges)), rng.uniform(-1, 1), rng.uniform(0, PERIOD)
+        p = np.concatenate([[drive], signs])
+        pair = corner(ranges, signs).at(extra=value(motion.drive, phi, p))
+        x = np.array([value(one, phi, p) for one in motion.states]) + rng.uniform(-1, 1, 3) * radii
+        rates, slopes = pair.rates(phi, x), pair.slopes(phi, x)
+        for i in range(3):
+            assert abs(rates[i] - value(found.rates[i], phi, p)) <= found.rates[i].rest * (1 + 1e-9) + 1e-11
+            for j in range(3):
+                known = found.slopes.get((i, j))
+                assert abs(slopes[i, j] - (value(known, phi, p) if known else 0.0)) <= (known.rest if known else 0)
+
+
+@pytest.mark.parametrize("shares", [{}, SHARES])
+def test_the_tube_holds_the_motion_which_decays_as_proved(shares: Tolerances) -> None:
+    """At corners, under torques from one end to the other; the mean speed passes through the box."""
+    line = OwnMotionLine(PAIR.line)
+    speeds, ranges = (PAIR.middle * (1 - 2e-4), PAIR.middle * (1 + 2e-4)), ranges_of(line, shares) if shares else []
+    found = line.enclosed(speeds, ranges)
+    assert found is not None and found.verdict.proved and found.tube is not None
+    motion = found.tube
+    rng, nearest, slowness = np.random.default_rng(2), np.inf, []
+    for drive in (-1.0, 1.0):
+        signs = rng.choice([-1.0, 1.0], len(ranges))
+        p = np.concatenate([[drive], signs])
+        pair = corner(ranges, signs).at(extra=value(motion.drive, 0.0, p))
+        path, multipliers = pair.periodic(np.array([value(one, 0.0, p) for one in motion.states]))
+        for k, phi in enumerate(np.linspace(0, PERIOD, 33)):
+            for state, one in zip(path[k], found.tube.states, strict=True):
+                assert abs(state - value(one, phi, p)) <= one.rest + 1e-9 * abs(state)
+        rate = -np.log(np.abs(multipliers).max()) * speeds[0] / PERIOD
+        assert rate >= found.verdict.decay * (1 - 1e-6)
+        nearest = min(nearest, rate / found.verdict.decay)
+        slowness.append(np.mean(1 / path[:-1, 1]))
+    assert nearest < 1.2
+    assert 1 / slowness[0] < speeds[0] and 1 / slowness[1] > speeds[1]
+
+
+# What is not to be proved is not
+
+
+def test_a_tube_that_is_too_small_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    own, motion, _, speeds = box()
+    monkeypatch.setattr(own_judge, "WIDER", 0.9)
+    found = judged_motion(own, motion, speeds)
+    assert found is not None and not found.verdict.proved and found.tube is None
+
+
+@pytest.mark.parametrize("off", [1e-9, 1e-7, 1e-5, 1e-4])
+def test_a_tube_about_a_wrong_motion_holds_the_right_one_or_is_refused(off: float) -> None:
+    """The twist is off by waves of the joint's order."""
+    own, motion, _, speeds = box({}, 1e-3)
+    parts = motion.twist[0].parts.copy()
+    parts[0, [own.last - 1, own.last + 1]] += off / 2
+    wrong = MotionWaves((Wave(parts, 0.0),), motion.speed, motion.drive)
+    found = judged_motion(own, wrong, speeds)
+    assert found is not None and found.verdict.proved == (off < 1e-6)
+    if found.tube is not None:
+        assert found.tube.twist[0].rest > off
+
+
+def test_an_unstable_motion_is_never_proved_and_is_the_counterexample() -> None:
+    """Where the joint's order meets the mode, by equations written out."""
+    pair = BentPair(137.0, angle=0.6, damping=0.4, load_torque=5.0, viscous=0.02, quadratic=0.0)
+    _, motion, _, speeds = box({}, 1e-7, pair)
+    start = np.array([value(one, 0.0, np.zeros(1)) for one in motion.states])
+    _, multipliers = pair.at(extra=value(motion.drive, 0.0, np.zeros(1))).periodic(start)
+    assert np.abs(multipliers).max() > 1.001
+    for width in (1e-9, 1e-5):
+        ends = pair.middle * (1 - width), pair.middle * (1 + width)
+        assert not OwnMotionLine(pair.line).judged(ends, []).proved
+    found = tn.certify_stability(pair.line, {}, speeds)
+    assert found.verdict == "counterexample" and found.counterexample is not None
+    assert tn.stability(pair.line, found.counterexample["speed"]).verdict is Verdict.UNSTABLE
+
+
+# Rounding
+
+
+def exact(wave: Wave) -> list[list[tuple[Fraction, Fraction]]]:
+    return [[(Fraction(one.real), Fraction(one.imag)) for one in row] for row in wave.parts.tolist()]
+
+
+def test_what_rounding_makes_of_sums_and_products_lies_within_the_rest() -> None:
+    """In exact fractions: harmonics so few that nothing else is left out."""
+    rng = np.random.default_rng(3)
+    for _ in range(10):
+        parts = rng.normal(size=(2, 1, 9)) + 1j * rng.normal(size=(2, 1, 9))
+        parts[:, :, [0, 1, 7, 8]] = 0
+        a, b = Wave(parts[0], 0.0), Wave(parts[1], 0.0)
+        (x,), (y,) = exact(a), exact(b)
+        (plus,), (times,) = exact(a + b), exact(a * b)
+        off = [(u[0] + v[0] - s[0], u[1] + v[1] - s[1]) for u, v, s in zip(x, y, plus, strict=True)]
+        assert sum(abs(re) + abs(im) for re, im in off) <= Fraction((a + b).rest)
+        lost = Fraction(0)
+        for m in range(9):
+            pairs = [(x[k], y[m + 4 - k]) for k in range(9) if 0 <= m + 4 - k < 9]
+            re = sum((u[0] * v[0] - u[1] * v[1] for u, v in pairs), Fraction(0)) - times[m][0]
+            im = sum((u[0] * v[1] + u[1] * v[0] for u, v in pairs), Fraction(0)) - times[m][1]
+            lost += abs(re) + abs(im)
+        assert 0 < lost <= Fraction((a * b).rest)
+
+
+def test_boxes_beside_each_other_leave_no_gap() -> None:
+    own = OwnMotionLine(PAIR.line)
+    space = BoxSpace(own.assembly, read_tolerances(own.assembly, SHARES), (50.0, 200.0))
+    rng = np.random.default_rng(4)
+    for _ in range(50):
+        low, middle, high = np.sort(rng.uniform(0, 1, (3, space.size)), axis=0)
+        left, right = np.array([low, middle]), np.array([middle, high])
+        assert space.span(left)[1] > space.span(right)[0]
+        for one, two in zip(space.ranges(left), space.ranges(right), strict=True):
+            assert one.high > two.low
+
+
+# From a user's side
+
+
+def test_tolerances_about_the_motion_are_proved() -> None:
+    found = tn.certify_stability(PAIR.line, SHARES, (94.99, 95.01))
+    assert found.verdict == "proved stable" and found.about_own_motion and found.boxes < 40
+    assert "every line within 4 tolerances" in str(found)
 
 
 @pytest.mark.slow

@@ -325,7 +325,13 @@ BAD = [
     (lambda: tn.certify_stability(free(0.2), {}, (1.0, 2.0)), "driveline: is free–free, has joint angles, and no"),
     (
         lambda: tn.certify_stability(free(0.0), {"HookeJoint 1.angle": ("range", 0.0, 0.1)}, (1.0, 2.0)),
-        "HookeJoint 1.angle: cannot scatter in a certificate of a free–free line",
+        "driveline: is free–free, has joint angles, and no torque depends on its speed",
+    ),
+    (
+        lambda: tn.certify_stability(
+            driven_twice(), {"Disk 1.load_torque": ("range", -60.0, -50.0)}, (100.0, 100.1)
+        ),
+        "Disk 1.load_torque: moves how those that drive share the torque that holds the speed",
     ),
     (
         lambda: tn.certify_stability(with_ratio(), {"Ratio 1.ratio": 0.1}, (1.0, 2.0)),
@@ -457,6 +463,14 @@ def free(angle: float = 0.0, slope: float = 0.0, varies: float = 0.0) -> tn.Driv
             tn.Disk(inertia=3.0),
         ]
     )
+
+
+def driven_twice() -> tn.Driveline:
+    """Bent and free, by two disks as their own torques are, which balance the load at every speed."""
+    shaft = tn.Shaft(stiffness=4e3, damping=3.0)
+    first = tn.Disk(inertia=1.0, load_torque=-50.0, viscous_load=-1.0)
+    second, load = tn.Disk(inertia=1.0, load_torque=-60.0), tn.Disk(inertia=3.0, load_torque=110.0, viscous_load=1.0)
+    return tn.Driveline([first, shaft, second, tn.HookeJoint(angle=0.2), shaft, load])
 
 
 @pytest.mark.parametrize(("slope", "varies"), [(0.0, 0.0), (0.5, 0.0), (0.0, 0.1), (0.5, 0.1)])

@@ -9,8 +9,9 @@ by its inverse, so that the equations are linear in it: then so are all that its
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -60,6 +61,18 @@ class BoxCoefficients:
     untwisted_shift: list[Wave]
     over_mass: dict[int, Wave]
     middle: LineCoefficients
+
+    def along(self, parameter: int) -> BoxCoefficients:
+        """As one parameter alone moves them, without their rests."""
+        found: dict[str, Any] = {}
+        for name, value in vars(self).items():
+            if isinstance(value, Wave):
+                found[name] = value.along(parameter)
+            elif isinstance(value, list):
+                found[name] = [one.along(parameter) for one in value]
+            elif isinstance(value, dict):
+                found[name] = {key: one.along(parameter) for key, one in value.items()}
+        return replace(self, **found)
 
 
 def box_coefficients(

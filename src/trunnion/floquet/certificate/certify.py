@@ -138,7 +138,7 @@ def certify_stability(
     ----------
     line : whose shafts may branch and close no loop; about its motion without vibration, as ``stability`` judges it,
         with the same multipliers set aside; a free–free line with joint angles about its own periodic motion, where a
-        torque depends on its speed, and without tolerances.
+        torque depends on its speed.
     tolerances : as of ``tolerance_study``, None for those of the description, which may have none, {} for none: the
         line as it is. Of stiffness, damping, inertia, fork offsets, joint planes, loads, and the angle of a HookeJoint.
         Normal distributions count as three standard deviations either way.
@@ -174,7 +174,7 @@ def certify_stability(
     ranges = space.ranges(np.array([np.zeros(space.size), np.ones(space.size)]))
     if own:
         require_enclosed(assembly, ranges, span[0])
-    require_linear(assembly, span, ranges)
+    require_linear(assembly, span, ranges, own=own)
     found = _BoxSearch(space, most_boxes, progress or (lambda share: None))
     found.run()
     left, proved = found.open_boxes, np.array(found.proved).reshape(-1, 2, space.size)

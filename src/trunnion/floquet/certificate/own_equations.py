@@ -1,15 +1,16 @@
 """The equations of motion of a line over the angle φ its input has turned by, along a motion given as waves.
 
-States are the twists q of the springs and the speeds w of the unknowns. With w₀ the speed of the input, prescribed or
-the first of them, and r the ratio in front of each spring,
+States are the twists q of the springs beyond those that mean loads make, and the speeds w of the unknowns. With w₀ the
+speed of the input, prescribed or the first of them, and r the ratio in front of each spring,
 
     w₀ q′ = w_far − r w_near,
-    w₀ M_i w_i′ = −½ M_i′ w_i² − Σ r_s T_s(r_s w_i) − f_own + Σ r_e f_e,     f = k q + c (w_far − r w_near).
+    w₀ M_i w_i′ = −½ M_i′ w_i² − Σ r_s T_s(r_s w_i) − f_own + Σ r_e f_e,     f = T̄ + k q + c (w_far − r w_near).
 
-Angles follow from φ and the twists, so the equations have the period of the joints in φ, whatever the speed does. A
-free–free line loses its shift of phase with them: of two motions that differ by that, both are the same function of φ.
-Under a torque that drives, constant and free, its periodic motion is one of 2n − 1 equations, and its multipliers are
-all of the line's but the 1 of the shift. A line at a prescribed speed has w₀ = Ω and all 2n states.
+The torque T̄ of the mean loads does not go with a stiffness, which so moves q little. Angles follow from φ and the
+twists, so the equations have the period of the joints in φ, whatever the speed does. A free–free line loses its shift
+of phase with them: of two motions that differ by that, both are the same function of φ. Under a torque that drives,
+constant and free, its periodic motion is one of 2n − 1 equations, and its multipliers are all of the line's but the 1
+of the shift. A line at a prescribed speed has w₀ = Ω and all 2n states.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ Entries = dict[tuple[int, int], Wave]
 
 @dataclass(frozen=True)
 class MotionWaves:
-    """States as functions of φ: ``twist`` (spring,) and ``speed`` (unknown,), and the torque at the input [N m] by
-    which a free–free line is driven beyond the balance of its loads."""
+    """States as functions of φ: ``twist`` beyond that of the mean loads (spring,) and ``speed`` (unknown,), and the
+    torque at the input [N m] by which a free–free line is driven beyond the balance of its loads."""
 
     twist: tuple[Wave, ...]
     speed: tuple[Wave, ...]
@@ -49,6 +50,11 @@ class MotionWaves:
         many = len(self.twist)
         return MotionWaves(tuple(states[:many]), tuple(states[many:]), self.drive)
 
+    def along(self, parameter: int) -> MotionWaves:
+        """As one parameter alone moves it."""
+        twist, speed = (tuple(one.along(parameter) for one in states) for states in (self.twist, self.speed))
+        return MotionWaves(twist, speed, self.drive.along(parameter))
+
 
 @dataclass(frozen=True)
 class Rates:
@@ -61,15 +67,13 @@ class Rates:
 
 @dataclass(frozen=True)
 class MotionEquations:
-    """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives;
-    ``offset`` (spring,): torque without twist, of a spring in a stage of its own."""
+    """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives."""
 
     assembly: Assembly
     co: BoxCoefficients
     parameters: int
     last: int
     drive: Array
-    offset: Array
 
     @property
     def rate(self) -> float:
@@ -95,7 +99,7 @@ class MotionEquations:
         return _Evaluation(self, motion, self._walk(motion)).rates()
 
     def _walk(self, motion: MotionWaves) -> Walk:
-        topo, shift = self.assembly.topology, list(self.co.untwisted_shift)
+        topo, shift = self.assembly.topology, list(self.co.shift)
         for e, compliance in enumerate(topo.compliances):
             s = topo.behind[compliance.shafts[-1], compliance.number]
             shift[s] = shift[s] + motion.twist[e]
@@ -126,7 +130,7 @@ class _Evaluation:
             rates[e] = relative * self.over
             for j, one in by.items():
                 slopes[e, j] = one * self.over
-            torque = own.co.stiffness[e] * self.motion.twist[e] + own.co.damping[e] * relative + float(own.offset[e])
+            torque = own.co.torque[e] + own.co.stiffness[e] * self.motion.twist[e] + own.co.damping[e] * relative
             by = {j: own.co.damping[e] * one for j, one in by.items()}
             by[e] = by[e] + own.co.stiffness[e] if e in by else own.co.stiffness[e]
             forces.append(torque)

@@ -35,16 +35,20 @@ from trunnion.floquet.certificate.box_equations import BoxMatrix, harmonics_need
 from trunnion.floquet.certificate.judge import JudgedBox
 from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, Rates, residuals
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
-from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, lyapunov_series, modal_box
+from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox, lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check_tube
 from trunnion.floquet.certificate.waves import OUTWARD, UNIT
 from trunnion.steady.free.free_balance import FreeBalance, SteadyStates
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve
 
 BEYOND = 1e-6, 0.1
-"""By what share of the speed, and of a box's width, the torque takes the speed beyond it."""
-WIDER = (1.6, 3.0)
-"""Heights V of tubes that are tried, over the least that the box needs without a tube."""
+"""By what share of the speed, and of a box's width, the torque takes the speed beyond it at first."""
+WIDER = 1.5
+"""Height V of the next tube that is tried, over what the last one needed."""
+TUBES = 4
+"""Heights that are tried."""
+FURTHER = 1.5
+"""How far the torque takes the speed the second time, over what the first left uncovered."""
 NARROW = 0.004
 """Width in ln(speed) of the first box that is tried."""
 PER_HARMONIC = 24
@@ -69,23 +73,33 @@ class OwnMotionLine:
         turns = require_period(self.assembly.line, self.assembly.topology)
         return FreeBalance(self.assembly, 2 * np.pi * float(turns))
 
-    def judged(self, speeds: tuple[float, float], given: Sequence[NumberRange]) -> JudgedBox:
+    def judged(self, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> JudgedBox:
         """The verdict on one box."""
-        nothing = JudgedBox(False, np.inf, np.ones(1 + len(given)), doubtful=True)
-        packed = self.assembly.packed
-        ranges = [replace(one, columns=packed.resolve(one.label)) for one in given]
         with np.errstate(all="ignore"):
             try:
-                begins = self._begun(speeds, ranges)
-                if begins is None:
-                    return nothing
-                return _judged(*begins, speeds) or nothing
+                found = self.enclosed(speeds, ranges)
             except (ZeroDivisionError, np.linalg.LinAlgError):
-                return nothing
+                found = None
+        return JudgedBox(False, np.inf, np.ones(1 + len(ranges)), doubtful=True) if found is None else found.verdict
 
-    def _begun(
-        self, speeds: tuple[float, float], ranges: Sequence[NumberRange]
-    ) -> tuple[MotionEquations, MotionWaves, Rates] | None:
+    def enclosed(self, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> JudgedMotion | None:
+        """The same with its tube; None where no motion of the middle is found that could attract."""
+        packed = self.assembly.packed
+        ranges = [replace(one, columns=packed.resolve(one.label)) for one in ranges]
+        begins = self.begun(speeds, ranges)
+        found = None if begins is None else judged_motion(*begins, speeds)
+        if found is not None and found.uncovered > 0:
+            begins = self.begun(speeds, ranges, FURTHER * found.uncovered)
+            found = None if begins is None else judged_motion(*begins, speeds)
+        return found
+
+    def begun(
+        self, speeds: tuple[float, float], ranges: Sequence[NumberRange], further: float = 0.0
+    ) -> tuple[MotionEquations, MotionWaves] | None:
+        """The equations of a box and nearly a motion of each of its lines, in floating point.
+
+        ``further`` : by how much more [s/rad] than a little the torque takes 1/speed beyond the box.
+        """
         middle = sum(speeds) / 2
         row = self.assembly.table(1, middle)
         for one in ranges:
@@ -96,7 +110,8 @@ class OwnMotionLine:
         if not (motions.found[0] and motions.resolved[0]):
             return None
         own = self._equations(speeds, ranges, motions)
-        return None if (found := solved(own, begun(own, motions), _asked(own, speeds))) is None else (own, *found)
+        found = solved(own, begun(own, motions), _asked(own, speeds, further))
+        return None if found is None else (own, found)
 
     def _equations(
         self, speeds: tuple[float, float], ranges: Sequence[NumberRange], motions: SteadyStates
@@ -110,7 +125,7 @@ class OwnMotionLine:
         if topo.free:
             row = assembly.table(1, middle)
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
-        return MotionEquations(assembly, co, 1 + len(ranges), last, drive, np.zeros(len(topo.compliances)))
+        return MotionEquations(assembly, co, 1 + len(ranges), last, drive)
 
 
 def _rows(row: Array, speeds: Array) -> Array:
@@ -119,17 +134,30 @@ def _rows(row: Array, speeds: Array) -> Array:
     return table
 
 
-def _asked(own: MotionEquations, speeds: tuple[float, float]) -> Slowness | None:
+def _asked(own: MotionEquations, speeds: tuple[float, float], further: float) -> Slowness | None:
     if not own.assembly.topology.free:
         return None
     slow, fast = 1 / speeds[0], 1 / speeds[1]
     asked = np.zeros(1 + own.parameters)
     middle, half = (slow + fast) / 2, (slow - fast) / 2
-    asked[:2] = middle, -(half * (1 + BEYOND[1]) + BEYOND[0] * middle)
+    asked[:2] = middle, -(half * (1 + BEYOND[1]) + BEYOND[0] * middle + further)
     return Slowness(asked)
 
 
-def _judged(own: MotionEquations, motion: MotionWaves, found: Rates, speeds: tuple[float, float]) -> JudgedBox | None:
+@dataclass(frozen=True)
+class JudgedMotion:
+    """The verdict; the ``tube`` that holds the motion, where proved; by how much [s/rad] the torque leaves speeds of a
+    box that is proved but for that ``uncovered``."""
+
+    verdict: JudgedBox
+    tube: MotionWaves | None = None
+    uncovered: float = 0.0
+
+
+def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> JudgedMotion | None:
+    """Whether a motion near ``motion`` exists at every one of ``speeds``, and attracts; None where the mean of the
+    middle has no modes that decay."""
+    found = own.rates(motion)
     box = _matrix(own, found)
     modal = modal_box(box)
     if modal is None:
@@ -140,35 +168,58 @@ def _judged(own: MotionEquations, motion: MotionWaves, found: Rates, speeds: tup
     if not first.proved:
         at = series.parts[0].sum(axis=0)
         doubtful = not series.solved or not np.linalg.eigvalsh((at + at.conj().T) / 2)[0] > 0
-        return JudgedBox(False, first.excess, first.blame, doubtful=doubtful)
-    missed = JudgedBox(False, np.inf, first.blame)
+        return JudgedMotion(JudgedBox(False, first.excess, first.blame, doubtful=doubtful))
+
+    def missed(excess: float = np.inf) -> JudgedBox:
+        return JudgedBox(False, excess, _left_by_each(own, motion, modal))
+
     stiff = _least_eigenvalue(series)
     off = np.abs(modal.to_modes @ modal.modes - np.eye(own.size)).sum(axis=1).max()
     if not (stiff > 0 and off < 0.01 and np.isfinite(least)):
-        return missed
+        return JudgedMotion(missed())
     reach = np.linalg.norm(modal.modes, axis=1) / np.sqrt(stiff) * 1.02
-    for wider in WIDER:
-        height = wider * least
+    needed = least
+    for _ in range(TUBES):
+        height = WIDER * needed
         near = motion.widened(np.sqrt(height) * reach)
         known, needed = check_tube(_matrix(own, own.rates(near)), modal, series, left)
         if not known.proved:
-            return replace(missed, excess=known.excess)
-        if needed < height and _covers(own, near, speeds):
-            return JudgedBox(True, known.excess, known.blame, known.decay * speeds[0] * (1 - 1e-12))
-    return missed
+            return JudgedMotion(missed(known.excess))
+        if needed < height:
+            uncovered = _uncovered(own, near, speeds)
+            if uncovered > 0:
+                return JudgedMotion(missed(), uncovered=uncovered)
+            decay = known.decay * speeds[0] * (1 - 1e-12)
+            return JudgedMotion(JudgedBox(True, known.excess, known.blame, decay), near)
+    return JudgedMotion(missed())
 
 
-def _covers(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> bool:
-    """Whether the torque takes the mean speed from below to above all ``speeds``, whatever the tolerances."""
+def _left_by_each(own: MotionEquations, motion: MotionWaves, modal: ModalBox) -> Array:
+    """What each parameter alone leaves over beside what decays (parameters,): what brings it says where to halve."""
+    if own.parameters == 1:
+        return np.ones(1)
+    found = []
+    for v in range(1, 1 + own.parameters):
+        there, only = replace(own, co=own.co.along(v)), motion.along(v)
+        size = np.array([one.size for one in residuals(there, only, there.rates(only))])
+        found.append(float((np.abs(modal.to_modes) @ size / modal.decay).max()))
+    return np.array(found)
+
+
+def _uncovered(own: MotionEquations, motion: MotionWaves, speeds: tuple[float, float]) -> float:
+    """By how much [s/rad] the torque fails to take 1/(mean speed) beyond all ``speeds``, whatever the tolerances; 0
+    where it does."""
     if not own.assembly.topology.free:
-        return True
+        return 0.0
     slowness = own.input_speed(motion).inverse()
     parts = slowness.parts[:, own.last].real
     aside = (float(np.abs(parts[2:]).sum()) + slowness.rest) * OUTWARD
-    return bool(
-        parts[0] - parts[1] - aside > (1 / speeds[0]) * OUTWARD
-        and (parts[0] + parts[1] + aside) * OUTWARD < 1 / speeds[1]
-    )
+    slow, fast = (1 / speeds[0]) * OUTWARD, 1 / speeds[1]
+    below, above = parts[0] - parts[1] - aside, (parts[0] + parts[1] + aside) * OUTWARD
+    if below > slow and above < fast:
+        return 0.0
+    missing = float(max(slow - below, above - fast, 1e-12 * slow))
+    return missing if np.isfinite(missing) else 0.0
 
 
 def _matrix(own: MotionEquations, found: Rates) -> BoxMatrix:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.elements import ConstantSpeed, Element, Ratio, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Shaft
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.loads import drive_places
 from trunnion.equations.steady_base import has_joint_angles
 from trunnion.errors import InputError
 from trunnion.floquet.certificate.box_coefficients import ANGLE, NumberRange, staged
@@ -17,6 +20,8 @@ from trunnion.floquet.tolerance.spread import Spread
 
 ENCLOSED = (ConstantSpeed, Coupling, GearPair, Joint, Ratio, Rotor, Shaft)
 """Elements whose equations of motion are written out."""
+SAME_SHARE = 1e-12
+"""By how much shares of the torque that drives may differ."""
 REMEDY = "stability() and tolerance_study() take it"
 
 
@@ -38,12 +43,6 @@ def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: f
     InputError : names the element, and why.
     """
     line, topo = assembly.line, assembly.topology
-    if ranges:
-        raise InputError(
-            "cannot scatter in a certificate of a free–free line with joint angles, which is about its own periodic "
-            "motion", key=ranges[0].label, remedy="give no tolerances, {}, for the line as it is; or put a "
-            "ConstantSpeed in front",
-        )  # fmt: skip
     for i, element in enumerate(line.elements):
         why = "" if isinstance(element, ENCLOSED) else f"a {element.kind} is not enclosed"
         if why := why or _obstacle(element):
@@ -61,6 +60,7 @@ def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: f
                 element=line.names[compliance.shafts[1]], remedy="write them as one Shaft, or put a Disk between",
             )  # fmt: skip
     _require_speed_held(assembly, speed)
+    _require_drive_kept(assembly, ranges, speed)
 
 
 def _obstacle(element: Element) -> str:
@@ -82,4 +82,21 @@ def _require_speed_held(assembly: Assembly, speed: float) -> None:
             "is free–free, has joint angles, and no torque depends on its speed, which nothing holds then: the "
             "multiplier of the speed is no exact 1 that could be set aside in a proof", element="driveline",
             remedy="give what resists a viscous_load or quadratic_load, or put a ConstantSpeed in front",
+        )  # fmt: skip
+
+
+def _require_drive_kept(assembly: Assembly, ranges: Sequence[NumberRange], speed: float) -> None:
+    """Refuse tolerances that move how several disks share the torque that holds the speed."""
+    table = assembly.table(1 + 2 * len(ranges), speed)
+    for k, one in enumerate(ranges):
+        for row, end in ((1 + 2 * k, one.low), (2 + 2 * k, one.high)):
+            changed = table[row : row + 1]  # a view: the table itself is written
+            one.columns.put(changed, np.array([end]))
+    places = drive_places(assembly.topology, assembly.packed.column, table)
+    share = places / places.sum(axis=1, keepdims=True)
+    moved = np.flatnonzero(np.abs(share - share[0]).max(axis=1) > SAME_SHARE)
+    if len(moved):
+        raise InputError(
+            "moves how those that drive share the torque that holds the speed, which is not enclosed",
+            key=ranges[(int(moved[0]) - 1) // 2].label, remedy="give those that drive a drive_share",
         )  # fmt: skip

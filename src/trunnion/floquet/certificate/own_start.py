@@ -39,6 +39,7 @@ def begun(own: MotionEquations, motions: SteadyStates) -> MotionWaves:
     angle = turn * np.arange(times) / times
     rows = fourier.resized(motions.rows[0], max(motions.h, last))
     twists = fourier.rows_of(motions.observed().twist[0].T, motions.h)
+    twists[:, 0] -= [t.mean.real / k.mean.real for t, k in zip(own.co.torque, own.co.stiffness, strict=True)]
     rates = fourier.rate(rows, 1.0) * float(motions.rate[0])
     place = topo.coordinate[topo.group_of(0)] if topo.free else -1
     tau = angle.copy()
@@ -67,7 +68,7 @@ def _waves(angle: Array, h: int) -> Array:
     return np.concatenate([np.ones((len(angle), 1)), np.cos(turned), np.sin(turned)], axis=1)
 
 
-def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None) -> tuple[MotionWaves, Rates] | None:
+def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None) -> MotionWaves | None:
     """The motion near ``motion``, of a free–free line at the ``slowness`` asked for; None where there is none."""
     found, best = own.rates(motion), np.inf
     for _ in range(STEPS):
@@ -81,7 +82,7 @@ def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None)
         best = missing
         motion = _stepped(own, motion, found, left, slowness)
         found = own.rates(motion)
-    return (motion, found) if missing < 1e-6 else None
+    return motion if missing < 1e-6 else None
 
 
 def _stepped(

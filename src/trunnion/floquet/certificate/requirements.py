@@ -29,8 +29,12 @@ BETWEEN = 8
 """Speeds looked at between two knots of a curve."""
 
 
-def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange]) -> None:
+def require_linear(
+    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], *, own: bool = False
+) -> None:
     """Refuse tolerances in which the equations are not linear, and what changes its kind with the speed.
+
+    own : about the line's own motion.
 
     Raises
     ------
@@ -52,7 +56,7 @@ def require_linear(assembly: Assembly, speeds: tuple[float, float], ranges: Sequ
             if hooke and max(abs(end) for end in ends) >= STEEPEST:
                 worst = max(ends, key=abs)
                 raise InputError("may reach 60° at most in a certificate", key=one.label, value=worst)
-            if hooke and topo.free:
+            if hooke and topo.free and not own:
                 raise InputError(
                     "would bend a free–free line, which then moves in its own periodic motion", key=one.label,
                     remedy="put a ConstantSpeed in front",

@@ -63,6 +63,12 @@ class Wave:
         """Whether nothing moves it, neither angle nor parameters."""
         return float(self.sizes.sum()) <= abs(self.mean) * OUTWARD
 
+    def along(self, parameter: int) -> Wave:
+        """What one parameter alone makes of it, without its rest."""
+        parts = np.zeros_like(self.parts)
+        parts[[0, parameter]] = self.parts[[0, parameter]]
+        return Wave(parts, 0.0)
+
     def __add__(self, other: Wave | complex) -> Wave:
         if not isinstance(other, Wave):
             other = constant(other, self)
