@@ -2318,11 +2318,6 @@ PYTHON = [
         "join neighbouring parts",
     ),
     (
-        lambda: tn.stability(Driveline([*long_line(500).elements, Shaft(stiffness=1e5, to="Disk 490")]), 2.0),
-        "driveline: has 500 unknowns: stability of springs in loops would take about",
-        "join neighbouring parts",
-    ),
-    (
         lambda: tn.order_response(Driveline([*long_line(500).elements[2:]]), np.linspace(60.0, 90.0, 50)),
         "driveline: has 500 unknowns: its own periodic motion in 6 harmonics at 50 points would take about",
         "ask for fewer points, or join neighbouring parts",

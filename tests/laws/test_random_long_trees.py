@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.long_tree_equations import LongTree, Motion
+from oracles.long_tree_equations import LongTree
 from oracles.long_trees import random_tree
+from oracles.multipliers import matched, multipliers
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
@@ -63,22 +64,3 @@ def test_a_steep_joint_has_its_states_carried_in_time(degrees: float, monkeypatc
     monkeypatch.setattr(tree_modes.HillLine, "followed", None)
     found, (true, error) = tn.stability(line, SPEED), multipliers(LongTree(line).motion(SPEED))
     assert abs(np.abs(true).max() - found.spectral_radius) <= found.error_estimate + error[np.abs(true).argmax()]
-
-
-def multipliers(motion: Motion) -> tuple[Any, Any]:
-    """All of them, and to which the propagator's error lets them be known."""
-    value, right = np.linalg.eig(motion.propagator)
-    condition = np.linalg.norm(right, axis=0) * np.linalg.norm(np.linalg.inv(right), axis=1)
-    rounding = 1e-14 * float(np.linalg.norm(motion.propagator, 2))
-    bound = 2 * condition * (motion.error + rounding)
-    return value, np.where(bound < 1e-3, bound, np.sqrt(bound))
-
-
-def matched(true: Any, error: Any, found: Any, bound: Any) -> None:
-    """Every one is the partner of one, nearest first."""
-    from scipy.optimize import linear_sum_assignment
-
-    assert len(true) == len(found)
-    apart = np.abs(true[:, None] - found) / (error[:, None] + bound)
-    rows, columns = linear_sum_assignment(np.minimum(apart, 1e6))
-    assert apart[rows, columns].max() <= 1

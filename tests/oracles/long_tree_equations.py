@@ -1,10 +1,13 @@
-"""Equations of driven long trees written here alone, and their motion over a period by an explicit method.
+"""Equations of driven long trees and rings, written here alone, and their motion over a period by an explicit method.
 
 Disk i turns by a_i + δ_i, where a_i is its angle while shafts are rigid. Spring e leads from disk n (or the drive) to
 disk f: its near end stands at n_e(a_n), behind a Hooke's joint tan ψ = tan χ/cos β with χ = a_n − plane and a quarter
 turn more, over the ratio of the gears; a_f = n_e(a_n). With r = dn_e/da_n along that rotation,
 
     J_i (ä_i + δ̈_i) = Σ_near r f − Σ_far f + torques,    f = k w (δ_f − r δ_n) + c d/dt(δ_f − r δ_n).
+
+A shaft that closes a ring stands without a joint, so that what the base motion twists it by is a torque on its disks
+alone: it changes no multiplier, and is left out of the forced motion.
 
 All columns of the propagator, and the motions that joints and torques force, are carried by Dormand and Prince's pair
 of order 8 in steps of equal length, once more in half as many for its error.
@@ -51,6 +54,7 @@ class Spring:
     teeth: Fraction = Fraction(0)
     share: float = 0.0
     phase: float = 0.0
+    closes: bool = False
 
 
 @dataclass(frozen=True)
@@ -66,7 +70,8 @@ class Motion:
 
 
 class LongTree:
-    """A driven line of disks, shafts, meshes, ratios and Hooke's joints, each joint behind a disk."""
+    """A driven line of disks, shafts, meshes, ratios and Hooke's joints, each joint behind a disk; then shafts that
+    close rings."""
 
     def __init__(self, line: tn.Driveline) -> None:
         self.springs: list[Spring] = []
@@ -84,6 +89,8 @@ class LongTree:
                 end = (end[0], Fraction(1), element.angle, element.plane)
             elif kind == "Ratio":
                 end = (end[0], end[1] / Fraction(element.speed_ratio), *end[2:])
+            elif kind == "Shaft" and element.to is not None:
+                self.springs.append(self._closing(element, end, ends[line.index(element.to)]))
             elif kind in ("Shaft", "GearPair"):
                 begun = self._spring(element, end)
             elif kind == "Disk":
@@ -103,6 +110,10 @@ class LongTree:
         teeth = abs(self._mean(near) * over) * element.teeth_out * Fraction(wave.order)
         k, c = element.mesh_stiffness * radius**2, element.mesh_damping * radius**2
         return Spring(near, far, over, angle, plane, k, c, teeth, wave.share, wave.phase)
+
+    def _closing(self, element: Any, end: tuple[Any, ...], far: tuple[Any, ...]) -> Spring:
+        assert end[1:] == far[1:] == (1, 0.0, 0.0), "a ring is closed from disk to disk"
+        return Spring(end[0], far[0], end[1], 0.0, 0.0, element.stiffness, element.damping or 0.0, closes=True)
 
     def _mean(self, disk: int) -> Fraction:
         return self.mean[disk] if disk >= 0 else Fraction(1)
@@ -185,11 +196,13 @@ class LongTree:
     def _rigid(self, tau: Array) -> tuple[Array, Array, Array]:
         """r and dr/dτ (spring, time) of all springs and ä_i/Ω² (disk, time), at input angles (time,)."""
         angle, w, w1 = (np.empty((len(self.inertia), len(tau))) for _ in range(3))
-        r, slope = np.empty_like(angle), np.zeros_like(angle)
+        r, slope = np.zeros((2, len(self.springs), len(tau)))
         for e, s in enumerate(self.springs):
             a, v, v1 = (angle[s.near], w[s.near], w1[s.near]) if s.near >= 0 else (tau, 1 + 0 * tau, 0 * tau)
             over = float(s.over)
             r[e] = over
+            if s.closes:
+                continue
             if s.angle:
                 chi, c, s2 = a - s.plane, np.cos(s.angle), np.sin(s.angle) ** 2
                 below = 1 - s2 * np.cos(chi) ** 2

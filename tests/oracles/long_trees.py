@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,17 @@ def random_tree(seed: int, least: int = 20, most: int = 120, *, driven: bool = F
             elements.append(tn.HookeJoint(angle=float(rng.uniform(0.1, STEEPEST)), plane=float(rng.uniform(-3, 3))))
         if i in gears and i + 1 < count and i + 1 not in branches:
             elements.append(tn.Ratio(ratio=[2.0, -1.0, 0.5, -2.0][int(rng.integers(4))]))
+    return tn.Driveline(elements)
+
+
+def with_rings(line: tn.Driveline, mean: Sequence[Any], seed: int, least: int = 5) -> tn.Driveline:
+    """A driven ``line`` with one to three shafts more, between disks of the same ``mean`` speed (disk,) at least so
+    many apart."""
+    rng, elements = np.random.default_rng(seed), list(line.elements)
+    pairs = [(i, j) for j in range(len(mean)) for i in range(j - least) if mean[i] == mean[j]]
+    for i, j in rng.permutation(pairs)[: int(rng.integers(1, 4))].tolist():
+        k = 2e5 * 10 ** float(rng.uniform(-1, 0.5))
+        elements.append(tn.Shaft(stiffness=k, damping=1e-4 * k, after=f"disk {i}", to=f"disk {j}"))
     return tn.Driveline(elements)
 
 

@@ -23,7 +23,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Places
+from trunnion.equations.graph_entries import Products, WholeProducts
 from trunnion.equations.kinematics import BaseMotion, base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import LinkKind, Topology
@@ -60,10 +61,13 @@ def ends_of(topo: Topology) -> tuple[list[int], list[int]]:
     return far, [c.near for c in topo.compliances]
 
 
-def turning_of(topo: Topology, coefficients: LineCoefficients, tau: Array) -> GraphKinematics:
-    """At input angles ``tau`` (time,) [rad]."""
+def turning_of(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, columns: Places | None = None
+) -> GraphKinematics:
+    """At input angles ``tau`` (time,) [rad]; ``columns`` (n,) of the unknowns where they have not one each."""
     motion = base_motion(topo, coefficients, tau)
-    shape = (*motion.angle.shape, topo.size)
+    columns = np.arange(topo.size) if columns is None else columns
+    shape = (*motion.angle.shape, int(columns.max()) + 1)
     r, r1, r2 = (np.zeros(shape) for _ in range(3))
     laws, bend, eta = dict(zip(topo.joints, coefficients.joints, strict=True)), {}, {}
     for s, station in enumerate(topo.stations):
@@ -84,7 +88,7 @@ def turning_of(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Gr
             for part in (r, r1, r2):
                 part[:, :, s] = part[:, :, b] / topo.ratio_values[s]
         elif place >= 0:
-            r[:, :, s, place] = 1.0
+            r[:, :, s, columns[place]] = 1.0
     return GraphKinematics(motion, r, r1, r2, bend, eta)
 
 
@@ -110,8 +114,9 @@ def require_fixed_speeds(topo: Topology, laws: Iterable[JointLaw], names: tuple[
 
 @dataclass(frozen=True)
 class GraphMatrices:
-    """M, C, K (case, time, n, n) and the forcing (case, time, n) in physical time, the ``turning`` behind them, and how
-    the base motion twists compliances that close loops, about its mean (case, time, compliance)."""
+    """M, C, K (case, time, n, n), or their entries (case, time, entry), and the forcing (case, time, column) in
+    physical time, the ``turning`` behind them, and how the base motion twists compliances that close loops, about its
+    mean (case, time, compliance)."""
 
     mass: Array
     damping: Array
@@ -121,13 +126,19 @@ class GraphMatrices:
     base_twist: Array
 
 
-def graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array, wave: Array) -> GraphMatrices:
-    """The equations at input angles ``tau`` (time,) [rad]; ``wave`` (case, time, compliance) as of ``LineMatrices``."""
-    co, turning = coefficients, turning_of(topo, coefficients, tau)
+def graph_matrices(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, wave: Array, products: Products | None = None
+) -> GraphMatrices:
+    """The equations at input angles ``tau`` (time,) [rad]; ``wave`` (case, time, compliance) as of ``LineMatrices``.
+
+    ``products`` : as what matrices are kept, whole by default.
+    """
+    products = products or WholeProducts(topo.size)
+    co, turning = coefficients, turning_of(topo, coefficients, tau, products.columns)
     motion, speed = turning.motion, coefficients.speed[:, None, None]
     r, rate, rate2 = turning.value, turning.slope * speed[..., None], turning.curvature * speed[..., None] ** 2
-    inertia = co.inertia[:, None]
     v = motion.speed * speed
+    inertia = np.broadcast_to(co.inertia[:, None], v.shape)
     growth = co.viscous[:, None] + 2 * co.quadratic[:, None] * np.abs(v)
     sense = np.sign(topo.mean_speeds)
     load = co.load[:, None] * sense + (co.viscous[:, None] + co.quadratic[:, None] * np.abs(v)) * v
@@ -136,29 +147,25 @@ def graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array, w
     k, c = co.stiffness[:, None] * wave, np.broadcast_to(co.damping[:, None], wave.shape)
     twist, slip = _of_loops(topo, co, motion, tau)
     torque = co.torque[:, None] * wave + k * twist + c * slip
-    mass, damping = _both(r, inertia, r), _both(r, growth, r) + 2 * _both(r, inertia, rate) + _both(e, c, e)
-    stiffness = _both(r, inertia, rate2) + _both(r, growth, rate) + _both(e, k, e) + _both(e, c, e1)
+    bend = _of_bends(topo, turning, inertial + load - co.not_carried[:, None] * sense, torque)
+    at, between = products.of_stations, products.of_springs
+    mass = at(r, inertia, r)
+    damping = at(r, growth, r) + 2 * at(r, inertia, rate) + between(e, c, e)
+    stiffness = at(r, inertia, rate2) + at(r, growth, rate) + at(r, bend, r) + between(e, k, e) + between(e, c, e1)
     for one in co.across:
-        on, slope = r[:, :, one.on, :, None], one.slope[:, None, None, None]
-        damping = damping + slope * on * r[:, :, one.by, None, :]
-        stiffness = stiffness + slope * on * rate[:, :, one.by, None, :]
-    acting = inertial + load - co.not_carried[:, None] * sense
-    stiffness += _of_bends(topo, turning, acting, torque)
+        on, by = one.slope[:, None, None] * r[:, :, one.on], one.by
+        damping = damping + products.of_pair(one.on, on, by, r[:, :, by])
+        stiffness = stiffness + products.of_pair(one.on, on, by, rate[:, :, by])
     forcing = -np.einsum("cts,ctsi->cti", inertial + load, r) - np.einsum("cte,ctei->cti", torque, e)
     return GraphMatrices(mass, damping, stiffness, forcing, turning, twist)
 
 
-def _both(left: Array, weight: Array, right: Array) -> Array:
-    """Σ_s weight_s left_sᵀ right_s (case, time, n, n)."""
-    return np.asarray((left * weight[..., None]).swapaxes(-1, -2) @ right)
-
-
 def _of_bends(topo: Topology, turning: GraphKinematics, acting: Array, torque: Array) -> Array:
-    """Σ_s F_s H_s: torques on all stations are carried back through ties and joints, each of which bends its own."""
-    n = topo.size
-    found = np.zeros((*acting.shape[:2], n, n))
+    """w of Σ_s F_s H_s = Σ_b w_b R_bᵀR_b (case, time, station): torques on all stations are carried back through ties
+    and joints, each of which bends the rotation in front of it."""
+    weight = np.zeros_like(acting)
     if not turning.bend:
-        return found
+        return weight
     held = acting.copy()
     for e, (far, near) in enumerate(zip(*ends_of(topo), strict=True)):
         held[..., far] += torque[..., e]
@@ -171,10 +178,9 @@ def _of_bends(topo: Topology, turning: GraphKinematics, acting: Array, torque: A
         elif station.link is LinkKind.RATIO:
             held[..., b] += held[..., s] / topo.ratio_values[s]
         elif station.link is LinkKind.JOINT:
-            before = turning.value[:, :, b]
-            found += (held[..., s] * turning.bend[s])[..., None, None] * before[..., :, None] * before[..., None, :]
+            weight[..., b] += held[..., s] * turning.bend[s]
             held[..., b] += turning.eta[s] * held[..., s]
-    return found
+    return weight
 
 
 def _of_loops(topo: Topology, co: LineCoefficients, motion: BaseMotion, tau: Array) -> tuple[Array, Array]:

@@ -216,11 +216,16 @@ def _put_springs(
     forcing[..., near] += torque
 
 
+def varies(coefficients: LineCoefficients) -> bool:
+    """Whether a joint is bent or a mesh varies."""
+    return any(law.nonuniform for law in coefficients.joints) or bool(coefficients.waves)
+
+
 def _graph_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
     """The same of a line whose shafts are tied to several others or close loops: M couples what they share."""
     cases, times = len(coefficients.speed), len(tau)
     wave, ratio = stiffness_waves(topo, coefficients, tau), np.ones((cases, times, len(topo.compliances)))
-    if any(law.nonuniform for law in coefficients.joints) or coefficients.waves:
+    if varies(coefficients):
         found = graph_matrices(topo, coefficients, tau, wave)
         elongations = found.turning.elongations(topo, found.turning.value)
         return LineMatrices(

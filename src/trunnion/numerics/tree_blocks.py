@@ -1,7 +1,8 @@
 """Systems of a tree whose places hold some harmonics each, of which a few entries join different ones.
 
-Where nothing joins them each harmonic is a tree of scalars, which ``condensation`` takes out. What is left is a tree of
-few places whose entries are matrices, of all harmonics by all; it is eliminated from its leaves.
+Where nothing joins them each harmonic is a tree of scalars, which ``condensation`` takes out. What is left are few
+places whose entries are matrices, of all harmonics by all. They are a tree, which is eliminated from its leaves, unless
+entries join places of different branches: then taking one out joins those that it was joined to.
 """
 
 from __future__ import annotations
@@ -50,14 +51,14 @@ class TreeBlock:
 
 
 @dataclass(frozen=True)
-class _Leaf:
-    """One place of what is left, taken out: the inverse of its matrix, and that times the couplings with the place
-    ``front`` from the right and from the left; −1 without."""
+class _TakenOut:
+    """One place of what is left, taken out: the inverse of its matrix, and that times the couplings with each of the
+    ``fronts`` from the right and from the left."""
 
-    front: int
+    fronts: tuple[int, ...]
     inverse: Complex
-    behind: Complex
-    ahead: Complex
+    behind: tuple[Complex, ...]
+    ahead: tuple[Complex, ...]
 
 
 class TreeMatrix:
@@ -89,19 +90,23 @@ class TreeMatrix:
         return Condensed(self.plan, self.own.copy(), self.coupling.copy())
 
     @cached_property
-    def _leaves(self) -> list[_Leaf]:
+    def _taken_out(self) -> list[_TakenOut]:
         """What is left, by its number there, taken out from the last place on."""
         own, couplings = self._left()
-        fronts = {b: a for a, b in couplings if a < b}
-        found = list[_Leaf]()
+        found = list[_TakenOut]()
         with np.errstate(all="ignore"):
             for k in reversed(range(len(own))):
-                inverse, front = _inverse(own[k]), fronts.get(k, -1)
-                behind = ahead = inverse[:, :0]
-                if front >= 0:
-                    behind, ahead = inverse @ couplings[k, front], couplings[front, k] @ inverse
-                    own[front] -= couplings[front, k] @ behind
-                found.append(_Leaf(front, inverse, behind, ahead))
+                inverse, fronts = _inverse(own[k]), tuple(sorted(a for a, b in couplings if b == k and a < k))
+                behind = tuple(inverse @ couplings[k, a] for a in fronts)
+                ahead = tuple(couplings[a, k] @ inverse for a in fronts)
+                for a in fronts:
+                    for b, part in zip(fronts, behind, strict=True):
+                        less = couplings[a, k] @ part
+                        if a == b:
+                            own[a] -= less
+                        else:
+                            couplings[a, b] = couplings[a, b] - less if (a, b) in couplings else -less
+                found.append(_TakenOut(fronts, inverse, behind, ahead))
         return found[::-1]
 
     def _left(self) -> tuple[list[Complex], dict[tuple[int, int], Complex]]:
@@ -118,8 +123,11 @@ class TreeMatrix:
         couplings = {}
         for a, b, values in condensed.couplings():
             couplings[a, b], couplings[b, a] = diagonal(values), diagonal(values)
+        nothing = np.zeros((cases, count), dtype=complex)
         for block in self.blocks:
             a, b = number[block.row], number[block.column]
+            if a != b and (a, b) not in couplings:
+                couplings[a, b], couplings[b, a] = diagonal(nothing), diagonal(nothing)
             (own[a] if a == b else couplings[a, b])[:, block.far, block.near] += block.values
         return own, couplings
 
@@ -134,13 +142,13 @@ class TreeMatrix:
         """Solutions (m, case, h) of what is left, in place."""
         with np.errstate(all="ignore"):
             for k in reversed(range(len(x))):
-                leaf = self._leaves[k]
-                if leaf.front >= 0:
-                    x[leaf.front] -= _applied(leaf.behind if transposed else leaf.ahead, x[k], transposed)
-            for k, leaf in enumerate(self._leaves):
-                x[k] = _applied(leaf.inverse, x[k], transposed)
-                if leaf.front >= 0:
-                    x[k] -= _applied(leaf.ahead if transposed else leaf.behind, x[leaf.front], transposed)
+                one = self._taken_out[k]
+                for a, part in zip(one.fronts, one.behind if transposed else one.ahead, strict=True):
+                    x[a] -= _applied(part, x[k], transposed)
+            for k, one in enumerate(self._taken_out):
+                x[k] = _applied(one.inverse, x[k], transposed)
+                for a, part in zip(one.fronts, one.ahead if transposed else one.behind, strict=True):
+                    x[k] -= _applied(part, x[a], transposed)
         return x
 
     def whole(self) -> SparseMatrices:

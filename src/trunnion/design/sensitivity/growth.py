@@ -99,7 +99,7 @@ class _CriticalMode:
 def _by_modes(near: Neighbourhood, row: Array) -> _CriticalMode | None:
     """Of a long line, from Hill's blocks along its tree; None where these do not tell all modes."""
     topo = near.assembly.topology
-    if topo.size < LONG or topo.graph:
+    if topo.size < LONG:
         return None
     co, turns = near.assembly.coefficients(row), require_period(near.assembly.line, topo)
     require_steady_base(near.assembly, row)

@@ -29,11 +29,6 @@ def in_time(size: int, steps: int) -> float:
     return 0.02 + steps * (1.4e-3 + 5.5e-7 * size**2) + 1.4e-8 * size**3
 
 
-def in_whole(size: int, phase: float) -> float:
-    """Whole matrices over a period in which the fastest mode turns by ``phase`` radians, as springs in loops need."""
-    return 6e-6 * size**2 * phase * (1 + size / 300)
-
-
 def by_shooting(size: int, phase: float) -> float:
     """The periodic motion of a free–free line by shooting, and its multipliers."""
     return 3.5e-6 * size**2 * phase

@@ -13,14 +13,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import TypeVar, cast
+from typing import TypeVar
 
 import numpy as np
+from scipy import linalg
 
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
-from trunnion.equations.tree_matrices import TreeEntries, TreeMatrices, tree_matrices
+from trunnion.equations.tree_matrices import EntryBeside, TreeMatrices, tree_matrices
 from trunnion.floquet.propagation.tree_propagation import SHORTER, TreePropagation, rounding
 from trunnion.steady.orders.sidebands import side_orders, spreads
 from trunnion.steady.orders.tree_hill import TreeHill
@@ -82,17 +83,28 @@ class HillLine:
         matrices = tree_matrices(topo, co, period * np.arange(times) / times)
         self.n, self.speed = topo.size, float(co.speed[0])
         self.rate, self.time = self.speed / float(turns), period / self.speed
-        mass, damping = matrices.mass.own[:, 0], matrices.damping.own[:, 0]
-        self.root = np.sqrt(mass.mean(axis=1))
-        self.trace = float((damping / mass).mean(axis=1).sum()) * self.time
+        self._mean = [_mean(matrices, k) for k in range(3)]
+        self.root = np.sqrt(np.diagonal(self._mean[2]))
+        self.trace = _decay(matrices) * self.time
         self.blocks = TreeHill(topo, matrices, np.zeros((1, len(topo.compliances))), np.array([self.rate]))
-        self._mean = [_mean(part, matrices) for part in (matrices.stiffness, matrices.damping)]
 
     @cached_property
     def _modes(self) -> tuple[Array, Array]:
         """Squared frequencies (n,) and shapes (n, n) of the mean line without damping, in units of √mass."""
-        square, basis = np.linalg.eigh(self._mean[0] / (self.root[:, None] * self.root))
+        over = self.root[:, None] * self.root
+        square, basis = linalg.eigh(self._mean[0] / over, None if self._diagonal else self._mean[2] / over)
         return square, basis
+
+    @cached_property
+    def _diagonal(self) -> bool:
+        """Whether no mass is joined to another."""
+        return np.count_nonzero(self._mean[2]) == self.n
+
+    @cached_property
+    def _to_modes(self) -> Array:
+        """The inverse of the shapes (n, n)."""
+        basis = self._modes[1]
+        return np.asarray(basis.T if self._diagonal else basis.T @ (self._mean[2] / (self.root[:, None] * self.root)))
 
     @cached_property
     def _frequency(self) -> Array:
@@ -106,6 +118,11 @@ class HillLine:
     def mean_stiffness(self) -> Array:
         """The symmetric part of K's mean over the period (n, n)."""
         return self._mean[0]
+
+    @property
+    def mean_mass(self) -> Array:
+        """The mean of M over the period (n, n)."""
+        return self._mean[2]
 
     @property
     def places_left(self) -> int:
@@ -181,15 +198,15 @@ class HillLine:
 
     def energies(self, rotation: States, rate: States) -> States:
         """States (2n, m) in units of energy, of rotations and their rates [1/s] (n, m)."""
-        turned = self._modes[1].T @ (np.concatenate([rotation, rate], axis=1) * self.root[:, None])
+        turned = self._to_modes @ (np.concatenate([rotation, rate], axis=1) * self.root[:, None])
         count = rotation.shape[1]
-        return cast(States, np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]]))
+        return np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]])
 
     def states(self, energies: States) -> tuple[States, States]:
         """Rotations and rates [1/s] (n, m) of ``energies`` (2n, m)."""
         basis = self._modes[1] / self.root[:, None]
         rotation, rate = basis @ (energies[: self.n] / self._frequency[:, None]), basis @ energies[self.n :]
-        return cast(States, rotation), cast(States, rate)
+        return rotation, rate
 
     def exponents(self, multiplier: Complex, energies: Complex) -> Complex:
         """Of ``multiplier`` (m,), among all that differ by multiples of i times the rate those at which the states turn
@@ -216,12 +233,47 @@ def _harmonics(fall: dict[int, float], decades: float) -> Integers:
     return np.array(sorted(side_orders(fall, decades)), dtype=np.int64)
 
 
-def _mean(entries: TreeEntries, matrices: TreeMatrices) -> Array:
-    """The symmetric part of a matrix's mean over the period (n, n)."""
+def _mean(matrices: TreeMatrices, kind: int) -> Array:
+    """The symmetric part of the mean of K, C or M over the period (n, n)."""
+    entries = matrices.three[kind]
     own, down, up = (part[:, 0].mean(axis=1) for part in (entries.own, entries.down, entries.up))
     found, tied = np.diag(own), np.flatnonzero(matrices.parent >= 0)
     front = matrices.parent[tied]
     found[tied, front] = found[front, tied] = (down[tied] + up[tied]) / 2
+    for one in matrices.beside:
+        half = float(one.parts[kind][0].mean()) / 2
+        found[one.row, one.column] += half
+        found[one.column, one.row] += half
+    return found
+
+
+def _decay(matrices: TreeMatrices) -> float:
+    """The mean of tr(M⁻¹C) [1/s]."""
+    mass, damping = matrices.mass.own[:, 0], matrices.damping.own[:, 0]
+    tied = np.flatnonzero(matrices.parent >= 0)
+    tied = tied[matrices.mass.down[tied, 0].any(axis=1)]
+    pairs = [(i, int(matrices.parent[i])) for i in tied.tolist()]
+    beside = {(one.row, one.column): one for one in matrices.beside}
+    pairs += [(i, j) for (i, j), one in beside.items() if i > j and one.parts[2].any()]
+    joined = sorted({i for pair in pairs for i in pair})
+    alone = np.setdiff1d(np.arange(len(mass)), joined)
+    found = float((damping[alone] / mass[alone]).mean(axis=1).sum())
+    if joined:
+        m, c = (_block(matrices, beside, joined, kind) for kind in (2, 1))
+        found += float(np.trace(np.linalg.solve(m, c), axis1=1, axis2=2).mean())
+    return found
+
+
+def _block(matrices: TreeMatrices, beside: dict[tuple[int, int], EntryBeside], places: list[int], kind: int) -> Array:
+    """K, C or M of some places (time, m, m)."""
+    entries = matrices.three[kind]
+    found = np.zeros((entries.own.shape[2], len(places), len(places)))
+    for a, i in enumerate(places):
+        for b, j in enumerate(places):
+            if i == j or matrices.parent[i] == j or matrices.parent[j] == i:
+                found[:, a, b] = entries[i, j][0]
+            elif (i, j) in beside:
+                found[:, a, b] = beside[i, j].parts[kind][0]
     return found
 
 

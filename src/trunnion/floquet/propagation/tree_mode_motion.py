@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.arrays import Complex
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
-from trunnion.equations.tree_matrices import TreeEntries, tree_matrices
+from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
 from trunnion.floquet.propagation.hill_line import HillLine
 from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.tree_blocks import TreeMatrix
@@ -45,8 +45,8 @@ def mode_motion(topo: Topology, co: LineCoefficients, turns: Fraction, exponent:
     wave = np.exp(np.outer(tau, mu))  # (time, h)
     x, rate = wave @ right.T, wave @ (mu * right).T
     z, z_rate = (1 / wave) @ left.T, -(1 / wave) @ (mu * left).T
-    mass = matrices.mass.own[:, 0].T
-    adjoint = np.concatenate([_transposed_times(matrices.damping, z) / speed - mass * z_rate, mass * z], axis=1)
+    felt = _transposed_times(matrices, 1, z) / speed - _transposed_times(matrices, 2, z_rate)
+    adjoint = np.concatenate([felt, _transposed_times(matrices, 2, z)], axis=1)
     states = np.concatenate([x, rate], axis=1)
     product = (adjoint * states).sum(axis=1)
     size = np.abs(adjoint * states).sum(axis=1)
@@ -57,7 +57,7 @@ def mode_motion(topo: Topology, co: LineCoefficients, turns: Fraction, exponent:
         adjoint / product[0],
         complex(exponent) / speed,
         2 * np.pi * float(turns),
-        np.diag(mass.mean(axis=0)),
+        line.mean_mass,
         line.mean_stiffness / speed**2,
     )
 
@@ -72,11 +72,14 @@ def _null_vector(matrix: TreeMatrix, slope: TreeMatrix, transposed: bool) -> Com
     return np.asarray(x[:, 0])
 
 
-def _transposed_times(entries: TreeEntries, z: Complex) -> Complex:
-    """Aᵀz (time, n) of the one case of ``entries``, z (time, n)."""
+def _transposed_times(matrices: TreeMatrices, kind: int, z: Complex) -> Complex:
+    """Cᵀz or Mᵀz, by the ``kind`` 1 or 2, of the one case, both (time, n)."""
+    entries = matrices.three[kind]
     out: Complex = entries.own[:, 0].T * z
     for i in np.flatnonzero(entries.parent >= 0).tolist():
         p = int(entries.parent[i])
         out[:, p] += entries.down[i, 0] * z[:, i]
         out[:, i] += entries.up[i, 0] * z[:, p]
+    for one in matrices.beside:
+        out[:, one.column] += one.parts[kind][0] * z[:, one.row]
     return out

@@ -4,17 +4,19 @@ With z = h² x″, y = h x′ and h the step, the coefficients of the series of 
 
     M₀ Z_m = −Σ_j (h C_j Y_{m−j} + h² K_j X_{m−j}) − Σ_{j>0} M_j Z_{m−j},    (m + 1)(X, Y)_{m+1} = (Y, Z)_m.
 
-Entries that joints and meshes do not touch have j = 0 alone and are one sparse product; those that vary are few.
+Entries that joints and meshes do not touch have j = 0 alone and are one sparse product; those that vary are few. Masses
+are diagonal but at the legs of differentials.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import factorial
 
 import numpy as np
 from scipy import sparse
 
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Places
 from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
@@ -47,10 +49,42 @@ class TreePropagation:
             return sparse.csr_array((values, (rows, columns)), shape=(n, n))
 
         self.stiffness, self.damping = (whole(hill.own[k], hill.coupling[k]) for k in (0, 1))
-        self.mass = hill.own[2][:, 0]
+        self.mass = whole(hill.own[2], hill.coupling[2])
         self.rows, self._row = np.unique([e.row for e in hill.varying], return_inverse=True)
         self.columns, self._column = np.unique([e.column for e in hill.varying], return_inverse=True)
         self.rows, self.columns = self.rows.astype(np.intp), self.columns.astype(np.intp)
+        self._joined = self._joined_by_mass()
+
+    def _joined_by_mass(self) -> Places:
+        """Unknowns whose masses are joined to others (m,)."""
+        joined = np.zeros(self.n, dtype=bool)
+        beside = sparse.coo_array(self.mass)
+        off = (beside.coords[0] != beside.coords[1]) & (beside.data != 0)
+        joined[beside.coords[0][off]] = True
+        for entry in self.hill.varying:
+            if entry.row != entry.column and entry.parts[2].any():
+                joined[[entry.row, entry.column]] = True
+        return np.flatnonzero(joined)
+
+    def _over_mass(self, varying: Array) -> Callable[[Array], Array]:
+        """What divides torques (n, state) by the masses, ``varying`` (row, column) among them."""
+        place = self._joined
+        own, block = self.mass.diagonal(), self.mass[place][:, place].toarray() if len(place) else np.zeros((0, 0))
+        for row, i in enumerate(self.rows.tolist()):
+            for column, j in enumerate(self.columns.tolist()):
+                if i == j:
+                    own[i] += varying[row, column]
+                if i in place and j in place:
+                    block[np.searchsorted(place, i), np.searchsorted(place, j)] += varying[row, column]
+        over, inverse = 1 / own[:, None], np.linalg.inv(block)
+
+        def divided(torque: Array) -> Array:
+            found = torque * over
+            if len(place):
+                found[place] = inverse @ torque[place]
+            return found
+
+        return divided
 
     def _series(self, begin: Array, h: float) -> Array:
         """Coefficients of the varying entries of h²K, hC and M (step, row, ORDER, 3, column) from times ``begin``."""
@@ -88,13 +122,9 @@ class TreePropagation:
             keep_time()
             every = self._series(np.asarray(h * np.arange(begin, min(begin + batch, steps))), h)
             for one in every:
-                mass = self.mass.copy()
-                for row, place in enumerate(self.rows):
-                    for column in np.flatnonzero(self.columns == place):
-                        mass[place] += one[row, 0, 2, column]
+                divided = self._over_mass(one[:, 0, 2])
                 one[:, 0, 2] = 0.0  # M₀ stands on the left
                 turned = one[:, ::-1].reshape(r, ORDER * 3 * c)
-                over = 1 / mass[:, None]
                 series[0, 0], series[0, 1] = x, y
                 for m in range(ORDER):
                     right = constant @ series[m].reshape(2 * n, states)
@@ -103,7 +133,7 @@ class TreePropagation:
                         past[m, 2] = 0.0
                         short = turned[:, (ORDER - 1 - m) * 3 * c :]
                         right[self.rows] += short @ past[: m + 1].reshape(-1, states)
-                    z = -right * over
+                    z = -divided(right)
                     if r:
                         past[m, 2] = z[self.columns]
                     series[m + 1, 0] = series[m, 1] / (m + 1)

@@ -111,7 +111,10 @@ def colliding_exponents(
 
 
 def _along_tree(assembly: Assembly) -> bool:
-    return assembly.topology.size >= LONG and not assembly.topology.graph
+    if assembly.topology.size < LONG:
+        return False
+    # Loss factors round loops are put into whole matrices only.
+    return not (assembly.topology.graph and assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())
 
 
 def _batches(cases: Places, sides: ExponentOrders, assembly: Assembly) -> Iterator[Places]:

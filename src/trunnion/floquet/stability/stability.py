@@ -31,7 +31,7 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.propagation.cost_model import by_shooting, in_whole, require_time
+from trunnion.floquet.propagation.cost_model import by_shooting, require_time
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
@@ -267,7 +267,7 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
     turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     aside = rigid_motions(assembly.topology, coefficients)
-    if assembly.topology.size >= LONG and not assembly.topology.graph:
+    if assembly.topology.size >= LONG:
         modes = floquet_modes(assembly.topology, coefficients, turns)
         if modes is not None and (found := _of_modes(system, modes, aside, forced, tolerance)) is not None:
             if found.verdict not in (Verdict.UNSTABLE, Verdict.UNDECIDED):
@@ -276,8 +276,6 @@ def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, stat
             motion = mode_motion(assembly.topology, coefficients, turns, complex(modes.exponent[0]))
             named = _named(motion, found.verdict, system.rate, frequency, sources(assembly), turns)
             return replace(found, resonance=named)
-    if assembly.topology.graph:
-        require_time(assembly, system.rate, in_whole, "stability of springs in loops")
     run = propagated(system, tolerance)
     return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
 

@@ -105,11 +105,11 @@ def stability_along(
         return _about_steady_states(assembly, speed, motions)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
+    if assembly.topology.size >= LONG:
+        return _by_modes(assembly, table, statically_twisted)
     if assembly.topology.size <= LARGEST_DENSE or assembly.topology.graph:
         return _by_exponentials(assembly, table, statically_twisted)
-    if assembly.topology.size < LONG:
-        return _by_kernel(assembly, co)
-    return _by_modes(assembly, table, statically_twisted)
+    return _by_kernel(assembly, co)
 
 
 def straight_decay(assembly: Assembly, speed: float, row: Array | None = None) -> float:
@@ -160,7 +160,7 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
 
 
 def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityOverSpeed:
-    """Speed by speed; where that leaves more than the tolerance, by the kernel."""
+    """Speed by speed; where that leaves more than the tolerance, from a whole period."""
     topo, period = assembly.topology, period_of(assembly)
     turns = require_period(assembly.line, topo)
     parts = []
@@ -169,7 +169,7 @@ def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityOverS
         co = assembly.coefficients(row[None], statically_twisted=twisted)
         modes = floquet_modes(topo, co, turns)
         if modes is None or modes.off > TOLERANCE:
-            parts.append(_by_kernel(assembly, co))
+            parts.append(_by_exponentials(assembly, row[None], twisted) if topo.graph else _by_kernel(assembly, co))
             continue
         radius, error = (part[None] for part in spectral_radius(modes.multiplier, modes.error))
         undamped = np.array([abs(modes.trace) < UNDAMPED * topo.size])

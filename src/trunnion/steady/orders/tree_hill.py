@@ -7,7 +7,7 @@ the rotations beside its joints, some harmonics of each. The cost grows with its
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +41,7 @@ class Varying:
 class TreeHill:
     """Fourier coefficients of a batch of long lines over one period; solves any carrier and any span of harmonics.
 
-    As ``hill.HillBlocks``, with the entries of a tree in place of n × n matrices.
+    As ``hill.HillBlocks``, with the entries of a tree, and those beside it, in place of n × n matrices.
     """
 
     def __init__(
@@ -51,10 +51,12 @@ class TreeHill:
         self.topo, self.loss, self.step, self.linearised = topo, loss, step, linearised
         self.parent, self.times = matrices.parent, matrices.wave.shape[1]
         self.varying: list[Varying] = []
-        three = matrices.stiffness, matrices.damping, matrices.mass
+        three = matrices.three
         self.own, moves = _constant(*(part.own for part in three))
         self.coupling, sways = _constant(*(part.down for part in three))
-        sways &= self.parent >= 0
+        differ = np.any([np.abs(part.down - part.up).max(axis=2) > CONSTANT * np.abs(part.down).max(axis=2)
+                         for part in three], axis=(0, 2))  # fmt: skip
+        sways = (sways | differ) & (self.parent >= 0)
         # Of a diagonal entry the mean stays among what does not vary, which then tells its size.
         for mean, part in zip(self.own, three, strict=True):
             mean[moves] = part.own[moves].mean(axis=2)
@@ -68,13 +70,16 @@ class TreeHill:
             kept[[i, p]] = True
             self._vary(i, p, [part.down[i] for part in three])
             self._vary(p, i, [part.up[i] for part in three])
+        for one in matrices.beside:
+            kept[[one.row, one.column]] = True
+            self._vary(one.row, one.column, one.parts)
         self.ratio = [self._ratio(matrices.ratio[..., e]) for e in range(matrices.ratio.shape[2])]
         for e, (far, near) in enumerate(topo.ends):
             if loss[:, e].any() and near >= 0 and self.ratio[e].shape[1] > 1:
                 kept[[max(far, near), near]] = True
         self.plan = Plan.of(self.parent, kept)
 
-    def _vary(self, row: int, column: int, parts: list[Array]) -> None:
+    def _vary(self, row: int, column: int, parts: Sequence[Array]) -> None:
         series = [np.fft.fft(part, axis=1) / self.times for part in parts]
         size = [np.abs(part).max(axis=0) for part in series]
         apart = np.fft.fftfreq(self.times, 1 / self.times).round().astype(np.int64)
