@@ -87,23 +87,90 @@ def test_behind_a_reduction_the_last_shaft_counts():
     assert "different speeds" in found.check("equal joint angles").because
 
 
-def test_beside_a_loop_nothing_is_called_prescribed():
-    """5° at 3000 rpm are too uneven and shake too much, which a turn around a loop does not show: not judged."""
+LOOP = [
+    tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.2, name="hub"),
+    tn.HookeJoint(angle="8 deg"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.1, name="A"),
+    tn.HookeJoint(angle="5 deg", after="hub"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.1, name="B"),
+    tn.Shaft(stiffness=1e4, damping=1.0, name="tie", to="A"),
+]  # fmt: skip
+AT_3000 = tn.Operation(application="road", speed=tn.rpm(3000))
+
+
+def test_around_a_loop_each_way_is_judged_up_to_the_tie():
+    """What closes the loop winds up by how much both ways differ; each is as uneven as its own joint."""
+    found = tn.assess(tn.Driveline(LOOP, operation=AT_3000))
+    for end, angle in (("A", 8), ("B", 5)):
+        even = found.check(f"uniformity of {end}")
+        assert even.value == pytest.approx(uneven(angle), rel=1e-6) and even.exceeded
+        assert "up to tie" in even.because
+        shakes = found.check(f"acceleration behind the joints on the way to {end}")
+        assert shakes.value == pytest.approx(steepest(angle, tn.rpm(3000)), rel=1e-6) and shakes.exceeded
+    assert str(found.verdict) == "exceeded"
+
+
+def test_the_tie_of_a_loop_winds_up_by_the_difference_of_both_ways():
+    """Slowly, with shafts far stiffer than the tie, its torque is its stiffness times how far the ways differ."""
+    stiff = [one.but(stiffness=1e9) if isinstance(one, tn.Shaft) and one.name != "tie" else one for one in LOOP]
+    line = tn.Driveline(stiff)
+    chi = np.linspace(0, np.pi, 20_001)
+    apart = [np.arctan2(np.sin(chi), np.cos(chi) * np.cos(angle * DEGREE)) for angle in (8, 5)]
+    swing = 1e4 * np.ptp(apart[0] - apart[1]) / 2
+    index = tn.order_response(line, [1.0]).springs.index("tie")
+    assert tn.order_response(line, [1.0]).vibratory_torque[0, index] == pytest.approx(swing, rel=2e-3)
+
+
+def test_in_front_of_a_differential_joints_are_judged_and_behind_it_not():
+    leg = [tn.Shaft(stiffness=2e4, damping=1.0), tn.Disk(inertia=1.0, load_torque=50.0)]
     line = tn.Driveline(
         [
             tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.2),
-            tn.HookeJoint(angle="5 deg"), tn.Shaft(stiffness=5e4, damping=1.0, name="s"),
-            tn.Disk(inertia=0.1, name="x"), tn.Shaft(stiffness=1e4, damping=1.0, name="a"),
-            tn.Disk(inertia=0.1, name="y"),
-            tn.Shaft(after="x", stiffness=1e4, damping=1.0, to="y"),
+            tn.HookeJoint(angle="6 deg"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.1, name="pinion"),
+            tn.Differential(ratio=4.0, inertia=0.1, name="axle"),
+            tn.Disk(inertia=0.1), tn.HookeJoint(angle="4 deg", name="outer joint"), *leg,
+            tn.Disk(inertia=0.1, after="axle.right"), leg[0], leg[1],
         ],
-        operation=tn.Operation(application="road", speed=tn.rpm(3000)), limits=[tn.Limit(of="Shaft *", max_torque=1e6)],
+        operation=AT_3000,
+    )  # fmt: skip
+    found = tn.assess(line)
+    even = found.check("uniformity")
+    assert even.value == pytest.approx(uneven(6), rel=1e-6) and "up to axle" in even.because
+    shakes = found.check("acceleration behind the joints")
+    assert shakes.value == pytest.approx(steepest(6, tn.rpm(3000)), rel=1e-6)
+    for what in ("uniformity", "acceleration"):
+        behind = found.check(f"{what} behind outer joint")
+        assert str(behind.status) == "not judged" and "behind axle" in behind.because
+
+
+def test_turns_that_are_not_all_looked_at_are_counted():
+    """Ratio 1.0007: two joints are in phase again after thousands of turns, of which 100 are computed."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.2),
+            tn.HookeJoint(angle="3 deg"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.2),
+            tn.Ratio(ratio=1.0007), tn.Disk(inertia=0.2), tn.HookeJoint(angle="3 deg"),
+            tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=0.3),
+        ],
+        operation=AT_3000,
     )  # fmt: skip
     found = tn.assess(line)
     for name in ("uniformity", "acceleration behind the joints"):
-        check = found.check(name)
-        assert str(check.status) == "not judged" and "ties a shaft to two others" in check.because
-    assert str(found.verdict) == "not judged"
+        assert "in the first 100 of the 10007 turns after which it repeats" in found.check(name).because
+
+
+def test_a_spring_is_told_by_its_element_and_not_by_its_name():
+    """The spring "slip tyre" of a tyre, beside a shaft whose name is an end of that."""
+    line = tn.Driveline(
+        [
+            tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0, name="ip tyre"), tn.Disk(inertia=0.2),
+            tn.HookeJoint(angle="3 deg"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=1.0),
+            tn.Tyre(stiffness=3e4, damping=300.0, slip_stiffness=1.2e5, radius=0.35, travel_speed=13.0, inertia=1.0,
+                    name="tyre"),
+            tn.Vehicle(mass=800.0, wheel_radius=0.35),
+        ],
+    )  # fmt: skip
+    turn = tn.kinetostatics(line, 100.0)
+    owner = dict(zip(turn.shafts, turn.shaft_elements, strict=True))
+    assert owner["slip tyre"] == "tyre" and owner["ip tyre"] == "ip tyre"
 
 
 def test_a_mode_that_jumps_over_an_order_is_not_met():

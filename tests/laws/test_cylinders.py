@@ -173,6 +173,8 @@ def test_a_misfire_brings_half_orders_and_the_worst_is_found():
         )
     assert found.vibratory_torque[:, 0] == pytest.approx(by_hand, rel=1e-9)
     assert found.vibratory_torque.min() > found.normal[0]
+    assert "the largest of the 61 speeds asked for" in str(found) and "up to" not in str(found)
+    assert "asked for" not in str(tn.misfire(line, [300.0]))
     name, number = found.worst
     assert name == "engine" and found.line.elements[0].misfiring == number
     assert 0.5 in found.response.order

@@ -20,7 +20,7 @@ from trunnion.arrays import Array, Complex
 ROUNDING = 1e-12
 """Share of ν below which kΩ + ν is rounding."""
 LONGEST_PERIOD = 60
-"""Turns of the input beyond which a line counts as having no common period."""
+"""Turns of the input beyond which a common period is not used."""
 
 
 @dataclass(frozen=True)

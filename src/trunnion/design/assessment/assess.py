@@ -18,7 +18,7 @@ from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.fatigue_life import fatigue_life
 from trunnion.design.assessment.gear_hammer import gear_hammer
 from trunnion.design.assessment.gear_heat import gear_heat
-from trunnion.design.assessment.joint_angles import joint_angles, uniformity
+from trunnion.design.assessment.joint_angles import joint_angles, turn_of, uniformity
 from trunnion.design.assessment.parametric import parametric_stability
 from trunnion.design.assessment.result import Assessment, verdict_of
 from trunnion.design.assessment.separation import separation
@@ -30,10 +30,8 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import assemble
-from trunnion.errors import InputError
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.numerics.threads import on_threads
-from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.results.finding import Finding, by_gravity
 from trunnion.waiting import OutOfTime, keeps_time
 
@@ -156,18 +154,10 @@ def of_response(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Ch
 
 def of_line(subject: AssessmentInput) -> Iterator[Check]:
     """The checks of geometry, which no load case changes."""
-    assembly, turn = subject.cases[0].assembly.at(subject.high), _turn(subject)
+    assembly, turn = subject.cases[0].assembly.at(subject.high), turn_of(subject)
     yield from joint_angles(subject, assembly, turn)
     yield from uniformity(subject, turn)
     yield from bending(subject, assembly)
-
-
-def _turn(subject: AssessmentInput) -> Kinetostatics | InputError:
-    """The rigid line over a turn at the highest speed, or why it is not known."""
-    try:
-        return kinetostatics(subject.line, subject.high)
-    except InputError as error:
-        return error
 
 
 def _findings(cases: tuple[LoadCaseResponse, ...], unit: str) -> tuple[Finding, ...]:

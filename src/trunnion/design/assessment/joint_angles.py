@@ -17,6 +17,7 @@ judged. The two accelerations are usual acceptance values. All are taken at the 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -28,9 +29,11 @@ from trunnion.driveline.quantities import DEGREE, RPM
 from trunnion.driveline.rules import RULES, SPICER
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
-from trunnion.response.kinetostatics import Kinetostatics
+from trunnion.response.kinetostatics import Kinetostatics, kinetostatics
 from trunnion.response.kinetostatics.limits import EVEN_RUNNING
 from trunnion.response.kinetostatics.measures import ROUNDING, largest
+from trunnion.response.kinetostatics.up_to_ties import UpToTies, up_to_ties
+from trunnion.results.counts import few
 
 SMALLEST, EASY, APART = 0.5 * DEGREE, 3.0 * DEGREE, 1.0 * DEGREE
 TABLE_SPEED = np.array([500.0, 1000.0, 1500.0, 2000.0, 2500.0, 3000.0, 3500.0, 4000.0, 4500.0, 5000.0]) * RPM
@@ -50,12 +53,43 @@ TURNS = Rule("acceleration of a shaft between joints ≤ 1000 rad/s²", *ACCELER
 EVEN = Rule("U = (n_max − n_min)/n ≤ 0.0027", "Elbe, Cardan shafts", "typical", "elbe-uniformity")
 
 
+@dataclass(frozen=True)
+class RigidTurn:
+    """The rigid line over its turns at the highest speed, ``part`` of it where differentials or loops let no more turn
+    by the input alone; or why it is not known."""
+
+    turn: Kinetostatics | InputError
+    part: UpToTies
+
+    @property
+    def said(self) -> str:
+        """What a number read off it leaves out, to follow that number."""
+        said = f", up to {few(self.part.ties)}" if self.part.ties else ""
+        turn = self.turn
+        if isinstance(turn, Kinetostatics) and turn.turns % turn.repeats_after:
+            said += f", in the first {turn.turns} of the {turn.repeats_after} turns after which it repeats"
+        return said
+
+    def behind(self, line: Driveline) -> str:
+        """Joints of the line that turn otherwise than by the input alone, in words."""
+        return few([name for name, _ in hooke_joints(line) if name in self.part.behind])
+
+
+def turn_of(subject: AssessmentInput) -> RigidTurn:
+    """The line of ``subject``, turned."""
+    part = up_to_ties(subject.line)
+    try:
+        return RigidTurn(kinetostatics(part.line, subject.high), part)
+    except InputError as error:
+        return RigidTurn(error, part)
+
+
 def allowed_angle(speed: float) -> float:
     """Largest angle [rad] at a joint's own speed [rad/s]; below the table that of its first row."""
     return float(np.interp(speed, TABLE_SPEED, TABLE_ANGLE)) if speed <= TABLE_SPEED[-1] else EASY
 
 
-def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics | InputError) -> Iterator[Check]:
+def joint_angles(subject: AssessmentInput, assembly: Assembly, rigid: RigidTurn) -> Iterator[Check]:
     """The rules for every Hooke's joint, and for the line's accelerations at its highest speed."""
     joints = hooke_joints(subject.line)
     if not joints:
@@ -67,10 +101,11 @@ def joint_angles(subject: AssessmentInput, assembly: Assembly, turn: Kinetostati
     for (name, angle), ratio in zip(joints, ratios, strict=True):
         yield from _one(subject, name, abs(angle), ratio * subject.high)
     yield _equal_angles(subject, joints, ratios)
-    if isinstance(turn, Kinetostatics):
-        yield from _accelerations(subject, assembly, turn)
+    if isinstance(rigid.turn, Kinetostatics):
+        yield from _accelerations(subject, assembly, rigid, rigid.turn)
+        yield from _shared(subject, "acceleration", SHAKES, rigid)
     else:
-        yield _unknown(subject, "acceleration behind the joints", SHAKES, turn)
+        yield _unknown(subject, "acceleration behind the joints", SHAKES, rigid.turn)
 
 
 def _equal_angles(subject: AssessmentInput, joints: Sequence[tuple[str, float]], ratios: Sequence[float]) -> Check:
@@ -112,6 +147,13 @@ def _unknown(subject: AssessmentInput, title: str, rule: Rule, why: InputError) 
     return Check(title, Status.NOT_JUDGED, rule, f"{why.element or 'the line'} {why.problem}")
 
 
+def _shared(subject: AssessmentInput, what: str, rule: Rule, rigid: RigidTurn) -> Iterator[Check]:
+    """Joints behind a differential are turned by both of its legs."""
+    if joints := rigid.behind(subject.line):
+        because = f"not judged: behind {few(rigid.part.ties)} shafts turn by more than the input alone"
+        yield Check(f"{what} behind {joints}", Status.NOT_JUDGED, rule, because)
+
+
 def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Iterator[Check]:
     said = f"{angle / DEGREE:.4g} deg"
     margin = above(angle, SMALLEST)
@@ -129,7 +171,9 @@ def _one(subject: AssessmentInput, name: str, angle: float, speed: float) -> Ite
     yield guideline(title, MOST, (angle, limit, "rad"), numbers, speed=subject.high, element=name)
 
 
-def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetostatics) -> Iterator[Check]:
+def _accelerations(
+    subject: AssessmentInput, assembly: Assembly, rigid: RigidTurn, turn: Kinetostatics
+) -> Iterator[Check]:
     topo, line = assembly.topology, subject.line
     ratios = {topo.stations[j].element: abs(float(topo.speed_ratio[j])) for j in topo.joints}
     for branch in turn.branches:
@@ -139,32 +183,33 @@ def _accelerations(subject: AssessmentInput, assembly: Assembly, turn: Kinetosta
         end = turn.on_branch(branch)
         value = float(end.peak_acceleration) * ratios[bent[-1]] / abs(end.mean_ratio)
         where = f" on the way to {branch}" if len(turn.branches) > 1 else ""
-        yield _acceleration(subject, f"acceleration behind the joints{where}", SHAKES, value, TORSIONAL)
-    between = [(s, name) for s, name in enumerate(turn.shafts) if _between(line, name, set(ratios))]
+        yield _acceleration(subject, f"acceleration behind the joints{where}", SHAKES, value, TORSIONAL, rigid.said)
+    elements = enumerate(zip(turn.shafts, turn.shaft_elements, strict=True))
+    between = [(s, name) for s, (name, element) in elements if _between(line, element, set(ratios))]
     if inner := [(float(largest(turn.acceleration[s])), name) for s, name in between if np.any(turn.acceleration[s])]:
         value, name = max(inner)
-        yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL)
+        yield _acceleration(subject, f"acceleration between the joints, {name}", TURNS, value, INERTIAL, rigid.said)
 
 
 def _between(line: Driveline, shaft: str, joints: set[int]) -> bool:
-    """Whether a shaft has joints in front of it and behind it."""
-    own = max((name for name in line.names if shaft.endswith(name)), key=len)  # "slip tyre" of a tyre
-    place = line.names.index(own)
+    """Whether an element that is a shaft has joints in front of it and behind it."""
+    place = line.names.index(shaft)
     behind = any(place in _path(line, line.names[joint])[:-1] for joint in joints)
-    return behind and any(element in joints for element in _path(line, own))
+    return behind and any(element in joints for element in _path(line, shaft))
 
 
-def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float) -> Check:
+def _acceleration(subject: AssessmentInput, title: str, rule: Rule, value: float, limit: float, said: str) -> Check:
     value = value if value > ROUNDING * subject.high**2 else 0.0
-    numbers = f"{value:.4g} rad/s² against {limit:g} rad/s² at {subject.shown(subject.high)}"
+    numbers = f"{value:.4g} rad/s² against {limit:g} rad/s² at {subject.shown(subject.high)}{said}"
     return guideline(title, rule, (value, limit, "rad/s^2"), numbers, speed=subject.high, inputs="rigid shafts")
 
 
-def uniformity(subject: AssessmentInput, turn: Kinetostatics | InputError) -> Iterator[Check]:
+def uniformity(subject: AssessmentInput, rigid: RigidTurn) -> Iterator[Check]:
     """U at the end of every branch, shafts rigid."""
     if not hooke_joints(subject.line):
         yield Check("uniformity", Status.NOT_APPLICABLE, EVEN, "the line has no Hooke's joint")
         return
+    turn = rigid.turn
     if not isinstance(turn, Kinetostatics):
         yield _unknown(subject, "uniformity", EVEN, turn)
         return
@@ -172,6 +217,7 @@ def uniformity(subject: AssessmentInput, turn: Kinetostatics | InputError) -> It
         end = turn.on_branch(branch)
         u = end.irregularity
         angle = end.equivalent_angle / DEGREE
-        numbers = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg"
+        numbers = f"U = {u:.4g} against 0.0027, as one joint of {angle:.3g} deg{rigid.said}"
         title = "uniformity" if len(turn.branches) == 1 else f"uniformity of {branch}"
         yield guideline(title, EVEN, (u, EVEN_RUNNING, "1"), numbers, inputs="rigid shafts")
+    yield from _shared(subject, "uniformity", EVEN, rigid)

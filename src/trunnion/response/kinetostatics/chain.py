@@ -30,7 +30,7 @@ from trunnion.driveline.shafts import Elastic
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.stage_laws import StageLaw, stage_law
-from trunnion.equations.topology import LinkKind, Station, stations_of
+from trunnion.equations.topology import LineStations, LinkKind, Station, stations_of
 from trunnion.errors import InputError
 from trunnion.laws import double_cardan, hooke
 from trunnion.laws.fourier import FourierLaw
@@ -43,7 +43,7 @@ UNCHANGED = FourierLaw((), (), ())
 
 @dataclass(frozen=True)
 class ChainStep:
-    """From station ``parent`` to the station behind this step; SI units.
+    """From station ``parent`` to the station behind this step, by an ``element`` of the line; SI units.
 
     ``speed`` over the input's, on average; ``reach`` [m] is how far along its member the station lies. ``fork_offset``
     is what a shaft adds to the angle of the fork at its far end; ``law`` and ``orders`` are those of a joint, which has
@@ -56,6 +56,7 @@ class ChainStep:
     link: LinkKind
     parent: int
     name: str
+    element: int
     member: int
     speed: Fraction
     angle: float = 0.0
@@ -195,9 +196,7 @@ def chain(
                 remedy="replace it by a Disk with the load_torque it exerts",
             )
     stations, draft = stations_of(line, even=True), _ChainDraft(line, lengths or {}, speed)
-    knots = [station.element for station in stations.stations if station.link is LinkKind.SUM]
-    knots += [compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None]
-    if knots:
+    if knots := ties(stations):
         raise InputError(
             "ties a shaft to two others, which kinetostatics do not follow", element=line.names[knots[0]],
             remedy="leave out one leg, or one way round, and write a Ratio in its place",
@@ -215,9 +214,17 @@ def chain(
     return found if branch is None else replace(found, output=found.end_behind(branch))
 
 
+def ties(stations: LineStations) -> list[int]:
+    """Elements that tie a shaft to two others, differentials and what closes a loop, in order."""
+    found = {station.element for station in stations.stations if station.link is LinkKind.SUM}
+    found |= {compliance.shafts[0] for compliance in stations.compliances if compliance.far is not None}
+    return sorted(found)
+
+
 class _ChainDraft:
     def __init__(self, line: Driveline, lengths: dict[str, float], speed: float | None) -> None:
         self.line, self.lengths, self.speed = line, lengths, speed
+        self.element = 0
         self.steps: list[ChainStep] = []
         self.members: list[Member] = []
 
@@ -228,7 +235,7 @@ class _ChainDraft:
 
     def add(self, station: Station, speed: Fraction, parent: int) -> int:
         """The step to a station behind the step ``parent``."""
-        i = station.element
+        i = self.element = station.element
         element, name = self.line.elements[i], self.line.names[i]
         if station.link is LinkKind.ROOT:
             return self._step(LinkKind.ROOT, parent, "drive", speed, Member(-1, 0, speed))
@@ -328,7 +335,7 @@ class _ChainDraft:
         if axis is not None:
             self.members.append(axis)
         member = self.steps[parent].member if axis is None else len(self.members) - 1
-        self.steps.append(ChainStep(link, parent, name, member, speed, **numbers))
+        self.steps.append(ChainStep(link, parent, name, self.element, member, speed, **numbers))
         return len(self.steps) - 1
 
     def _extend(self, step: int, shaft: str, length: float) -> None:

@@ -102,6 +102,7 @@ class Kinetostatics(Result):
     inertia: bool = attribute("whether inertia torques are included")
     end_ratio: Array = internal("mean speed over the input's", "1", "branch")
     end_torque: Array = internal("asked for at each end, beside the disks' own loads", "N m", "branch")
+    shaft_elements: tuple[str, ...] = internal("element that each shaft is of", axes="shaft")
     shaft_ratio: Array = internal("mean speed over the input's", "1", "shaft")
     fork_ratio: Array = internal("mean speed over the input's", "1", "fork")
     supports: Supports | None = internal("forces on bearings and joint centres, where bearings were given")

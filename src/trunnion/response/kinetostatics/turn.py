@@ -140,6 +140,7 @@ def kinetostatics(
         end_torque=np.array([torque.get(i, 0.0) for i in train.ends]),
         input_angle=input_angle,
         shafts=tuple(steps[i].name for i in train.shafts),
+        shaft_elements=tuple(names[steps[i].element] for i in train.shafts),
         shaft_ratio=np.array([float(steps[i].speed) for i in train.shafts]),
         angle=derivative(train.shafts, 0),
         speed=derivative(train.shafts, 1),

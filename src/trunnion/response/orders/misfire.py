@@ -24,7 +24,7 @@ class Misfire(Result):
 
     cylinders: tuple[tuple[str, int], ...] = internal("engine or disk, and number of each")
     springs: tuple[str, ...] = coordinate("spring")
-    vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak over the speeds")
+    vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak of the speeds asked for")
     speed: Array = variable("cylinder spring", "rad/s", "input speed where it is largest")
     normal: Array = variable("spring", "N*m", "vibratory torque of the line as stated, mostly with all firing")
     unsettled: Integers = variable(
@@ -111,9 +111,11 @@ class Misfire(Result):
     def _lines(self) -> Iterator[str]:
         row = self.cylinders.index(self.worst)
         yield self.headline
+        if (count := len(self.response.speed)) > 1:
+            yield f"  the largest of the {count} speeds asked for; between them it may be larger"
         for s, spring in enumerate(self.springs):
             yield (
-                f"  {spring}: vibratory torque up to {self.vibratory_torque[row, s]:.4g} N m at "
+                f"  {spring}: vibratory torque {self.vibratory_torque[row, s]:.4g} N m at "
                 f"{self.words.speed(float(self.speed[row, s]))}, {self.normal[s]:.4g} N m with {self.stated}"
             )
         for one in self.by_cylinder():

@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags
 from trunnion.floquet.stability.where_unstable import where_unstable
-from trunnion.laws.harmonic import turning
+from trunnion.laws.harmonic import LONGEST_PERIOD, turning
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
@@ -90,7 +90,8 @@ class OrderResponse(Result):
 
     @property
     def sum_is_bound(self) -> bool:
-        """True where excitations have no common period, so that sums over the cycle are sums of amplitudes."""
+        """True where excitations repeat together only after more than 60 turns of the input, or periods of the slowest
+        of them, or never: sums over the cycle are sums of amplitudes."""
         return not self.spectrum.adds_exactly
 
     @cached_property
@@ -386,7 +387,8 @@ def _findings(result: OrderResponse) -> Iterable[Finding]:
     if result.sum_is_bound:
         yield Finding(
             Gravity.NOTE,
-            "The excitations have no common period, so peak and vibratory torque are bounds: amplitudes added up.",
+            f"The excitations repeat together only after more than {LONGEST_PERIOD} turns of the input, or periods "
+            "of the slowest of them, or never: peak and vibratory torque are bounds, amplitudes added up.",
         )
     if not np.all(result.linear[~lost]):
         beyond = stretches_above(result.speed[~lost], result.joint_rotation[~lost], LINEAR_RANGE)
