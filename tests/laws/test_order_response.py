@@ -322,3 +322,23 @@ def test_orders_that_would_not_fit_are_refused_before_anything_is_solved():
     assert "leave out the orders" in caught.value.remedy and "\n" not in str(caught.value)
     found = tn.order_response(line(0.0), [90.0])
     assert len(found.order) >= 2000
+
+
+@pytest.mark.parametrize("speed", [2e-4, 2e-3, 0.2])
+def test_a_free_line_that_hardly_turns_is_swung_as_a_whole_and_does_not_resonate(speed):
+    """The shaft carries the share of the torque that the inertia behind it takes, and both swing by T/((J₁ + J₂)w²)."""
+    shaken = tn.Disk(inertia=0.3, drive_share=1, excitation=[tn.Excitation(order=0.5, amplitude=60.0)])
+    line = tn.Driveline([shaken, tn.Shaft(stiffness=3e5, damping=0.1), tn.Disk(inertia=1.2)])
+    found = tn.order_response(line, [speed])
+    assert found.vibratory_torque[0, 0] == pytest.approx(60 * 1.2 / 1.5, rel=1e-2)
+    assert np.abs(found.rotation[0, 0]) == pytest.approx(60 / (1.5 * (0.5 * speed) ** 2), rel=1e-2)
+
+
+def test_a_free_line_is_judged_from_standstill_on():
+    shaken = tn.Disk(inertia=0.3, drive_share=1, excitation=[tn.Excitation(order=0.5, amplitude=60.0)])
+    line = tn.Driveline(
+        [shaken, tn.Shaft(stiffness=3e5, damping=0.1, name="shaft"), tn.Disk(inertia=1.2, load_torque=50.0)],
+        limits=[tn.Limit(of="shaft", vibratory_torque=55.0)],
+    )  # fmt: skip
+    check = tn.assess(line, (0.0, 200.0)).check("vibratory torque of shaft")
+    assert check.satisfied and check.value == pytest.approx(60 * 1.2 / 1.5, rel=0.05)

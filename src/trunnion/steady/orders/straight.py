@@ -77,15 +77,16 @@ def straight_response(
             coupling[far] -= ratio * lossy
     _join(topo, matrices, own, coupling, frequency == 0)
     plan, g = Plan.of(matrices.parent, np.zeros(n, dtype=bool)), np.moveaxis(right, 2, 0)
+    turn = rigid_rotation(topo) if topo.free else np.zeros(n)
     if linearised:
         # Orders are solved together at the first speed, and stand for themselves at the others.
         each = [(part[:, k, :, None] for part in (own, coupling, g)) for k in range(orders)]
-        every = [about_first(TreeMatrix(plan, matrices.parent, a, b, []), force) for a, b, force in each]
+        every = [about_first(TreeMatrix(plan, matrices.parent, a, b, []), force, turn) for a, b, force in each]
         y = np.stack([part[..., 0].T for part in every])
     else:
         flat = (n, orders * cases, 1)
         matrix, b = TreeMatrix(plan, matrices.parent, own.reshape(flat), coupling.reshape(flat), []), g.reshape(flat)
-        y = np.moveaxis(bounded(matrix, b, matrix.solved(b)).reshape(n, orders, cases), 0, 2)
+        y = np.moveaxis(bounded(matrix, b, matrix.solved(b), turn).reshape(n, orders, cases), 0, 2)
     for k in np.flatnonzero((frequency == 0).any(axis=1)) if topo.free else ():
         still = frequency[k] == 0
         y[k, still] = _driven_away(topo, plan, matrices, right[k], linearised)[still]
@@ -115,19 +116,20 @@ def coupled_response(
     for oil in oils:
         twist = topo.elongations[oil.compliance]
         matrix = matrix + oil.added(frequency)[..., None, None] * np.outer(twist, twist)
+    turn = rigid_rotation(topo) if topo.free else np.zeros(right.shape[2])
     if not linearised:
-        return _one_by_one(matrix, right)
+        return _one_by_one(matrix, right, turn)
     # To first order about the first case, whose matrix stands for all.
     first_matrix = np.broadcast_to(matrix[:, :1], matrix.shape)
-    first = _one_by_one(first_matrix, np.broadcast_to(right[:, :1], right.shape))
+    first = _one_by_one(first_matrix, np.broadcast_to(right[:, :1], right.shape), turn)
     taken = (matrix @ first[..., None])[..., 0]
     rest = right - taken
     rest[np.abs(rest).max(axis=2) <= ROUNDING * (np.abs(matrix) @ np.abs(first)[..., None])[..., 0].max(axis=2)] = 0.0
-    return first + _one_by_one(first_matrix, rest)
+    return first + _one_by_one(first_matrix, rest, turn)
 
 
-def _one_by_one(matrix: Complex, right: Complex) -> Complex:
-    """Solutions (order, case, n); NaN where a motion needs no force, 0 where nothing acts."""
+def _one_by_one(matrix: Complex, right: Complex, turn: Array) -> Complex:
+    """Solutions (order, case, n); NaN where a motion needs no force, 0 where nothing acts; ``turn`` of ``bounded``."""
     found = np.zeros(right.shape, dtype=complex)
     for at in np.argwhere(right.any(axis=2)):
         one = tuple(at)
@@ -135,16 +137,16 @@ def _one_by_one(matrix: Complex, right: Complex) -> Complex:
             found[one] = np.linalg.solve(matrix[one], right[one])
         except np.linalg.LinAlgError:
             found[one] = np.nan
-        holds = np.abs(matrix[one]) @ np.abs(found[one])
+        holds = np.abs(matrix[one]) @ np.abs(_twisted(found[one], turn))
         if np.abs(right[one]).max() < SINGULAR * holds.max():
             found[one] = np.nan
     return found
 
 
-def about_first(matrix: TreeMatrix, right: Complex) -> Complex:
-    """Solutions to first order about the first case: X₀ + A₀⁻¹(G − AX₀)."""
+def about_first(matrix: TreeMatrix, right: Complex, turn: Array) -> Complex:
+    """Solutions to first order about the first case: X₀ + A₀⁻¹(G − AX₀); ``turn`` as ``bounded`` takes it."""
     alone = matrix.of(slice(0, 1))
-    first = bounded(alone, right[:, :1], alone.solved(right[:, :1]))
+    first = bounded(alone, right[:, :1], alone.solved(right[:, :1]), turn)
     product = matrix.times(np.broadcast_to(first, right.shape))
     rest = right - product
     size = np.abs(right) + np.abs(matrix.own * first)
@@ -152,13 +154,23 @@ def about_first(matrix: TreeMatrix, right: Complex) -> Complex:
     return np.asarray(first + alone.solved(rest))
 
 
-def bounded(matrix: TreeMatrix, right: Complex, x: Complex) -> Complex:
-    """NaN where a motion needs no force, resonance without damping; 0 where nothing acts."""
+def bounded(matrix: TreeMatrix, right: Complex, x: Complex, turn: Array) -> Complex:
+    """NaN where a motion needs no force, resonance without damping; 0 where nothing acts.
+
+    Of a line that is free to ``turn`` (n,) as a whole, zero otherwise, that motion holds nothing: the slower an order,
+    the farther it swings the whole line, without resonance.
+    """
     force = np.abs(right).max(axis=(0, 2))
     with np.errstate(invalid="ignore"):
-        x[:, force < SINGULAR * np.abs(matrix.own * x).max(axis=(0, 2))] = np.nan
+        x[:, force < SINGULAR * np.abs(matrix.own * _twisted(x, turn)).max(axis=(0, 2))] = np.nan
     x[:, force == 0] = 0.0
     return x
+
+
+def _twisted(x: Complex, turn: Array) -> Complex:
+    """What is left of motions (n, …) without that of the line as a whole."""
+    size = turn @ turn
+    return x - np.multiply.outer(turn, np.tensordot(turn, x, 1) / size) if size else x
 
 
 def _join(topo: Topology, matrices: TreeMatrices, own: Complex, coupling: Complex, still: Flags) -> None:

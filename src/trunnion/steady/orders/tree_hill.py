@@ -155,10 +155,9 @@ class TreeHill:
         g = np.ascontiguousarray(np.moveaxis(interpolated(weights, right), 2, 0))
         if self.topo.free and not carrier.any() and (harmonics == 0).any():
             x = self._held(matrix, int(np.flatnonzero(harmonics == 0)[0]), g)
-        elif self.linearised:
-            x = about_first(matrix, g)
         else:
-            x = bounded(matrix, g, matrix.solved(g))
+            turn = rigid_rotation(self.topo) if self.topo.free else np.zeros(len(g))
+            x = about_first(matrix, g, turn) if self.linearised else bounded(matrix, g, matrix.solved(g), turn)
         return np.ascontiguousarray(np.moveaxis(x, 0, 2))
 
     def _held(self, matrix: TreeMatrix, still: int, right: Complex) -> Complex:
