@@ -158,10 +158,10 @@ def test_turns_that_are_not_all_looked_at_are_counted():
 
 
 def test_a_spring_is_told_by_its_element_and_not_by_its_name():
-    """The spring "slip tyre" of a tyre, beside a shaft whose name is an end of that."""
+    """The spring "slip of tyre" of a tyre, beside a shaft whose name is an end of that."""
     line = tn.Driveline(
         [
-            tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0, name="ip tyre"), tn.Disk(inertia=0.2),
+            tn.ConstantSpeed(), tn.Shaft(stiffness=5e4, damping=1.0, name="of tyre"), tn.Disk(inertia=0.2),
             tn.HookeJoint(angle="3 deg"), tn.Shaft(stiffness=5e4, damping=1.0), tn.Disk(inertia=1.0),
             tn.Tyre(stiffness=3e4, damping=300.0, slip_stiffness=1.2e5, radius=0.35, travel_speed=13.0, inertia=1.0,
                     name="tyre"),
@@ -170,7 +170,7 @@ def test_a_spring_is_told_by_its_element_and_not_by_its_name():
     )  # fmt: skip
     turn = tn.kinetostatics(line, 100.0)
     owner = dict(zip(turn.shafts, turn.shaft_elements, strict=True))
-    assert owner["slip tyre"] == "tyre" and owner["ip tyre"] == "ip tyre"
+    assert owner["slip of tyre"] == "tyre" and owner["of tyre"] == "of tyre"
 
 
 def test_a_mode_that_jumps_over_an_order_is_not_met():
