@@ -15,6 +15,7 @@ from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.box_space import BoxSpace
 from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves
 from trunnion.floquet.certificate.own_judge import OwnMotionLine, judged_motion
+from trunnion.floquet.certificate.own_stages import OwnStage
 from trunnion.floquet.certificate.waves import Wave
 from trunnion.floquet.tolerance.spread import Tolerances, read_tolerances
 from trunnion.results.verdict import Verdict
@@ -175,6 +176,68 @@ def test_boxes_beside_each_other_leave_no_gap() -> None:
         assert space.span(left)[1] > space.span(right)[0]
         for one, two in zip(space.ranges(left), space.ranges(right), strict=True):
             assert one.high > two.low
+
+
+# Springs with stages
+
+
+def with_stages(knot: float) -> tuple[BentPair, tn.Driveline]:
+    """The pair, and a line that is so stiff beyond ``knot`` [rad] alone, where its load of 134 N m stands."""
+    pair = BentPair(95.0, angle=0.05)
+    spring = tn.PiecewiseShaft.symmetric([(1e3, knot), (9e3, None)], damping=pair.damping, name="shaft")
+    return pair, tn.Driveline([spring if name == "shaft" else one for name, one in pair.line.parts])
+
+
+def test_a_spring_that_stays_in_its_stage_moves_as_one_that_has_no_other() -> None:
+    pair, line = with_stages(0.004)
+    speeds = pair.middle * (1 - 1e-4), pair.middle * (1 + 1e-4)
+    found, alike = (OwnMotionLine(one).enclosed(speeds, []) for one in (line, pair.line))
+    assert found is not None and alike is not None and found.verdict.proved and found.tube is not None
+    assert found.verdict.decay == pytest.approx(alike.verdict.decay, rel=1e-6)
+    start = np.array([value(one, 0.0, np.zeros(1)) for one in found.tube.states])
+    path, _ = pair.at(extra=value(found.tube.drive, 0.0, np.zeros(1))).periodic(start)
+    for k, phi in enumerate(np.linspace(0, PERIOD, 33)):
+        for state, one in zip(path[k], found.tube.states, strict=True):
+            assert abs(state - value(one, phi, np.zeros(1))) <= one.rest + 1e-9 * abs(state)
+    # The mean twist is beyond the knot by (134.1 − 4)/9000, and the swing is less.
+    twist = -(0.004 + (pair.mean - 4.0) / 9e3) + path[:, 0]
+    assert twist.max() < -0.004 - 0.01
+
+
+def test_a_motion_that_leaves_the_stage_is_refused_by_name() -> None:
+    """At the knot the spring carries 130 N m, of which the swing takes more than 4 away."""
+    _, line = with_stages(0.13)
+    with pytest.raises(tn.InputError, match="shaft: leaves its stage at 95 rad/s: its twist goes from"):
+        tn.certify_stability(line, {}, (94.99, 95.01))
+
+
+@pytest.mark.parametrize(("rest", "held"), [(0.0, True), (0.003, True), (0.006, False)])
+def test_the_whole_tube_has_to_stay_in_the_stage(rest: float, held: bool) -> None:
+    """The motion comes within 0.005 of the knot at 0.02."""
+    parts = np.array([[0.0025, 0.0, 0.0025], [0.0, 0.0, 0.0]], dtype=complex)
+    stage = OwnStage(0, 0.01, -0.02, 0.02)
+    assert stage.holds(Wave(parts, rest)) == held
+    assert not OwnStage(0, 0.01, 0.0055, 0.02).holds(Wave(parts, rest))
+
+
+def test_stages_that_are_not_linear_within_are_refused_by_name() -> None:
+    pair, _ = with_stages(0.004)
+    teeth = {"teeth_in": 20, "teeth_out": 40, "module": 0.005, "mesh_stiffness": 1e8, "backlash": 1e-4, "name": "gears"}
+    friction = [{"torque": 6.0, "stiffness": 4e3}]
+    clutch = tn.Clutch(breakpoints=[0.004], stiffnesses=[1e3, 9e3], friction=friction, name="clutch")
+    for beside, message in (
+        (clutch, "clutch: about the line's own motion the stages of a Clutch are not enclosed"),
+        (
+            tn.GearPair(impact_damping=1e7, **teeth),
+            "gears: about the line's own motion damping that goes with the depth",
+        ),
+        (tn.GearPair(damping_law="never pulling", **teeth), "gears: about the line's own motion teeth that never pull"),
+    ):
+        engine, joint, shaft, load = pair.line.elements
+        with pytest.raises(tn.InputError, match=message):
+            tn.certify_stability(
+                tn.Driveline([engine, joint, shaft, tn.Disk(inertia=0.1), beside, load]), {}, (94.99, 95.01)
+            )
 
 
 # From a user's side

@@ -24,6 +24,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.certificate.box_coefficients import BoxCoefficients
 from trunnion.floquet.certificate.box_equations import BoxLine, Walk, period_rate, speed_modulus
+from trunnion.floquet.certificate.own_stages import OwnStage
 from trunnion.floquet.certificate.waves import Wave
 
 Entries = dict[tuple[int, int], Wave]
@@ -67,18 +68,28 @@ class Rates:
 
 @dataclass(frozen=True)
 class MotionEquations:
-    """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives."""
+    """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives;
+    ``stages`` of springs that have some."""
 
     assembly: Assembly
     co: BoxCoefficients
     parameters: int
     last: int
     drive: Array
+    stages: tuple[OwnStage, ...] = ()
 
     @property
     def rate(self) -> float:
         """Cycles per turn of the input of the first harmonic."""
         return period_rate(self.assembly)
+
+    @property
+    def twisted(self) -> Array:
+        """Twist of every spring under the mean loads, in the middle (spring,) [rad]."""
+        found = np.array([t.mean.real / k.mean.real for t, k in zip(self.co.torque, self.co.stiffness, strict=True)])
+        for one in self.stages:
+            found[one.spring] = one.twist
+        return found
 
     @property
     def size(self) -> int:

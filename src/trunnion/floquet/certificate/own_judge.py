@@ -34,6 +34,7 @@ from trunnion.floquet.certificate.box_coefficients import NumberRange, box_coeff
 from trunnion.floquet.certificate.box_equations import BoxMatrix, harmonics_needed
 from trunnion.floquet.certificate.judge import JudgedBox
 from trunnion.floquet.certificate.own_equations import MotionEquations, MotionWaves, Rates, residuals
+from trunnion.floquet.certificate.own_stages import own_stages, require_stages_kept
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox, lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check_tube
@@ -111,6 +112,8 @@ class OwnMotionLine:
             return None
         own = self._equations(speeds, ranges, motions)
         found = solved(own, begun(own, motions), _asked(own, speeds, further))
+        if found is not None:
+            require_stages_kept(self.assembly, own.stages, found.twist, middle)
         return None if found is None else (own, found)
 
     def _equations(
@@ -125,7 +128,8 @@ class OwnMotionLine:
         if topo.free:
             row = assembly.table(1, middle)
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
-        return MotionEquations(assembly, co, 1 + len(ranges), last, drive)
+        stages = own_stages(assembly, assembly.table(1, middle))
+        return MotionEquations(assembly, co, 1 + len(ranges), last, drive, stages)
 
 
 def _rows(row: Array, speeds: Array) -> Array:
@@ -186,6 +190,8 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
         if not known.proved:
             return JudgedMotion(missed(known.excess))
         if needed < height:
+            if not all(one.holds(near.twist[one.spring]) for one in own.stages):
+                return JudgedMotion(missed())
             uncovered = _uncovered(own, near, speeds)
             if uncovered > 0:
                 return JudgedMotion(missed(), uncovered=uncovered)

@@ -11,14 +11,16 @@ from trunnion.driveline.elements import ConstantSpeed, Element, Ratio, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
 from trunnion.driveline.shafts import Shaft
+from trunnion.driveline.stages import PiecewiseShaft
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.loads import drive_places
 from trunnion.equations.steady_base import has_joint_angles
 from trunnion.errors import InputError
 from trunnion.floquet.certificate.box_coefficients import ANGLE, NumberRange, staged
+from trunnion.floquet.certificate.own_stages import stage_obstacle
 from trunnion.floquet.tolerance.spread import Spread
 
-ENCLOSED = (ConstantSpeed, Coupling, GearPair, Joint, Ratio, Rotor, Shaft)
+ENCLOSED = (ConstantSpeed, Coupling, GearPair, Joint, PiecewiseShaft, Ratio, Rotor, Shaft)
 """Elements whose equations of motion are written out."""
 SAME_SHARE = 1e-12
 """By how much shares of the torque that drives may differ."""
@@ -64,8 +66,8 @@ def require_enclosed(assembly: Assembly, ranges: Sequence[NumberRange], speed: f
 
 
 def _obstacle(element: Element) -> str:
-    if staged(element):
-        return "springs with stages or play are not enclosed"
+    if isinstance(element, PiecewiseShaft | GearPair) and staged(element):
+        return stage_obstacle(element)
     if isinstance(element, Rotor) and element.tangent:
         return "a torque along a curve is not enclosed; state its tangent, a viscous_load or quadratic_load"
     if isinstance(element, Coupling) and element.torques:

@@ -39,7 +39,7 @@ def begun(own: MotionEquations, motions: SteadyStates) -> MotionWaves:
     angle = turn * np.arange(times) / times
     rows = fourier.resized(motions.rows[0], max(motions.h, last))
     twists = fourier.rows_of(motions.observed().twist[0].T, motions.h)
-    twists[:, 0] -= [t.mean.real / k.mean.real for t, k in zip(own.co.torque, own.co.stiffness, strict=True)]
+    twists[:, 0] -= own.twisted
     rates = fourier.rate(rows, 1.0) * float(motions.rate[0])
     place = topo.coordinate[topo.group_of(0)] if topo.free else -1
     tau = angle.copy()

@@ -73,7 +73,7 @@ def require_linear(
     torque, varies = _carried(assembly, looked_at, ranges)
     for e, compliance in enumerate(topo.compliances):
         element = line.elements[compliance.shafts[0]]
-        if staged(element) and (varies[e] or (torque[e] and loaded)):
+        if staged(element) and ((varies[e] and not own) or (torque[e] and loaded)):
             raise InputError(
                 "has stages, and its load varies within the box: whether it stays in one stage is not followed",
                 element=line.names[compliance.shafts[0]], value=float(torque[e]),
