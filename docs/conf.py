@@ -28,6 +28,7 @@ extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_gallery.gen_gallery"]
 myst_enable_extensions = ["attrs_block", "colon_fence", "deflist", "dollarmath", "fieldlist"]
 myst_heading_anchors = 3
 exclude_patterns = ["_build", "gallery", "generated/gallery/*.ipynb"]
+smartquotes = False  # who copies --speed "1500 rpm" gets what a shell understands
 nitpicky = True
 nitpick_ignore_regex = [("py:.*", ".*")]  # types of other libraries; intersphinx would fetch their lists
 html_theme = "furo"

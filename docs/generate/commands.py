@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,22 @@ def _option(parameter: Any) -> tuple[str, str]:
     names = ", ".join(f"`{one}`" for one in (*parameter.opts, *parameter.secondary_opts))
     return (
         names if parameter.param_type_name == "option" else f"`{(parameter.metavar or parameter.name).upper()}`"
-    ), parameter.help or ""
+    ), typed(parameter.help or "")
+
+
+def typed(text: str) -> str:
+    """Options in a text as they are typed, in which nothing is set as a dash."""
+    return re.sub(r"(?<![\w`-])--[a-z][a-z-]*", lambda option: f"`{option[0]}`", text)
+
+
+def about(text: str) -> str:
+    """The help of a command, its examples as lines to copy."""
+    said, found, examples = text.replace("\b", "").partition("Example")
+    if not found:
+        return typed(said)
+    lines = examples.lstrip("s").removeprefix(":").replace("\n", " ").split("trunnion ")
+    calls = [re.sub(r",? then$", "", f"trunnion {' '.join(one.split())}".rstrip(" ,")) for one in lines[1:]]
+    return "\n".join([typed(said), "```sh", *calls, "```"])
 
 
 def write_page(path: Path) -> None:
@@ -30,7 +46,7 @@ def write_page(path: Path) -> None:
         rows = [_option(one) for one in command.params if one.name != "help"]
         parts += [
             f"(command-{name})=\n## {name}",
-            (command.help or "").replace("\b", ""),
+            about(command.help or ""),
             table(("option", "says"), rows),
         ]
     write(path, "\n\n".join(parts))

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from as_printed import ROOT
-from generate import api, changelog, elements, examples, player
+from generate import api, changelog, commands, elements, examples, player
 
 import trunnion as tn
 from trunnion.driveline.kinds import KINDS
@@ -37,6 +37,19 @@ def test_units_are_si_and_defaults_are_told() -> None:
     assert re.search(r"`damping` \| viscous damping \| N m s/rad \| `0.0`", shaft)
     joint = elements.keys(elements.schema()["$defs"]["HookeJoint"])
     assert re.search(r"`angle` \|[^|]*\| rad \| \*\*needed\*\*", joint)
+
+
+def test_commands_are_printed_as_they_are_typed(tmp_path: Path) -> None:
+    """Nothing outside code holds two hyphens, which typography would make a dash; examples are lines to copy."""
+    commands.write_page(tmp_path / "commands.md")
+    page = (tmp_path / "commands.md").read_text(encoding="utf-8")
+    prose = re.sub(r"`[^`]*`", "", re.sub(r"```sh\n.*?```", "", page, flags=re.S))
+    assert not re.search(r"--[a-z]", prose) and "Example" not in prose
+    lines = re.findall(r"^trunnion .*$", page, re.M)
+    assert "trunnion assess truck.toml --load-case climb --remedies" in lines
+    assert "trunnion study show truck.zarr" in lines and "trunnion study truck-study.toml" in lines
+    assert len(lines) == page.count("\ntrunnion ") >= 30
+    assert "smartquotes = False" in (ROOT / "docs/conf.py").read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
