@@ -299,7 +299,9 @@ def test_a_reference_run_takes_off_errors_of_teeth(view: Any, folder: Path) -> N
     drop(view, still, "still.csv", described, number=2)
     view._take_as_reference()
     assert view.steps(small) == [] and view.still_state.object.startswith("Reference run: still.csv")
+    assert view.still_state.object.endswith("Drop the run.")
     drop(view, run, number=3)
+    assert "taken off." in view.still_state.object and "Drop the run" not in view.still_state.object
     assert "its columns as in still.csv" in view.state.object and len(list(folder.glob("trunnion-*"))) == 2
     found = computed(view)["over"]
     assert not any("wheel's" in one for one in found["findings"])

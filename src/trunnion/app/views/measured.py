@@ -181,16 +181,14 @@ class MeasuredView(View):
             self.still[0].close()
         self.still, self.file = (self.file, self.description), None
         self.forget_still.visible = True
-        name, size = self.still[0].name, self.still[0].size
-        what = "What repeats with the teeth in it is taken for their error and taken off. Drop the run."
-        self.still_state.object = f"Reference run: {name}, {size} bytes. {what}"
         self._forget()
 
     def _forget_reference(self) -> None:
         """Delete the reference run, and take nothing off any more."""
         if self.still is not None:
             self.still[0].close()
-        self.still, self.forget_still.visible, self.still_state.object = None, False, NO_REFERENCE
+        self.still, self.forget_still.visible = None, False
+        self.still_state.object = self._reference_words()
         self.session.setting_chosen()
 
     def close(self) -> None:
@@ -203,6 +201,15 @@ class MeasuredView(View):
     def _state(self, how: str = "its columns are to be named below") -> None:
         self.keep_still.visible = self.file is not None and self.description is not None
         self.state.object = NO_FILE if self.file is None else f"{self.file.name}, {self.file.size} bytes, {how}"
+        self.still_state.object = self._reference_words()
+
+    def _reference_words(self) -> str:
+        """Which reference run is taken off, and what comes next."""
+        if self.still is None:
+            return NO_REFERENCE
+        what = "What repeats with the teeth in it is taken for their error and taken off."
+        after = "" if self.file is not None else " Drop the run."
+        return f"Reference run: {self.still[0].name}, {self.still[0].size} bytes. {what}{after}"
 
     def named(self, sentence: str) -> str:
         """A sentence with the names of files as the user knows them."""
