@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Iterable
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -236,6 +237,7 @@ FILES = {"analyze": "out.html", "animate": "out.html", "envelope": "out.nc", "re
 """Where a picture is not what a command writes, or a line without schedules has none."""
 
 
+@cache
 def commands() -> dict[str, Any]:
     return dict(typer.main.get_command(app).commands)  # type: ignore[attr-defined]
 
