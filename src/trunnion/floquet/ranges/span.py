@@ -134,21 +134,20 @@ class Span:
     def _changes(self, probes: Array) -> Iterator[float]:
         """Speeds at which the line changes, each as a pair just below and above."""
         largest = float(np.abs(self._torque(probes)).max(initial=0.0))
-        known = {float(s): tuple(row) for s, row in zip(probes, self._signs(probes, largest), strict=True)}
-
-        def sign(speed: float) -> tuple[float, ...]:
-            if speed not in known:
-                known[speed] = tuple(self._signs(np.array([speed]), largest)[0])
-            return known[speed]
-
-        open_ones = [pair for pair in pairwise(probes.tolist()) if sign(pair[0]) != sign(pair[1])]
-        while open_ones:
-            low, high = open_ones.pop()
-            middle = (low + high) / 2
-            if high - low <= EXACT * self.high:
-                yield from (low, high)
-                continue
-            open_ones += [pair for pair in ((low, middle), (middle, high)) if sign(pair[0]) != sign(pair[1])]
+        signs = self._signs(probes, largest)
+        ends, of = np.stack([probes[:-1], probes[1:]], axis=1), np.stack([signs[:-1], signs[1:]], axis=1)
+        while True:
+            differ = (of[:, 0] != of[:, 1]).any(axis=1)
+            ends, of = ends[differ], of[differ]
+            located = ends[:, 1] - ends[:, 0] <= EXACT * self.high
+            yield from ends[located].ravel().tolist()
+            ends, of = ends[~located], of[~located]
+            if not len(ends):
+                return
+            middle = ends.mean(axis=1)
+            at = self._signs(middle, largest)
+            ends = np.concatenate([np.stack([ends[:, 0], middle], axis=1), np.stack([middle, ends[:, 1]], axis=1)])
+            of = np.concatenate([np.stack([of[:, 0], at], axis=1), np.stack([at, of[:, 1]], axis=1)])
 
     def _signs(self, speed: Array, largest: float) -> Array:
         """Numbers (case, …) that stay the same within a piece; ``largest`` mean torque of any spring [N m]."""

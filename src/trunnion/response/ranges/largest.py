@@ -17,11 +17,12 @@ from __future__ import annotations
 from bisect import bisect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import inf
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Flags
+from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.ranges.resonances import Resonances
 from trunnion.floquet.ranges.span import SmoothRange
@@ -98,13 +99,31 @@ class PossiblePeaks:
     height: Array
     scale: Array
 
-    def of(self, which: Flags) -> PossiblePeaks:
+    def of(self, which: Flags | Integers) -> PossiblePeaks:
         """Some of them."""
         return PossiblePeaks(self.speed[which], self.height[which], self.scale[which])
 
     def over(self, top: float) -> PossiblePeaks:
         """Heights as shares of ``top``."""
         return replace(self, height=self.height / top)
+
+
+@dataclass(frozen=True)
+class Poles:
+    """Resonances that stand between three neighbours, worth a look or not: ``peaks`` (place,), the ``middle`` of the
+    three (place,) [rad/s], and the larger of the values beside (place,)."""
+
+    peaks: PossiblePeaks
+    middle: Array
+    beside: Array
+
+    def of(self, which: Flags | Integers) -> Poles:
+        """Some of them."""
+        return Poles(self.peaks.of(which), self.middle[which], self.beside[which])
+
+    def beyond(self, wanted: SearchAim) -> PossiblePeaks:
+        """Those that are worth a look."""
+        return self.peaks.of(wanted.by(self.peaks.height, self.beside))
 
 
 def _together(parts: Sequence[PossiblePeaks]) -> PossiblePeaks:
@@ -190,6 +209,9 @@ class _SearchedRanges:
         self.response: OrderResponse | None = None
         self.values = np.zeros((0, len(quantities)))
         self.piece = np.zeros(0, dtype=np.intp)
+        self.looks = 0
+        self.look_of = np.zeros(0, dtype=np.intp)  # the look (speed,) in which each was new
+        self.poles: dict[tuple[int, int], tuple[int, Poles]] = {}  # by quantity and piece, as after a look
 
     def look(self, wanted: Sequence[Array], known: OrderResponse | None = None) -> None:
         """Take in the speeds ``wanted`` of each piece, where they are ``known`` as they are."""
@@ -202,12 +224,14 @@ class _SearchedRanges:
         self.response = response_of_spectrum(self.assembly, together, remarked=False)
         self.values = np.concatenate([self.values, values.reshape(len(speeds), -1)])[order]
         self.piece = np.concatenate([self.piece, piece])[order]
+        self.looks += 1
+        self.look_of = np.concatenate([self.look_of, np.full(len(speeds), self.looks)])[order]
 
     @property
     def _runs(self) -> list[slice]:
         """Where each piece stands among the speeds."""
-        ends = np.searchsorted(self.piece, np.arange(self.piece[-1] + 2))
-        return [slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+        ends = np.searchsorted(self.piece, np.arange(self.piece[-1] + 2)).tolist()
+        return [slice(a, b) for a, b in pairwise(ends)]
 
     def wanted(self, tolerance: float) -> list[Array]:
         """Speeds at which a larger value may hide, by piece."""
@@ -215,7 +239,7 @@ class _SearchedRanges:
         for q in range(len(self.quantities)):
             top = self._top(q)
             if np.isfinite(top) and top > 0:
-                every = [self._hidden(q, run, top, tolerance) for run in self._runs]
+                every = self._hidden(q, top, tolerance)
                 ranked = np.sort(np.concatenate([one.height for one in every]))[::-1]
                 least = ranked[AT_ONCE - 1] if len(ranked) >= AT_ONCE else -np.inf
                 for k, one in enumerate(every):
@@ -248,16 +272,37 @@ class _SearchedRanges:
         column = self.values[:, q]
         return float(np.max(np.where(np.isfinite(column), column, np.inf), initial=0.0))
 
-    def _hidden(self, q: int, run: slice, top: float, tolerance: float) -> PossiblePeaks:
-        """Where quantity ``q`` may rise above its ``top``."""
+    def _hidden(self, q: int, top: float, tolerance: float) -> list[PossiblePeaks]:
+        """Where quantity ``q`` may rise above its ``top``, by piece."""
         assert self.response is not None
+        aim = SearchAim(top * (1 + tolerance / 4), self.quantities[q].level)
+        parts = self.quantities[q].parts(self.response)
+        parts = parts if np.all(np.isfinite(parts)) else np.nan_to_num(parts)
+        found = []
+        for k, run in enumerate(self._runs):
+            x, v = self.response.speed[run], self.values[run, q]
+            few = len(x) < 3
+            poles = [] if few else [_tops(x, v, aim), *_ends(x, v, aim), self._resonances(q, k, run, parts).beyond(aim)]
+            found.append(_together(poles))
+        return found
+
+    def _resonances(self, q: int, k: int, run: slice, parts: Complex) -> Poles:
+        """Of quantity ``q`` in piece ``k``; those are kept about which no speed is new."""
+        assert self.response is not None
+        look, kept = self.poles.get((q, k), (0, None))
         x, v = self.response.speed[run], self.values[run, q]
-        if len(x) < 3:
-            return _together([])
-        quantity = self.quantities[q]
-        wanted = SearchAim(top * (1 + tolerance / 4), quantity.level)
-        poles = _poles(x, v, quantity.parts(self.response)[run], quantity.squared, wanted)
-        return _together([_tops(x, v, wanted), *_ends(x, v, wanted), poles])
+        new = self.look_of[run] > look
+        if kept is not None and not new.any():
+            return kept
+        about = _beside(new)
+        found = _poles(x, v, parts[run], np.flatnonzero(about) + 1, self.quantities[q].squared)
+        if kept is not None:
+            same = kept.of(~about[np.searchsorted(x, kept.middle) - 1])
+            peaks = _together([same.peaks, found.peaks])
+            middle, beside = (np.concatenate([getattr(o, key) for o in (same, found)]) for key in ("middle", "beside"))
+            found = Poles(peaks, middle, beside).of(np.argsort(middle, kind="stable"))
+        self.poles[q, k] = self.looks, found
+        return found
 
     def _apart(self, wanted: PossiblePeaks, run: slice) -> Array:
         """Speeds that are not next to each other, nor to known ones: of several at one top the highest."""
@@ -281,7 +326,7 @@ class _SearchedRanges:
             place = int(np.argmax(column))
             at[q], value[q] = place, column[place]
             if np.isfinite(value[q]) and value[q] > 0:
-                hidden = [self._hidden(q, run, value[q], tolerance).height for run in self._runs]
+                hidden = [one.height for one in self._hidden(q, value[q], tolerance)]
                 more = np.max(np.concatenate(hidden), initial=value[q]) - value[q]
                 bend = max(self._bend(q, run, place) for run in self._runs)
                 error[q] = max(more, bend, tolerance / 4 * value[q])  # less than that is not looked for
@@ -310,6 +355,15 @@ class SearchAim:
         """Whether a ``height`` (place,) beside values that are ``known`` (place,) is."""
         with np.errstate(invalid="ignore"):
             return np.asarray((height > self.more) | ((height > self.level) & (known <= self.level)))
+
+
+def _beside(new: Flags) -> Flags:
+    """Which of the inner places have one that is ``new`` within two places: these tell what stands there."""
+    near = new.copy()
+    for apart in (1, 2):
+        near[apart:] |= new[:-apart]
+        near[:-apart] |= new[apart:]
+    return near[1:-1]
 
 
 def _tops(x: Array, v: Array, wanted: SearchAim) -> PossiblePeaks:
@@ -343,35 +397,34 @@ def _ends(x: Array, v: Array, wanted: SearchAim) -> list[PossiblePeaks]:
     return found
 
 
-def _poles(x: Array, v: Array, parts: Complex, squared: bool, wanted: SearchAim) -> PossiblePeaks:
-    """Places to look at for resonances that stand between three neighbours, and how high the sum may be there."""
-    f = np.nan_to_num(parts)
-    x0, x1, x2 = x[:-2, None], x[1:-1, None], x[2:, None]
-
-    def second(g: Complex) -> Complex:
-        return ((g[2:] - g[1:-1]) / (x2 - x1) - (g[1:-1] - g[:-2]) / (x1 - x0)) / (x2 - x0)
+def _poles(x: Array, v: Array, f: Complex, middles: Integers, squared: bool) -> Poles:
+    """Resonances that stand between the neighbours of ``middles`` (index into speeds), and how high the sum may be
+    there; ``f`` (speed, order)."""
+    i = middles
+    x0, x1, x2 = x[i - 1, None], x[i, None], x[i + 1, None]
+    f0, f1, f2 = f[i - 1], f[i], f[i + 1]
+    first = (f1 - f0) / (x1 - x0)
 
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        pole = second(x[:, None] * f) / second(f)
-        residue = -(f[1:-1] - f[:-2]) / (x1 - x0) * (x0 - pole) * (x1 - pole)
+        bend = ((f2 - f1) / (x2 - x1) - first) / (x2 - x0)
+        g0, g1, g2 = x0 * f0, x1 * f1, x2 * f2
+        pole = ((g2 - g1) / (x2 - x1) - (g1 - g0) / (x1 - x0)) / (x2 - x0) / bend
+        residue = -first * (x0 - pole) * (x1 - pole)
         at = pole.real
-        there = np.abs(f[1:-1] + residue * (1 / (at - pole) - 1 / (x1 - pole)))
-    low = np.concatenate([x[:1], x[:-3]])[:, None]
-    high = np.concatenate([x[3:], x[-1:]])[:, None]
+        there = np.abs(f1 + residue * (1 / (at - pole) - 1 / (x1 - pole)))
+    low, high = x[np.maximum(i - 2, 0), None], x[np.minimum(i + 2, len(x) - 1), None]
     with np.errstate(invalid="ignore"):
-        place = np.clip(np.searchsorted(x, np.nan_to_num(at)), 1, len(x) - 1)
-        apart = np.minimum(np.abs(at - x[place - 1]), np.abs(x[place] - at))
-        good: Flags = np.isfinite(there) & (at > low) & (at < high) & (apart > SEEN * np.abs(pole.imag))
-    i, k = np.nonzero(good)
-    at, there, place, width = at[i, k], there[i, k], place[i, k], np.abs(pole.imag[i, k])
+        near: Flags = np.isfinite(there) & (at > low) & (at < high)
+    m, k = np.nonzero(near)
+    at, there, width = at[m, k], there[m, k], np.abs(pole.imag[m, k])
+    place = np.clip(np.searchsorted(x, at), 1, len(x) - 1)
+    unseen: Flags = np.minimum(np.abs(at - x[place - 1]), np.abs(x[place] - at)) > SEEN * width
     share = (at - x[place - 1]) / (x[place] - x[place - 1])
-    size = np.abs(f)
-    here = (1 - share) * size[place - 1, k] + share * size[place, k]
+    here = (1 - share) * np.abs(f[place - 1, k]) + share * np.abs(f[place, k])
     gain = np.maximum(there**2 - here**2 if squared else there - here, 0.0)
     rises = (1 - share) * v[place - 1] + share * v[place] + CAUTION * gain
-    above = wanted.by(rises, np.maximum(v[place - 1], v[place]))
     scale = np.minimum(width, x[place] - x[place - 1])
-    return PossiblePeaks(at[above], rises[above], scale[above])
+    return Poles(PossiblePeaks(at, rises, scale), x[i][m], np.maximum(v[place - 1], v[place])).of(unseen)
 
 
 def sharpened(
