@@ -1966,6 +1966,7 @@ PYTHON = [
         "Ratio.teeth_in = 0: must be a whole number of teeth",
         "positive",
     ),
+    (lambda: Ratio(teeth_in="20", teeth_out=4), "Ratio.teeth_in = '20': must be a whole", "write 20 without quotes"),
     (lambda: Ratio(teeth_in=1.5, teeth_out=4), "Ratio.teeth_in = 1.5: must be a whole number", "positive"),
     (lambda: Ratio(teeth_in=True, teeth_out=4), "Ratio.teeth_in = True: must be a whole number", "positive"),
     (lambda: Belt(radius_in=0.1, radius_out=0.1), "Belt.span_stiffness: is missing", 'span_stiffness = "4e5 N/m"'),

@@ -373,7 +373,9 @@ MOST_TEETH = 100_000
 
 def _tooth_number(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-        raise InputError("must be a whole number of teeth", value=value, remedy="write a positive integer")
+        quoted = isinstance(value, str) and value.strip().isdecimal()
+        remedy = f"write {value} without quotes" if quoted else "write a positive integer"
+        raise InputError("must be a whole number of teeth", value=value, remedy=remedy)
     if value > MOST_TEETH:
         raise InputError(f"must be at most {MOST_TEETH} teeth", value=value, remedy="check the number")
     return value
