@@ -34,11 +34,18 @@ class OutOfTime(TrunnionError):
 class TimeLimit:
     """How long what is computed inside may take; ``stop`` ends it at once.
 
-    seconds: allowed, None for any; noticed: whether a computation has ended by it; clock: what tells the time [s].
+    seconds: allowed, None for any; noticed: whether a computation has ended by it; clock: what tells the time [s];
+    stated: seconds that were asked for, of which these are what is left.
     """
 
-    def __init__(self, seconds: float | None = None, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self,
+        seconds: float | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        stated: float | None = None,
+    ) -> None:
         self.seconds, self.clock = seconds, clock
+        self.stated = seconds if stated is None else stated
         self.ends = inf if seconds is None else clock() + seconds
         self.stopped = self.noticed = False
         self.outer = _LIMIT.get()
@@ -63,9 +70,9 @@ class TimeLimit:
         """What ended the search, as a clause."""
         if not self.stopped and self.clock() < self.ends and self.outer is not None:
             return self.outer.why
-        if self.stopped or self.seconds is None:
+        if self.stopped or self.stated is None:
             return "the search was stopped"
-        return f"the time limit of {self.seconds:.3g} s ended the search"
+        return f"the time limit of {self.stated:.3g} s ended the search"
 
     def notice(self) -> None:
         """A computation ends by it."""
@@ -78,7 +85,9 @@ _LIMIT: ContextVar[TimeLimit | None] = ContextVar("time_limit", default=None)
 
 
 @contextmanager
-def time_limit(seconds: float | None = None, *, of_processor: bool = False) -> Iterator[TimeLimit]:
+def time_limit(
+    seconds: float | None = None, *, of_processor: bool = False, stated: float | None = None
+) -> Iterator[TimeLimit]:
     """A limit for everything that is computed inside; of limits within one another the one that ends first counts.
 
     Parameters
@@ -86,6 +95,7 @@ def time_limit(seconds: float | None = None, *, of_processor: bool = False) -> I
     seconds : allowed; None for as long as it takes, or until ``stop`` of what it gives is called.
     of_processor : whether they are counted while this process computes, all its threads together, so that a busy
         machine leaves out no more than an idle one.
+    stated : seconds that what was ended names, where these are the rest of a longer time; by default ``seconds``.
 
     Raises
     ------
@@ -101,7 +111,7 @@ def time_limit(seconds: float | None = None, *, of_processor: bool = False) -> I
     """
     if seconds is not None and not (_is_number(seconds) and 0 < seconds < inf):
         raise InputError("must be a positive time", key="within", value=seconds, remedy="seconds, 30.0 say")
-    limit = TimeLimit(seconds, time.process_time if of_processor else time.monotonic)
+    limit = TimeLimit(seconds, time.process_time if of_processor else time.monotonic, stated)
     token = _LIMIT.set(limit)
     try:
         yield limit
@@ -150,7 +160,7 @@ def time_kept(reserve: float, share: float) -> Iterator[None]:
     """The limit around it ends ``reserve`` seconds earlier inside, for what is to be done with the outcome; at least a
     ``share`` of the time left stays."""
     outer = _LIMIT.get()
-    limit = TimeLimit() if outer is None else TimeLimit(outer.seconds, outer.clock)
+    limit = TimeLimit() if outer is None else TimeLimit(outer.seconds, outer.clock, outer.stated)
     if outer is not None and outer.left < inf:
         limit.ends = limit.clock() + max(outer.left - reserve, share * outer.left)
     token = _LIMIT.set(limit)

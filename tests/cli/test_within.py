@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -85,6 +86,7 @@ TABLE = {
     "assess": ("assess", "{long}"),
     "assess --remedies": ("assess", "{long}", "--remedies"),
     "analyze": ("analyze", "{long}", "-o", "report.html"),
+    "analyze --submission": ("analyze", "{long}", "-o", "report.html", "--submission"),
     "optimise": ("optimise", "{long}", "-f", "Shaft 2.fork_offset:-90deg:90deg", "-a", "least spare margin"),
     "run-up": ("run-up", "{long}", "-a", "5 rpm"),
     "stable-limit": ("stable-limit", "{long}", "-p", "HookeJoint *.angle:0deg:30deg"),
@@ -111,6 +113,15 @@ def test_a_command_ends_in_time_and_says_so(run, here, long, command):
         (line,) = [line for line in result.stderr.splitlines() if line.startswith("error:")]
         assert "time limit of 0.3 s" in line
     assert "satisfied:" not in result.stdout  # nothing that was not searched holds
+
+
+def test_a_report_that_is_cut_short_is_a_page_and_names_the_time_that_was_given(run, here, long):
+    """Even where the verdict has taken all of it: what was not searched is said on it."""
+    result = run("analyze", long, "--submission", "-o", "page.html", "--within", "0.4 s")
+    assert result.exit_code == 0, result.output
+    page = (here / "page.html").read_text(encoding="utf-8")
+    named = {*re.findall(r"time limit of ([^ ]+) s", result.output + page)}
+    assert named == {"0.4"} and page.rstrip().endswith("</html>")
 
 
 def test_time_that_is_no_time_is_refused(run):

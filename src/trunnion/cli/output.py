@@ -351,7 +351,9 @@ def stopped() -> bool:
 
 
 @contextmanager
-def stoppable(seconds: float | None = None, *, of_processor: bool = False) -> Iterator[TimeLimit]:
+def stoppable(
+    seconds: float | None = None, *, of_processor: bool = False, stated: float | None = None
+) -> Iterator[TimeLimit]:
     """What is computed inside ends within its time, see ``time_limit``, and on Ctrl-C, with what it has.
 
     A second Ctrl-C, or one that nothing has answered after some seconds, ends the command at once.
@@ -363,7 +365,7 @@ def stoppable(seconds: float | None = None, *, of_processor: bool = False) -> It
     global _stopped
     if EndedBy.raised:  # into something that swallowed it
         raise KeyboardInterrupt
-    with time_limit(seconds, of_processor=of_processor) as limit, _first_ctrl_c(limit):
+    with time_limit(seconds, of_processor=of_processor, stated=stated) as limit, _first_ctrl_c(limit):
         try:
             yield limit
         except OutOfTime:

@@ -105,13 +105,13 @@ def analyze(
     if not as_json:
         print_judged(verdict)
     left = None if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-    with output.stoppable(left), output.progress("findings"):
+    with output.stoppable(left, stated=seconds), output.progress("findings"):
         given = answer_of(verdict)
     if not as_json:
         print_findings(given)
     if handed_in:
         left = HANDED_IN if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-        handed, written = _submitted(given, file, to, left, of_processor=seconds is None)
+        handed, written = _submitted(given, file, to, left, seconds)
         if as_json:
             output.write_json("analyze", overview_json(at_speed(given), written))
             return
@@ -119,7 +119,7 @@ def analyze(
         output.written(written)
         return
     left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
-    with output.stoppable(left, of_processor=seconds is None) as limit:
+    with output.stoppable(left, of_processor=seconds is None, stated=seconds) as limit:
         if left < DRAWN:
             seen, written = at_speed(given), list[Path]()
             left_out: tuple[str, ...] = (f"The report itself: the time limit of {within} left no time to draw it",)
@@ -179,14 +179,15 @@ def _live(seen: Overview, report: Path) -> tuple[Path, tuple[str, ...]]:
 
 
 def _submitted(
-    given: OverviewAssessment, file: str, to: Path, left: float, *, of_processor: bool
+    given: OverviewAssessment, file: str, to: Path, left: float, within: float | None
 ) -> tuple[Submission, list[Path]]:
-    """The report that is handed in, and where it is written."""
+    """The report that is handed in, and where it is written; ``left`` of the time stated as ``within`` [s]."""
     from trunnion.cli.files import REPORTS
     from trunnion.reporting.submission import submission
     from trunnion.writing import folder_written_whole
 
-    with output.stoppable(left, of_processor=of_processor), output.progress("report to hand in") as advance:
+    limit = output.stoppable(left, of_processor=within is None, stated=within)
+    with limit, output.progress("report to hand in") as advance:
         page = submission(given, source=file, progress=advance)
     with to_the_end():
         if to.suffix.lower() in REPORTS:

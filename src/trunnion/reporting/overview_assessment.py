@@ -5,7 +5,7 @@ Nothing here is drawn, and nothing compiled that the answer does not need: chart
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import reduce
 from typing import Any
@@ -44,7 +44,7 @@ from trunnion.reporting.ranges import speed_range
 from trunnion.results.counts import few
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.words import Words
-from trunnion.waiting import OutOfTime, time_is_up
+from trunnion.waiting import OutOfTime, time_is_up, to_the_end
 
 NEARLY = 0.1
 """Spare margin below which a check deserves a word though it is satisfied."""
@@ -114,30 +114,41 @@ def judged(of: AssessableLine) -> AssessedLine:
 def answer(of: AssessedLine) -> OverviewAssessment:
     """What an engineer asks next: what lies just beyond the range, which resonances stand in it, what else binds."""
     line, assembly, words, speed, (low, high) = of.line, of.assembly, Words(of.unit), of.speed, of.speed_range
-    every = resonance_speeds(assembly)
+    with to_the_end():
+        every, modes = resonance_speeds(assembly), natural_frequencies(assembly)
     here = every.within(low, high)
     along = _along(of.subject.cases[0])
     joints, slowest = hooke_joints(line), lowest_speed(assembly)
-    findings = [
-        *check_findings(of.assessment),
-        *of.assessment.findings,
-        *beyond_findings(of.subject, of.assessment),
-        *(along_findings(assembly, along, words) if along else ()),
-        *line_findings(line, speed),
-        *resonance_findings(here, (low, high), speed, words),
-        *(() if lossy(assembly) else response_findings(assembly, every, (low, high), words)),
-        *(slow_findings(high, slowest, words) if joints and high <= slowest else ()),
-        *(free_findings(assembly, along, words) if joints and assembly.topology.free and not lossy(assembly) else ()),
-        *remark_findings(line),
+    freely = joints and assembly.topology.free and not lossy(assembly)
+    parts: list[Callable[[], Iterable[Finding]]] = [
+        lambda: check_findings(of.assessment),
+        lambda: of.assessment.findings,
+        lambda: beyond_findings(of.subject, of.assessment),
+        lambda: along_findings(assembly, along, words) if along else (),
+        lambda: line_findings(line, speed),
+        lambda: resonance_findings(here, (low, high), speed, words),
+        lambda: () if lossy(assembly) else response_findings(assembly, every, (low, high), words),
+        lambda: slow_findings(high, slowest, words) if joints and high <= slowest else (),
+        lambda: free_findings(assembly, along, words) if freely else (),
+        lambda: remark_findings(line),
     ]
+    findings = [finding for part in parts for finding in _in_time(part)]
     return OverviewAssessment(
         **_parts(of),
         operation=(line.operation or Operation()).model_copy(update={"speed": speed}),
-        natural_frequencies=natural_frequencies(assembly),
+        natural_frequencies=modes,
         resonance_speeds=here,
         along=along,
         findings=by_gravity(_once(findings)),
     )
+
+
+def _in_time(part: Callable[[], Iterable[Finding]]) -> list[Finding]:
+    """Findings, or the note that a time limit ended their search."""
+    try:
+        return list(part())
+    except OutOfTime as error:
+        return [Finding(Gravity.NOTE, f"Not all findings were searched: {error.why}.")]
 
 
 def _parts(of: AssessableLine) -> dict[str, Any]:
