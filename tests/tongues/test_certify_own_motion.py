@@ -211,6 +211,14 @@ def test_a_motion_that_leaves_the_stage_is_refused_by_name() -> None:
         tn.certify_stability(line, {}, (94.99, 95.01))
 
 
+def test_a_load_that_scatters_about_zero_is_refused_with_stages() -> None:
+    """At 64 rad/s it is nothing, and 10 N m either way within the tolerance."""
+    _, line = with_stages(0.02)
+    line = line.replace("load", load_torque=-32.0, viscous_load=0.5, quadratic_load=0.0)
+    with pytest.raises(tn.InputError, match="shaft = .*: has stages, and its load varies within the box"):
+        tn.certify_stability(line, {"load.load_torque": ("range", -42.0, -22.0)}, (63.99, 64.0))
+
+
 @pytest.mark.parametrize(("rest", "held"), [(0.0, True), (0.003, True), (0.006, False)])
 def test_the_whole_tube_has_to_stay_in_the_stage(rest: float, held: bool) -> None:
     """The motion comes within 0.005 of the knot at 0.02."""
