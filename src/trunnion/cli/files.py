@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -26,11 +26,26 @@ def check_report(path: Path) -> None:
     check_folder(path)
 
 
-def check_report_file(path: Path) -> None:
-    """Refuse what is no file for a report, NAME.html, or cannot be written."""
+def check_report_file(path: Path, key: str) -> None:
+    """Refuse what is no file for a report, NAME.html, or cannot be written; the option is called ``key``."""
     if path.suffix.lower() not in REPORTS:
-        _refuse(path, "does not end in .html", f"write {path.with_suffix('.html')}")
-    check_file(path, "report.html")
+        _refuse(path, "does not end in .html", f"write {path.with_suffix('.html')}", key)
+    check_file(path, "report.html", key)
+
+
+def check_line_file(path: Path, key: str) -> None:
+    """The same of a file for a line, NAME.toml."""
+    if path.suffix.lower() != ".toml":
+        _refuse(path, "does not end in .toml", f"write {path.with_suffix('.toml')}", key)
+    check_file(path, "line.toml", key)
+
+
+def check_not_read(paths: Sequence[Path], texts: Iterable[object], key: str = "--output") -> None:
+    """Refuse to write over a file that a command reads: one that its argument or an option, ``texts``, names."""
+    read = [Path(text) for text in texts if isinstance(text, str) and text and os.path.isfile(text)]
+    for path in paths:
+        if path.exists() and any(path.samefile(one) for one in read):
+            _refuse(path, "is a file that this command reads", "write to another file", key)
 
 
 def check_folder(folder: Path) -> None:
@@ -53,15 +68,15 @@ def check_outputs(paths: Sequence[Path]) -> None:
         check_file(path, "chart.png")
 
 
-def check_file(path: Path, example: str) -> None:
+def check_file(path: Path, example: str, key: str = "--output") -> None:
     """Refuse a folder in the place of a file, such as ``example``, and a place that cannot be written."""
     if path.is_dir():
-        _refuse(path, "is a folder", f"name a file in it, such as {path / example}")
+        _refuse(path, "is a folder", f"name a file in it, such as {path / example}", key)
     if not path.parent.is_dir():
-        _refuse(path, "lies in no folder", f"create the folder {path.parent}")
+        _refuse(path, "lies in no folder", f"create the folder {path.parent}", key)
     if not os.access(path.parent, os.W_OK):
-        _refuse(path, "cannot be written")
+        _refuse(path, "cannot be written", key=key)
 
 
-def _refuse(path: Path, problem: str, remedy: str = "choose another folder") -> NoReturn:
-    raise InputError(problem, key="--output", value=str(path), remedy=remedy) from None
+def _refuse(path: Path, problem: str, remedy: str = "choose another folder", key: str = "--output") -> NoReturn:
+    raise InputError(problem, key=key, value=str(path), remedy=remedy) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,7 +12,7 @@ import typer
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.cli.command_input import CommandInput, CommandSubject, InputAttribute, NumberBounds, OptionReader, Texts
-from trunnion.cli.files import check_report_file
+from trunnion.cli.files import check_line_file, check_not_read, check_report_file
 from trunnion.cli.options import Progress, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import file_of_line, read_line
@@ -54,12 +55,19 @@ def _orders(asked: CommandInput, text: str, key: str) -> list[float]:
         raise InputError("is not a list of orders", key=key, value=text, remedy='write "0.5,1,2"') from None
 
 
+def _description(asked: CommandInput) -> Path:
+    """Where the columns of the data are described."""
+    from trunnion.measured.signals.channel_file import beside
+
+    return Path(asked.texts["channels"] or beside(Path(asked.file)))
+
+
 def _reference_run(asked: CommandInput, text: str, key: str) -> Any:
     """Pitch errors from a file, whose columns are those of the data where it has no description of its own."""
     from trunnion.measured.signals.channel_file import beside
 
-    own, stated = beside(Path(text)), asked.texts["channels"]
-    channels = own if own.is_file() else stated or beside(Path(asked.file))
+    own = beside(Path(text))
+    channels = own if own.is_file() else _description(asked)
     return tn.pitch_errors(tn.read_measurement(text, channels), unit=asked.unit or "rpm")
 
 
@@ -151,7 +159,7 @@ def compare_measured(
     if over not in OVER:
         raise InputError("is not a picture", key="--over", value=over, remedy=nearest(over, list(OVER)))
     if report is not None:
-        check_report_file(report)
+        check_report_file(report, "--report")
     data = tn.track_orders(
         measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
         unit=unit,
@@ -179,9 +187,19 @@ def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[str, s
     return parts[0], (parts[1], parts[2])
 
 
+def _apart(free: list[tuple[str, tuple[str, str]]]) -> dict[str, tuple[str, str]]:
+    """Bounds by parameter, each named once."""
+    for name in (twice for k, (twice, _) in enumerate(free) if twice in dict(free[:k])):
+        raise InputError("is named twice", key="--free", value=name, remedy="give it one pair of bounds")
+    return dict(free)
+
+
 def _speeds(asked: CommandInput, text: str, key: str) -> list[float]:
     from trunnion.cli.readers import read_speed
+    from trunnion.driveline.operating_speed import speed_unit
 
+    if not asked.unit:  # that of the line: bare numbers are in it
+        asked = replace(asked, unit=speed_unit(read_line(asked.texts["line"])))
     return [read_speed(asked, one, key) for one in text.split(",")]
 
 
@@ -220,13 +238,17 @@ def identify(
     """
     if not free:
         raise InputError("is missing", key="--free", remedy='write --free "tube.stiffness:10kN*m/rad:40kN*m/rad"')
+    bounds = _apart(free)
+    if write is not None:
+        check_line_file(write, "--write")
+        check_not_read([write], [str(_description(asked))], "--write")
     data = tn.track_orders(
         measurement, orders, line=line, reference=reference, calibration=calibration, window=window, between=between,
         unit=unit,
     )  # fmt: skip
     if channel:
         data.column(channel)
-    found = tn.identify(line, data, dict(free), tongue_at=tongue_at or (), draws=draws, progress=progress)
+    found = tn.identify(line, data, bounds, tongue_at=tongue_at or (), draws=draws, progress=progress)
     if write is not None:
         tn.dump(found.line, write, comments_of=file_of_line(asked.texts["line"]))
 

@@ -35,6 +35,7 @@ from trunnion.cli.command_input import (
     OptionReader,
     Texts,
 )
+from trunnion.cli.files import check_not_read
 from trunnion.cli.places import PAGES, PICTURES_AND_DATA, TABLES, CommandOutput, answer, check_places
 from trunnion.cli.readers import read_time
 
@@ -139,6 +140,7 @@ def callback(name: str, sentence: str, function: Callable[..., CommandOutput]) -
         outputs, writes = texts.get("outputs"), made.writes and (made.unasked or texts.get("outputs"))
         if writes:
             check_places(outputs, made.writes)
+            check_not_read(outputs or (), texts.values())
         within = None if texts.get("within") is None else read_time(texts["within"], "--within")
         with output.progress(made.doing, within) if made.doing else nullcontext() as advance:
             shown = function(**values, **({"progress": advance} if "progress" in parameters else {}))

@@ -21,7 +21,7 @@ NOT_IN_C = {
     "centrifugal pendulum": "describe it by a TunedDamper at the speed that matters",
     "dry friction": "leave its sliders out",
     "dry friction at one motion": "leave its sliders out",
-    "lag of a motor": "leave torque_lag out: its torque follows the speed at once",
+    "lag of a motor": "leave corner_frequency and pole_pairs out: its torque follows the speed at once",
 }
 """Features that the function of states and time alone does not hold, and what to do."""
 PER_LINE = 3

@@ -331,9 +331,11 @@ def even_times(values: ArrayLike, key: str) -> tuple[float, float]:
 
     Raises
     ------
-    InputError : they are not equal to a thousandth of a step, or not finite.
+    InputError : there are none, some are not finite, or one is half a step or more from where equal steps have it.
     """
     times = np.asarray(values, dtype=float)
+    if not len(times):
+        raise InputError("holds no samples", key=key, remedy="record again")
     if len(times) < 2 or not np.all(np.isfinite(times)):
         raise InputError("is not a column of times", key=key, remedy="name another, or give rate")
     step = (times[-1] - times[0]) / (len(times) - 1)
@@ -343,5 +345,12 @@ def even_times(values: ArrayLike, key: str) -> tuple[float, float]:
         raise InputError(
             "has steps that are not equal: there is a gap", key=key, value=at,
             remedy="cut the file there, or give the times of edges as kind = \"edges\"",
+        )  # fmt: skip
+    astray = np.abs(times - times[0] - step * np.arange(len(times)))
+    if astray.max() > 0.5 * step:
+        raise InputError(
+            f"has steps that change: equal ones are {figures(float(astray.max()), 2)} s off at "
+            f"{figures(float(times[int(astray.argmax())]), 5)} s", key=key,
+            remedy="bring the samples to equal steps first",
         )  # fmt: skip
     return float(times[0]), float(1 / step)

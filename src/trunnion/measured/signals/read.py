@@ -85,7 +85,7 @@ def _measurement(file: Path, source: SignalSource, description: FileDescription)
     times = None
     if description.time is not None:
         column = column_of(source, description.time, "time")
-        times = even_times(np.concatenate(list(source.chunks(column))), column)
+        times = even_times(np.concatenate([np.zeros(0), *source.chunks(column)]), column)
     remarks: list[str] = []
     found = [_channel(source, one, description, times, remarks) for one in description.columns]
     return Measurement(found, file.name, tuple(remarks))

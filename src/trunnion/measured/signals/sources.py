@@ -294,6 +294,8 @@ def opened(path: Path) -> SignalSource:
     if ending not in OPENED:
         remedy = f"files end in {', '.join(OPENED)}"
         raise InputError("is not a file of signals", key="data", value=path.name, remedy=remedy)
+    if path.is_dir():
+        raise InputError("is a folder", key="data", value=str(path), remedy="name a file in it")
     if not path.is_file():
         raise InputError("is not there", key="data", value=str(path), remedy="correct the path")
     maker, library = OPENED[ending]

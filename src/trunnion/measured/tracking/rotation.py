@@ -22,6 +22,7 @@ from scipy.interpolate import CubicHermiteSpline
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import PulseTrain
+from trunnion.results.counts import counted
 
 SMOOTH = 4
 """Coefficients of the cubic of a window."""
@@ -200,8 +201,9 @@ def rotation_windows(
         fits.append(found)
     if not windows:
         raise InputError(
-            f"has no window of {turns} turns that tells {len(orders)} orders apart", element=train.name, key="window",
-            value=turns, remedy="ask for fewer orders or longer windows; a wheel shows orders below half its pulses",
+            f"has no window of {turns} turns that tells {counted(len(orders), 'order')} apart", element=train.name,
+            key="window", value=turns,
+            remedy="ask for fewer orders or longer windows; a wheel shows orders below half its pulses",
         )  # fmt: skip
     return tuple(windows), fits
 

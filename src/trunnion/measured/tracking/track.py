@@ -13,6 +13,7 @@ from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.arguments import numbers, whole_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import TURN, Channel, Measurement, PulseTrain, SampledSignal
@@ -112,7 +113,11 @@ def track_orders(
         raise InputError("is not a pulse train", key="reference", value=reference, remedy=f"take {trains[0].name}")
     turns = whole_number(window, "window", 1)
     given = None if line is None else assemble(line)
-    problem = _Tracking(measurement, main, {} if given is None else speed_ratios(given), calibration, turns)
+    places = {} if given is None else speed_ratios(given)
+    if places and main.at and main.at not in places:
+        remedy = nearest(main.at, list(places))
+        raise InputError("is not a disk of the line", element=main.name, key="at", value=main.at, remedy=remedy)
+    problem = _Tracking(measurement, main, places, calibration, turns)
     stretch = _stretch(main, between)
     problem.cut(stretch[0], stretch[1])
     wanted = problem.own_orders() if orders is None else _orders_of(orders)
