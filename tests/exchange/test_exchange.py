@@ -182,6 +182,22 @@ def test_state_space_answers_a_torque() -> None:
     assert outputs["rotation of Disk 2 [rad]"] == pytest.approx(12.0 / 4e3 / 2.5 + 30.0 / 1e3)
 
 
+def test_a_viscous_load_has_its_mean_torque(tmp_path: Path) -> None:
+    """2 N m s/rad at 100 rad/s behind a step-down of 4 turns at 25 rad/s: 50 N m there, 12.5 in front."""
+    from trunnion.exchange.matlab import state_space
+    from trunnion.exchange.network import network_of
+
+    parts = [tn.ConstantSpeed(), tn.Shaft(stiffness=4e3), tn.Disk(inertia=0.2), tn.Ratio(ratio=4.0)]
+    parts += [tn.Shaft(stiffness=1e3), tn.Disk(inertia=0.1, viscous_load=2.0)]
+    s = state_space(network_of(tn.Driveline(parts, operation=tn.Operation(speed=100.0))))
+    carried = -s["C"] @ np.linalg.solve(s["A"], s["B"] @ s["u0"])
+    outputs = dict(zip(s["outputs"].ravel(), carried.ravel(), strict=True))
+    assert abs(outputs["torque of Shaft 2 [N m]"]) == pytest.approx(50.0)
+    assert abs(outputs["torque of Shaft 1 [N m]"]) == pytest.approx(12.5)
+    with pytest.raises(InputError, match=r"Disk 2.viscous_load = 2: acts by a speed that is not stated"):
+        tn.export_line(tn.Driveline(parts), tmp_path / "line.mat", "matlab")
+
+
 def test_another_parser_reads_the_model(tmp_path: Path) -> None:
     """Matrices from what pymoca reads, by unknowns of every port and Lagrange's constraints: the same frequencies."""
     line = driven()

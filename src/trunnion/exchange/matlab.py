@@ -9,21 +9,23 @@ import numpy as np
 
 from trunnion.errors import InputError
 from trunnion.exchange.matrices import matrices_of
-from trunnion.exchange.network import Network, bare_flange
+from trunnion.exchange.network import Network, bare_flange, refuse_viscous_at_no_speed
 
 
 def state_space(network: Network) -> dict[str, Any]:
     """x = (q, q′) of the rotations, u torques on the inertias, y their rotations and the torques of the springs.
 
-    Rotations are the deviation from the turning with the input. ``u0`` are the constant torques of the loads.
+    Rotations are the deviation from the turning with the input. ``u0`` are the mean torques of the loads.
 
     Raises
     ------
-    InputError : a spring or gear that ends where nothing is heavy, gears that close a loop, nothing that vibrates.
+    InputError : a viscous load on a driven line whose speed is not stated; a spring or gear that ends where nothing is
+        heavy, gears that close a loop, nothing that vibrates.
     """
     if (name := bare_flange(network)) is not None:
         remedy = "put a Disk there, or join springs in series into one"
         raise InputError("ends where nothing is heavy, which a state space does not hold", element=name, remedy=remedy)
+    refuse_viscous_at_no_speed(network)
     m = matrices_of(network)
     n, inputs = len(m.rotations), len(m.inertias)
     over = np.linalg.inv(m.mass)

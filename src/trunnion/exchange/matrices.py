@@ -16,8 +16,8 @@ class NetworkMatrices:
     """M q″ + C q′ + K q = P u: q (n,) the rotations called ``rotations`` [rad], u (m,) torques on the ``inertias``
     [N m], positive in the sense in which rotations count.
 
-    ``load`` (m,) is the constant torque on each, by which loads resist. ``springs`` are the names of the rows of
-    ``twist`` (s, n), the elongation of each over q; ``stiffness_of`` and ``damping_of`` (s,) are theirs.
+    ``load`` (m,) is the mean torque on each, by which loads resist at the stated speed. ``springs`` are the names of
+    the rows of ``twist`` (s, n), the elongation of each over q; ``stiffness_of`` and ``damping_of`` (s,) are theirs.
     """
 
     rotations: tuple[str, ...]
@@ -59,7 +59,8 @@ def matrices_of(network: Network) -> NetworkMatrices:
     twist = np.array([share[one.far] - share[one.near] for one in springs]).reshape(len(springs), len(kept))
     moments, viscous = (np.array([getattr(one, key) for one in inertias]) for key in ("inertia", "viscous_load"))
     k, c = (np.array([getattr(one, key) for one in springs]) for key in ("stiffness", "damping"))
-    sense = np.sign([network.turning[one.at] for one in inertias])
+    turning = np.array([network.turning[one.at] for one in inertias])
+    constant = np.array([one.load_torque for one in inertias])
     return NetworkMatrices(
         rotations=tuple(names[key] for key in kept),
         inertias=tuple(one.name for one in inertias),
@@ -68,7 +69,7 @@ def matrices_of(network: Network) -> NetworkMatrices:
         damping=twist.T * c @ twist + on.T * viscous @ on,
         stiffness=twist.T * k @ twist,
         input=on.T,
-        load=-sense * [one.load_torque for one in inertias],
+        load=-np.sign(turning) * constant - viscous * turning * (network.speed or 0.0),
         twist=twist,
         stiffness_of=k,
         damping_of=c,

@@ -12,8 +12,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.errors import InputError
-from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Item, Network
+from trunnion.exchange.network import (
+    FlangeDrive,
+    FlangeGear,
+    FlangeInertia,
+    FlangeSpring,
+    Item,
+    Network,
+    refuse_viscous_at_no_speed,
+)
 
 ROTATIONAL = "Modelica.Mechanics.Rotational"
 KEYWORDS = frozenset(
@@ -35,6 +42,7 @@ def model_of(network: Network) -> str:
     ------
     InputError : a viscous load on a line whose speed is not stated.
     """
+    refuse_viscous_at_no_speed(network)
     names = _Identifiers()
     title = names.new(network.name or "Line")
     declared: list[str] = []
@@ -79,11 +87,6 @@ def _declarations(one: Item, network: Network, names: _Identifiers) -> Iterator[
                 source = names.new(f"load of {name}")
                 yield f"Sources.ConstantTorque {source}(tau_constant={torque!r})", [(at, f"{source}.flange")]
             if viscous:
-                if network.speed is None and network.of(FlangeDrive):
-                    raise InputError(
-                        "acts by a speed that is not stated", element=name, key="viscous_load", value=viscous,
-                        remedy="write speed in [operation]",
-                    )  # fmt: skip
                 drag, ground = names.new(f"drag of {name}"), names.new(f"ground of {name}")
                 own = -2 - len(names.taken)  # a flange of its own, which is none of the line
                 yield f"Components.Damper {drag}(d={viscous!r})", [(at, f"{drag}.flange_a"), (own, f"{drag}.flange_b")]

@@ -224,3 +224,20 @@ def bare_flange(network: Network) -> str | None:
         for end in (one.near, one.far)
     )
     return next((name for name, end in ends if group[end] not in heavy), None)
+
+
+def refuse_viscous_at_no_speed(network: Network) -> None:
+    """Refuse a viscous load on a driven line whose speed, and so the load's mean torque, is not stated.
+
+    Raises
+    ------
+    InputError : so.
+    """
+    if network.speed is not None or not network.of(FlangeDrive):
+        return
+    for one in network.of(FlangeInertia):
+        if one.viscous_load:
+            raise InputError(
+                "acts by a speed that is not stated", element=one.name, key="viscous_load", value=one.viscous_load,
+                remedy="write speed in [operation]",
+            )  # fmt: skip
