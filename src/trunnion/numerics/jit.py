@@ -31,6 +31,7 @@ from trunnion.numerics.sources import SOURCES, digest_of
 # numba states no types of these.
 DECORATORS: tuple[Any, ...] = (dispatcher, ccallback)
 """Where numba's decorators find the cache that they give a function."""
+C_FUNCTION: Any = ccallback.CFunc
 NO_CACHE: Any = caching.NullCache
 COMPILED: Any = compiler.CompileResult
 DUMPS: Any = serialize.dumps
@@ -203,12 +204,20 @@ event.register("numba:compile", _FailedCompilations())  # type: ignore[no-untype
 
 @contextmanager
 def caches_of(kind: type[CodeCache] | type[NoCodeCache]) -> Iterator[None]:
-    """Within it numba's own decorators with ``cache=True`` give their functions caches of this kind."""
-    before = [module.FunctionCache for module in DECORATORS]
+    """Within it numba's own decorators with ``cache=True`` give their functions caches of this kind, and those of C
+    functions tell that they compile, as all others do: whoever counts the time, or releases locks, hears of it."""
+    before, silent = [module.FunctionCache for module in DECORATORS], C_FUNCTION._compile_uncached
     for module in DECORATORS:
         module.FunctionCache = kind
+
+    def told(function: Any) -> Any:
+        with event.trigger_event("numba:compile"):  # type: ignore[no-untyped-call]
+            return silent(function)
+
+    C_FUNCTION._compile_uncached = told
     try:
         yield
     finally:
+        C_FUNCTION._compile_uncached = silent
         for module, one in zip(DECORATORS, before, strict=True):
             module.FunctionCache = one
