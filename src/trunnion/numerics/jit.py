@@ -210,11 +210,11 @@ def caches_of(kind: type[CodeCache] | type[NoCodeCache]) -> Iterator[None]:
     for module in DECORATORS:
         module.FunctionCache = kind
 
-    def told(function: Any) -> Any:
+    def compile_heard(function: Any) -> Any:
         with event.trigger_event("numba:compile"):  # type: ignore[no-untyped-call]
             return silent(function)
 
-    C_FUNCTION._compile_uncached = told
+    C_FUNCTION._compile_uncached = compile_heard
     try:
         yield
     finally:
