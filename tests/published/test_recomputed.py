@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from published.cases.chains import turbine_generator, wind_turbine
+from published.cases.chains import motorcycle_crank, turbine_generator, wind_turbine
 
 import trunnion as tn
 
@@ -37,3 +37,20 @@ def test_frequencies_of_the_turbine_generator() -> None:
     squares = np.linalg.eigvals(np.diag(base / (2 * h)) @ ends.T @ np.diag(k) @ ends).real
     found = tn.natural_frequencies(turbine_generator()).hertz[1:]
     assert found == pytest.approx(np.sqrt(np.sort(squares)[1:]) / (2 * np.pi), rel=1e-10)
+
+
+def test_frequencies_of_the_motorcycle_crank() -> None:
+    """Biedenkopf's six masses by Holzer's recursion: at a natural frequency no torque is left behind the last one."""
+    j = [0.0000199, 0.0016958, 0.0021595, 0.0018157, 0.0012602, 0.0000154]
+    k = [one * 180 / np.pi for one in (3014, 2562, 2430, 2636, 2562)]
+
+    def left(hertz: float) -> float:
+        square, angle, torque = (2 * np.pi * hertz) ** 2, 1.0, 0.0
+        for i, inertia in enumerate(j):
+            torque += inertia * square * angle
+            angle -= torque / k[i] if i < len(k) else 0.0
+        return torque
+
+    for number, found in enumerate(tn.natural_frequencies(motorcycle_crank()).hertz[1:], start=1):
+        below, above = left(found * (1 - 1e-9)), left(found * (1 + 1e-9))
+        assert below * above < 0, number

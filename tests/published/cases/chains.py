@@ -33,10 +33,14 @@ SOURCES = {
         "Sopanen, Ruuskanen, Nerg and Pyrhönen, IEEE Trans. Ind. Electron. 58 (2011)",
         "openTorsion's notebook on it, with the model and its eigenfrequencies; not the article",
     ),
+    "Biedenkopf 2020": Source(
+        "Biedenkopf, Torsional oscillator model for a 4-cylinder crankshaft, a program in a public repository (2020)",
+        "the program, with inertias and stiffnesses in N m per degree, and the frequencies in its legends",
+    ),
 }
 
 
-def chain(inertias: Sequence[float], stiffnesses: Sequence[float]) -> tn.Driveline:
+def chain(inertias: Sequence[float], stiffnesses: Sequence[float | str]) -> tn.Driveline:
     """Disks with a shaft between every two."""
     elements: list[Any] = [tn.Disk(inertia=inertias[0])]
     for stiffness, inertia in zip(stiffnesses, inertias[1:], strict=True):
@@ -136,6 +140,12 @@ def wind_turbine() -> tn.Driveline:
     )
 
 
+def motorcycle_crank() -> tn.Driveline:
+    """Four throws of a crank of a Honda CBR600RR and its two ends, from a scanned part."""
+    inertias = [0.0000199, 0.0016958, 0.0021595, 0.0018157, 0.0012602, 0.0000154]
+    return chain(inertias, [f"{k} N*m/deg" for k in (3014, 2562, 2430, 2636, 2562)])
+
+
 def _marine_speeds() -> Any:
     modes = tn.natural_frequencies(marine_turbine()).undamped_frequency
     return modes[modes > 0][:3] / tn.rpm(1)
@@ -175,5 +185,9 @@ BATCHES = (
         "Sopanen 2011", "eigenfrequencies", "rad/s",
         {"mode 1": "58.34", "mode 2": "1034.115"},
         lambda: tn.natural_frequencies(wind_turbine()).undamped_frequency[1:],
+    ),
+    Batch(
+        "Biedenkopf 2020", "six masses of a motorcycle's crank", "Hz", {"mode 1": "1169", "mode 2": "2085"},
+        lambda: hertz(motorcycle_crank())[:2],
     ),
 )  # fmt: skip
