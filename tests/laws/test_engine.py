@@ -45,7 +45,7 @@ def engine(**changes) -> Engine:
     stated = {
         "firing_order": "1-5-3-6-2-4", "throw_inertia": 4.5, "throw_stiffness": 8e6, "drive_share": 1, "name": "engine",
     }  # fmt: skip
-    return tn.Engine(**{**stated, **changes})
+    return tn.Engine(**{key: value for key, value in {**stated, **changes}.items() if value is not None})
 
 
 def ship(*parts, load=LOAD) -> tn.Driveline:
@@ -318,7 +318,7 @@ def test_stiffness_from_dimensions():
         "ker wilson": 0.054 / journal + 0.052 / pin + 0.023 / web,
     }
     for formula, yields in by_hand.items():
-        one = engine(throw_stiffness=[], stiffness_formula=formula, **sizes)
+        one = engine(throw_stiffness=None, stiffness_formula=formula, **sizes)
         shafts = [e for e in one.made_of("engine") if isinstance(e, tn.Shaft)]
         assert [s.stiffness for s in shafts] == pytest.approx([np.pi * 8e10 / 32 / yields] * 5, rel=1e-12)
     line = ship(one)
@@ -328,7 +328,7 @@ def test_stiffness_from_dimensions():
     assert heavier.journal_diameter == 0.06 and heavier.throw_inertia[1] == 5.0
     assert tn.loads(tn.dumps(line)) == line
     plain = engine(
-        throw_stiffness=[], **sizes | {"pin_bore": 0.0, "pin_length": 1e-6, "web_thickness": 0.1, "web_width": 9}
+        throw_stiffness=None, **sizes | {"pin_bore": 0.0, "pin_length": 1e-6, "web_thickness": 0.1, "web_width": 9}
     )
     shaft = tn.Shaft(outer_diameter=0.06, length=0.03 + 0.08, shear_modulus=8e10)
     assert plain.stiffnesses[0] == pytest.approx(shaft.torsional_stiffness, rel=1e-3)

@@ -74,6 +74,7 @@ class Coupling(SpringElement):
     """
 
     example: ClassVar[str] = 'stiffness = "35 kN*m/rad" and relative_damping = 1.13'
+    loss_keys: ClassVar[tuple[str, ...]] = ("loss_factor", "relative_damping")
     ratings: ClassVar[tuple[str, ...]] = ("nominal_torque", "maximum_torque", "vibratory_torque", "heat_rating")
     idle: ClassVar[tuple[str, ...]] = (*ratings, "thermal_resistance", "ambient_temperature", "highest_temperature")
 
@@ -123,7 +124,9 @@ class Coupling(SpringElement):
         if not self.torques and not self.stiffnesses:
             return
         if self.stiffness is not None:
-            raise InputError("conflicts with stiffness", key="stiffnesses", remedy="leave one of the two out")
+            key = "torques" if self.torques else "stiffnesses"
+            value, remedy = list(getattr(self, key)), "leave one of the two out"
+            raise InputError("conflicts with stiffness", key=key, value=value, remedy=remedy)
         _table("torques", self.torques, "stiffnesses", self.stiffnesses, TORQUE)
         if self.torques[0] < 0:
             remedy = "begin at 0 or above; the stiffness is the same in both directions"
@@ -143,7 +146,7 @@ class Coupling(SpringElement):
         if not self.temperatures:
             if factors:
                 key, remedy = next(iter(factors)), 'write temperatures = ["30 degC", "90 degC"], say'
-                raise InputError("has no temperatures", key=key, remedy=remedy)
+                raise InputError("has no temperatures", key=key, value=list(factors[key]), remedy=remedy)
         elif not factors:
             remedy = "write stiffness_factors = [1, 0.72], say, or damping_factors"
             raise InputError("have no factors", key="temperatures", remedy=remedy)

@@ -142,7 +142,7 @@ class Disturbance(Record):
         """What it is, and where it acts."""
         if not isinstance(data.get("on"), str):
             return cls.what
-        return f"{data['case']} on {data['on']}" if data.get("case") in CASES else f"{cls.what} on {data['on']}"
+        return f"{data['case']} on {data['on']}" if data.get("case") in tuple(CASES) else f"{cls.what} on {data['on']}"
 
     @model_validator(mode="after")
     def _whole(self) -> Disturbance:

@@ -52,7 +52,10 @@ def _sheet(value: object) -> object:
         return value
     if not isinstance(value, dict):
         raise InputError("is not a sheet", value=value, remedy='write component = "maker/type", or tn.component(...)')
-    return Sheet(**value)
+    try:
+        return Sheet(**value)
+    except InputError as error:
+        raise error.each(lambda one: one.but(element="", key=f"sheet.{one.key}")) from None
 
 
 class Element(Record):

@@ -14,8 +14,8 @@ from trunnion.driveline.composite import Composite
 from trunnion.driveline.crank_throw import FORMULAS, CrankThrow, throw_stiffness
 from trunnion.driveline.cylinder_torque import compression, cycles, for_several, gas, masses
 from trunnion.driveline.elements import Disk, Doubt, Element, not_negative, positive
-from trunnion.driveline.excitation import Excitation, Excitations
-from trunnion.driveline.pressure import PressureCurve, PressureCurves
+from trunnion.driveline.excitation import Excitation, harmonics
+from trunnion.driveline.pressure import PressureCurve, curves
 from trunnion.driveline.quantities import (
     DEGREE,
     INERTIA,
@@ -33,6 +33,7 @@ from trunnion.driveline.quantities import (
     Pressure,
     QuadraticLoad,
     Stiffness,
+    TableList,
     Torque,
     optional,
     shown,
@@ -67,6 +68,7 @@ GAS = ("gas_torque", "pressure", "mean_indicated_pressure")
 """What gas torques are stated by, one of these."""
 CRANK = ("journal_diameter", "journal_length", "pin_diameter", "pin_length", "web_thickness", "web_width")
 """Dimensions that the stiffness of a throw follows from, besides the stroke."""
+BORES = ("journal_bore", "pin_bore")
 _ORDER = 'write firing_order = "1-5-3-6-2-4", say'
 
 
@@ -218,8 +220,12 @@ class Engine(Composite):
     stroke: Maybe[Length] = optional(default=None, description="of its piston, twice the crank radius")
     rod_length: Maybe[Length] = optional(default=None, description="of its rod, between the centres")
     reciprocating_mass: Maybe[Mass] = optional(default=None, description="of piston, pin and part of the rod")
-    gas_torque: Excitations = optional(default=(), description="harmonics of the gas torque of one cylinder")
-    pressure: PressureCurves = optional(default=(), description="of one cylinder, a curve for each load")
+    gas_torque: Annotated[TableList[Excitation], BeforeValidator(harmonics("gas_torque", none=False))] = optional(
+        default=(), description="harmonics of the gas torque of one cylinder"
+    )
+    pressure: Annotated[TableList[PressureCurve], BeforeValidator(curves("pressure"))] = optional(
+        default=(), description="of one cylinder, a curve for each load"
+    )
     mean_indicated_pressure: Annotated[OneOrSeveral[Pressure], BeforeValidator(_one_or_each("18 bar"))] = optional(
         default=(), description="of a cylinder, one for all loads or several that rise", json_schema_extra=_also_one
     )
@@ -246,7 +252,9 @@ class Engine(Composite):
     ] = optional(default=(), description="the same over the square of the speed", json_schema_extra=_also_one)
     misfiring: WholeNumber = Field(default=None, description="number of the cylinder that does not fire")
     cut_out: WholeNumber = Field(default=None, description="number of the cylinder without gas torque")
-    compression: PressureCurves = optional(default=(), description="pressure in a cylinder that does not fire")
+    compression: Annotated[TableList[PressureCurve], BeforeValidator(curves("compression"))] = optional(
+        default=(), description="pressure in a cylinder that does not fire"
+    )
     compression_ratio: Maybe[Dimensionless] = optional(default=None, description="instead, of its volumes")
     charge_pressure: Annotated[OneOrSeveral[Pressure], BeforeValidator(_one_or_each("3 bar"))] = optional(
         default=(), description="absolute, where compression begins; one for all, or one for each mean pressure",
@@ -267,7 +275,9 @@ class Engine(Composite):
     def _check_order(self) -> None:
         order, count = self.firing_order, len(self.firing_order)
         if not 1 <= count <= MOST_CYLINDERS:
-            raise InputError(f"must have 1 to {MOST_CYLINDERS} cylinders", key="firing_order", value=list(order))
+            raise InputError(
+                f"must have 1 to {MOST_CYLINDERS} cylinders", key="firing_order", value=list(order), remedy=_ORDER
+            )
         if sorted(order) != list(range(1, count + 1)):
             missing = sorted(set(range(1, count + 1)) - set(order))
             problem = f"must have every cylinder from 1 to {count} once, and has no {missing[0]}"
@@ -297,6 +307,7 @@ class Engine(Composite):
         if not self.throw_inertia:
             raise InputError("is missing", key="throw_inertia", remedy='write throw_inertia = "0.02 kg*m^2", say')
         drawn = [key for key in (*CRANK, "shear_modulus") if getattr(self, key) is not None]
+        drawn += [key for key in BORES if getattr(self, key)]
         if drawn and self.throw_stiffness:
             value, remedy = getattr(self, drawn[0]), "leave one of the two out"
             raise InputError("conflicts with throw_stiffness", key=drawn[0], value=value, remedy=remedy)
@@ -314,12 +325,12 @@ class Engine(Composite):
             if len(values) > 1 and len(values) != count:
                 what = "throw" if key == "throw_inertia" else "shaft between two throws"
                 problem = f"must be one for all or {count}, one for each {what}"
-                raise InputError(problem, key=key, value=len(values))
+                raise InputError(problem, key=key, value=list(values), remedy=f'write {key} = "{kind.example}", say')
         for key in LOADS:
-            given = len(getattr(self, key))
-            if given > 1 and given != self.throws:
+            values = getattr(self, key)
+            if len(values) > 1 and len(values) != self.throws:
                 problem = f"must be one for all or {self.throws}, one for each throw"
-                raise InputError(problem, key=key, value=given)
+                raise InputError(problem, key=key, value=list(values), remedy="write 0 for a throw that drives nothing")
         positive(self, "loss_factor_frequency")
         not_negative(self, "damping", "loss_factor", "drive_share")
         for key in ("loss_factor", "damping"):
@@ -347,7 +358,7 @@ class Engine(Composite):
 
     @property
     def _drawn(self) -> CrankThrow:
-        numbers = {key: float(getattr(self, key)) for key in (*CRANK, "journal_bore", "pin_bore")}
+        numbers = {key: float(getattr(self, key)) for key in (*CRANK, *BORES)}
         return CrankThrow(radius=float(self.stroke or 0.0) / 2, **numbers)
 
     @property
@@ -415,7 +426,8 @@ class Engine(Composite):
                 remedy="leave one of the two out",
             )
         if len(self.compression) > 1:
-            raise InputError("must be one curve", key="compression", value=len(self.compression))
+            remedy = "give the curve of a cylinder that does not fire"
+            raise InputError("must be one curve", key="compression", value=len(self.compression), remedy=remedy)
         numbers = ("compression_ratio", "charge_pressure", "polytropic_exponent")
         given = [key for key in numbers if getattr(self, key) not in (None, ())]
         if given and self.compression:
@@ -443,7 +455,7 @@ class Engine(Composite):
                 raise InputError("must be positive", key=key, value=min(values), remedy=remedy)
             if len(values) > 1 and len(values) != len(means):
                 problem = f"must be one for all or {len(means)}, one for each mean_indicated_pressure"
-                raise InputError(problem, key=key, value=len(values))
+                raise InputError(problem, key=key, value=list(values), remedy="add those that are missing")
         positive(self, "expansion_exponent")
         if not means:
             for key in ("peak_pressure", "expansion_exponent"):
@@ -589,7 +601,7 @@ class Engine(Composite):
                     changes[key] = _short(loads) if any(loads) else ()
         stiffnesses = [float(one.stiffness or 0) for one in elements if isinstance(one, Shaft)]
         if stiffnesses and tuple(stiffnesses) != self.stiffnesses:
-            changes |= dict.fromkeys((*CRANK, "journal_bore", "pin_bore", "shear_modulus", "stiffness_formula"))
+            changes |= dict.fromkeys((*CRANK, *BORES, "shear_modulus", "stiffness_formula"))
             changes["throw_stiffness"] = _short(stiffnesses)
         try:
             found = self.but(**changes)

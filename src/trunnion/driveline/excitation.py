@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase
+from collections.abc import Callable
 from functools import cached_property
 from itertools import pairwise
 from math import prod
@@ -158,7 +159,7 @@ class Excitation(Record):
         found = [
             np.interp(torque, self.torques, row.real) + 1j * np.interp(torque, self.torques, row.imag) for row in rows.T
         ]
-        return self.but(torques=(), amplitudes=tuple(map(abs, found)), phases=tuple(map(phase, found)))
+        return self.but(torques=None, amplitudes=tuple(map(abs, found)), phases=tuple(map(phase, found)))
 
     @property
     def stated_as(self) -> str:
@@ -187,14 +188,17 @@ class Excitation(Record):
         return " and ".join(f"{end(over, points[0])} to {end(over, points[-1])}" for over, points in self.axes)
 
 
-_READ = listed(Excitation, "harmonic torque")
+def harmonics(key: str, none: bool) -> Callable[[object], tuple[Excitation, ...]]:
+    """Reads the harmonic torques that ``key`` states; ``none``: whether there may be none of them."""
+    read = listed(Excitation, "harmonic torque", key=key, none=none)
+
+    def tables(value: object) -> tuple[Excitation, ...]:
+        if isinstance(value, str) and value.lower().endswith(".csv"):
+            remedy = f"use tn.load for a file beside the description, or {key}=tn.read_excitation(path)"
+            raise InputError("names a file that is not known here", value=value, remedy=remedy)
+        return read(value)
+
+    return tables
 
 
-def _tables(value: object) -> tuple[Excitation, ...]:
-    if isinstance(value, str) and value.lower().endswith(".csv"):
-        remedy = "use tn.load for a file beside the description, or excitation=tn.read_excitation(path)"
-        raise InputError("names a file that is not known here", value=value, remedy=remedy)
-    return _READ(value)
-
-
-Excitations = Annotated[TableList[Excitation], BeforeValidator(_tables)]
+Excitations = Annotated[TableList[Excitation], BeforeValidator(harmonics("excitation", none=True))]

@@ -320,7 +320,7 @@ def _elements(tables: Any, source: str, around: Surroundings | None) -> list[Ele
         raise InputError("is a single table", key="element", remedy="write [[element]] with double brackets")
     if not isinstance(tables, list) or not tables:
         remedy = 'write one [[element]] table per element, each with type = "Shaft", "Disk", "HookeJoint", ...'
-        raise InputError("has no elements", key="element", remedy=remedy)
+        raise InputError("has no elements", key="element", value=tables, remedy=remedy)
     refuse_too_many(len(tables))
     seen: Counter[str] = Counter()
     return all_made(partial(_element, table, i, seen, source, around) for i, table in enumerate(tables, start=1))
@@ -456,7 +456,9 @@ def _each(tables: Any, key: str, kind: type[Made], owner: str = "") -> list[Made
     """Every ``[[key]]`` of a file, or of a table of it that is its ``owner``."""
     header = f"[[{owner}.{key}]]" if owner else f"[[{key}]]"
     if not isinstance(tables, list):
-        raise InputError("is a single table", element=owner, key=key, remedy=f"write {header} with double brackets")
+        problem, value = ("is a single table", None) if isinstance(tables, dict) else ("is no table", tables)
+        remedy = f"write {header} with double brackets"
+        raise InputError(problem, element=owner, key=key, value=value, remedy=remedy)
 
     def one(place: int, table: Any) -> Made:
         label = f"{kind.what} {place}"

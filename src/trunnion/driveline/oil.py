@@ -95,7 +95,7 @@ class OilPoint(Record):
         return float((self.loss_stiffness or 0.0) if self.loss_factor is None else self.loss_factor * self.stiffness)
 
 
-_READ = listed(OilPoint, "point", f"write {POINTS}, or the name of a CSV file")
+_READ = listed(OilPoint, "point", f"write {POINTS}, or the name of a CSV file", none=False)
 
 
 def _points(value: object) -> tuple[OilPoint, ...]:
@@ -103,8 +103,6 @@ def _points(value: object) -> tuple[OilPoint, ...]:
         remedy = "use tn.load for a file beside the description, or oil=tn.read_oil(path)"
         raise InputError("names a file that is not known here", value=value, remedy=remedy)
     made = _READ(value)
-    if not made:
-        return made
     if len({one.temperature is None for one in made}) > 1:
         raise InputError("has points with and without a temperature", remedy="write it at all of them, or at none")
     for points in by_temperature(made).values():

@@ -62,7 +62,9 @@ SpeedRange = Annotated[tuple[Speed, Speed], _READ_SPEEDS, _SPEEDS_SCHEMA]
 AngleRange = Annotated[tuple[Angle, Angle], _READ_ANGLES, _ANGLES_SCHEMA]
 
 
-_TORQUES = by_name(partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }')
+_TORQUES = by_name(
+    "loads", partial(parse, kind=TORQUE), "is not a table of torques", 'write loads = { "Disk 2" = "250 N*m" }'
+)
 
 
 def _factor(value: object) -> float:
@@ -72,7 +74,7 @@ def _factor(value: object) -> float:
     return found
 
 
-_FACTORS = by_name(_factor, "is not a table of factors", "write factors = { fan = 1.2 }")
+_FACTORS = by_name("factors", _factor, "is not a table of factors", "write factors = { fan = 1.2 }")
 
 
 Duties = Annotated[TableList[Duty], BeforeValidator(listed(Duty, "duty"))]

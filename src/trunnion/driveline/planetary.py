@@ -25,7 +25,7 @@ from trunnion.driveline.quantities import (
     Torque,
     optional,
 )
-from trunnion.driveline.record import one_of
+from trunnion.driveline.record import one_of, whole_from
 from trunnion.driveline.shafts import Elastic
 from trunnion.errors import InputError
 
@@ -100,7 +100,9 @@ class Planetary(Elastic):
     free_speed: Dimensionless = optional(
         default=1.0, description="where none is held, mean speed of the third shaft over the input's"
     )
-    planets: int = Field(default=3, ge=1, le=100, description="how many planets")
+    planets: Annotated[int, BeforeValidator(whole_from(1, 100, example=3))] = Field(
+        default=3, ge=1, le=100, description="how many planets"
+    )
     planet_inertia: Maybe[Inertia] = optional(default=None, description="of one planet about its own axis")
     planet_mass: Maybe[Mass] = optional(default=None, description="of one planet")
     centre_distance: Maybe[Length] = optional(default=None, description="from the axis of a planet to the sun's")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
@@ -20,7 +21,6 @@ from trunnion.driveline.quantities import (
     Maybe,
     Pressure,
     Several,
-    TableList,
     optional,
 )
 from trunnion.driveline.record import Record, as_tuple, listed
@@ -82,17 +82,17 @@ class PressureCurve(Record):
         return self
 
 
-_READ = listed(PressureCurve, "pressure curve")
+def curves(key: str) -> Callable[[object], tuple[PressureCurve, ...]]:
+    """Reads the pressure curves that ``key`` states, one or more."""
+    read = listed(PressureCurve, "pressure curve", key=key, none=False)
 
+    def one_or_more(value: object) -> tuple[PressureCurve, ...]:
+        if isinstance(value, str) and value.lower().endswith(".csv"):
+            remedy = f"use tn.load for a file beside the description, or {key}=tn.read_pressure(path)"
+            raise InputError("names a file that is not known here", value=value, remedy=remedy)
+        return read([value] if isinstance(value, PressureCurve) else value)
 
-def _curves(value: object) -> tuple[PressureCurve, ...]:
-    if isinstance(value, str) and value.lower().endswith(".csv"):
-        remedy = "use tn.load for a file beside the description, or tn.read_pressure(path)"
-        raise InputError("names a file that is not known here", value=value, remedy=remedy)
-    return _READ([value] if isinstance(value, PressureCurve) else value)
-
-
-PressureCurves = Annotated[TableList[PressureCurve], BeforeValidator(_curves)]
+    return one_or_more
 
 
 def read_pressure(path: str | os.PathLike[str]) -> tuple[PressureCurve, ...]:

@@ -36,13 +36,28 @@ def _name(value: object) -> object:
 Name = Annotated[str, BeforeValidator(_name)]
 
 
-def _whole(value: object) -> object:
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-        raise InputError("must be a whole number", value=value, remedy="write 2, say, without quotes")
-    return value
+def whole_from(least: int | None, most: int | None, example: int) -> Callable[[object], object]:
+    """Reads a whole number of a range; None is no end of it."""
+    reach = f"{least} or more" if most is None else f"from {least} to {most}"
+
+    def read(value: object) -> object:
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise InputError("must be a whole number", value=value, remedy=f"write {example}, say, without quotes")
+        if (least is not None and value < least) or (most is not None and value > most):
+            raise InputError(f"must be {reach}", value=value, remedy=f"write {example}, say")
+        return value
+
+    return read
 
 
-WholeNumber = Annotated[int | None, BeforeValidator(_whole)]
+_READ_WHOLE = whole_from(None, None, example=2)
+
+
+def _whole_or_none(value: object) -> object:
+    return None if value is None else _READ_WHOLE(value)
+
+
+WholeNumber = Annotated[int | None, BeforeValidator(_whole_or_none)]
 
 
 def _switch(value: object) -> object:
@@ -82,14 +97,20 @@ class Record(BaseModel):
         return {k: v for k, f in type(self).model_fields.items() if (v := getattr(self, k)) != f.default}
 
     def but(self, **changes: Any) -> Self:
-        """The same with fields changed; None takes a field away."""
+        """The same with fields changed; None, or its default, takes a field away."""
+        defaults = {key: field.default for key, field in type(self).model_fields.items()}
         fields = {**self.stated, **changes}
-        return type(self)(**{key: value for key, value in fields.items() if value is not None})
+        return type(self)(**{k: v for k, v in fields.items() if v is not None and not _same(v, defaults.get(k))})
 
     @classmethod
     def quantity_of(cls, key: str) -> QuantityKind | None:
         """The physical kind of field `key`, or of the members of its list; None where it is not a quantity."""
         return _kind_in(cls.model_fields[key])
+
+
+def _same(value: object, default: object) -> bool:
+    """Whether a value is a default; an array is none."""
+    return type(value) is type(default) and bool(value == default)
 
 
 def _kind_in(part: Any) -> QuantityKind | None:
@@ -117,7 +138,9 @@ class Named(Record):
 Made = TypeVar("Made", bound=Record)
 
 
-def listed(kind: type[Made], word: str, remedy: str = "", owner: str = "") -> Callable[[object], tuple[Made, ...]]:
+def listed(
+    kind: type[Made], word: str, remedy: str = "", owner: str = "", key: str = "", none: bool = True
+) -> Callable[[object], tuple[Made, ...]]:
     """Reads a list of ``kind``, each made or as a table.
 
     Parameters
@@ -125,8 +148,11 @@ def listed(kind: type[Made], word: str, remedy: str = "", owner: str = "") -> Ca
     word : one of them in messages.
     remedy : how to write the list; by default as tables of a file.
     owner : key by which complaints about one already say which; the others get their number.
+    key : that the list is stated by; by default what one of it is called.
+    none : whether an empty list has a meaning.
     """
-    remedy = remedy or f"write {kind.what} = [{{ {kind.example.replace(' and ', ', ')} }}]"
+    key = key or kind.what
+    remedy = remedy or f"write {key} = [{{ {kind.example.replace(' and ', ', ')} }}]"
 
     def one(place: int, item: object) -> Made:
         try:
@@ -136,23 +162,29 @@ def listed(kind: type[Made], word: str, remedy: str = "", owner: str = "") -> Ca
         except InputError as error:
             if owner and isinstance(item, dict) and owner in item:
                 raise
-            raise numbered(error, kind.what, place) from None
+            raise numbered(error, key, place) from None
 
     def read(value: object) -> tuple[Made, ...]:
         if isinstance(value, str | dict | Record) or not isinstance(value, Iterable):
             raise InputError(f"is not a list of {word}s", value=value, remedy=remedy)
-        return tuple(all_made(partial(one, place, item) for place, item in enumerate(value, start=1)))
+        made = tuple(all_made(partial(one, place, item) for place, item in enumerate(value, start=1)))
+        if not made and not none:
+            raise InputError(f"has no {word}s", value=value, remedy=f"{remedy}; or leave it out")
+        return made
 
     return read
 
 
-def as_tuple(members: str, remedy: str) -> Callable[[object], object]:
-    """Reads a list as a tuple, whose ``members`` a message names."""
+def as_tuple(members: str, remedy: str, none: bool = False) -> Callable[[object], object]:
+    """Reads a list as a tuple, whose ``members`` a message names; without any only where ``none`` has a meaning."""
 
     def read(value: object) -> object:
         if isinstance(value, str | dict) or not isinstance(value, Iterable):
             raise InputError(f"is not a list of {members}", value=value, remedy=remedy)
-        return tuple(value)
+        found = tuple(value)
+        if not found and not none:
+            raise InputError(f"has no {members}", value=value, remedy=f"{remedy}; or leave it out")
+        return found
 
     return read
 
@@ -170,14 +202,14 @@ def one_of(words: Iterable[str], problem: str, remedy: str, near: bool = False) 
     return read
 
 
-def by_name(read: Callable[[object], Any], problem: str, remedy: str) -> Callable[[object], dict[str, Any]]:
-    """Reads a table of values by the names of elements, each with ``read``; ``problem``: what is not a table."""
+def by_name(key: str, read: Callable[[object], Any], problem: str, remedy: str) -> Callable[[object], dict[str, Any]]:
+    """Reads the table ``key`` of values by the names of elements, each with ``read``; ``problem``: of no table."""
 
     def one(name: object, value: object) -> tuple[str, Any]:
         try:
             return str(name), read(value)
         except InputError as error:
-            raise error.but(key=str(name), value=value) from None
+            raise error.but(key=f"{key}.{name}", value=value) from None
 
     def table(value: object) -> dict[str, Any]:
         if not isinstance(value, dict):

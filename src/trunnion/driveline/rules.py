@@ -187,9 +187,8 @@ class SwitchedOff(Record):
         return f"{self.rule}: {self.reason}"
 
 
-_AS_A_LIST = f"write switched_off = [{{ {SwitchedOff.example.replace(' and ', ', ')} }}]"
 SwitchedOffRules = Annotated[
-    TableList[SwitchedOff], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, _AS_A_LIST, owner="rule"))
+    TableList[SwitchedOff], BeforeValidator(listed(SwitchedOff, SwitchedOff.what, owner="rule", key="switched_off"))
 ]
 Application = Annotated[
     str, BeforeValidator(one_of(APPLICATIONS, "is not an application", f"known: {', '.join(APPLICATIONS)}"))

@@ -60,7 +60,7 @@ def _columns(kind: QuantityKind, key: str, owner: str) -> tuple[BeforeValidator,
     example = f'write {key} = {{ "{owner}" = ["{kind.example}", …] }}'
 
     items = {"type": "array", "items": json_schema_of(kind), "minItems": 2}
-    read = by_name(partial(_list_of, kind), "is not a table of lists", example)
+    read = by_name(key, partial(_list_of, kind), "is not a table of lists", example)
     return BeforeValidator(read), WithJsonSchema({"type": "object", "additionalProperties": items})
 
 

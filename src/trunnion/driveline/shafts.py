@@ -62,6 +62,9 @@ class Elastic(Element):
 class SpringElement(Elastic):
     """What a shaft and a coupling share: one stiffness, and damping as a coefficient or as a loss factor."""
 
+    loss_keys: ClassVar[tuple[str, ...]] = ("loss_factor",)
+    """Keys that each state its loss factor."""
+
     stiffness: Maybe[Stiffness] = optional(default=None, description="torsional stiffness")
     damping: Damping = optional(default=0.0, description="viscous damping")
     loss_factor: Maybe[Dimensionless] = optional(default=None, description="damping as a loss factor instead")
@@ -75,10 +78,10 @@ class SpringElement(Elastic):
     def _damped_one_way(self) -> Self:
         positive(self, "stiffness", "loss_factor_frequency")
         not_negative(self, "loss_factor")
-        if self.loss is None and self.loss_factor_frequency is not None:
+        beside = next((key for key in self.loss_keys if getattr(self, key) is not None), None)
+        if beside is None and self.loss_factor_frequency is not None:
             raise InputError("is needed with loss_factor_frequency", key="loss_factor", remedy="write 0.02, say")
-        if self.loss is not None and self.damping != 0.0:
-            beside = "loss_factor" if self.loss_factor is not None else "relative_damping"
+        if beside is not None and self.damping != 0.0:
             remedy = "leave one of the two out"
             raise InputError(f"conflicts with {beside}", key="damping", value=self.damping, remedy=remedy)
         return self

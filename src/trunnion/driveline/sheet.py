@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from trunnion.driveline.record import Record
+from trunnion.driveline.record import Record, whole_from
 from trunnion.errors import InputError
 
 LONGEST = 400
@@ -21,13 +21,20 @@ def _one_line(value: object) -> object:
     return value.strip()
 
 
+def _printable(value: object) -> bool:
+    return isinstance(value, str | int | float) and not isinstance(value, bool)
+
+
 def _lines(value: object) -> object:
     """A table of texts and numbers as a sheet prints them."""
     plain = isinstance(value, dict) and len(value) <= MOST_LINES
-    if not plain or not all(isinstance(one, str | int | float) for one in value.values()):  # type: ignore[attr-defined]
+    if not plain or not all(map(_printable, value.values())):  # type: ignore[attr-defined]
         remedy = 'write "C_Tdyn" = "65 kN m/rad", say, as the sheet prints it'
         raise InputError("is not a table of texts", value=value, remedy=remedy)
     return {str(_one_line(key)): _one_line(str(one)) for key, one in value.items()}  # type: ignore[attr-defined]
+
+
+_PRINTED = {"type": "object", "additionalProperties": {"type": ["string", "number"]}}
 
 
 def _numbers(value: object) -> object:
@@ -59,10 +66,12 @@ class Sheet(Record):
     example: ClassVar[str] = 'component = "maker/type", say'
 
     component: Line = Field(description="maker/type")
-    version: int = Field(default=1, ge=1, description="of the entry")
+    version: Annotated[int, BeforeValidator(whole_from(1, None, example=2))] = Field(
+        default=1, ge=1, description="of the entry"
+    )
     source: Line = Field(description="of the sheet: title and page")
     date: Line = Field(description="day or year of the sheet")
-    printed: Annotated[dict[str, str], BeforeValidator(_lines)] = Field(
+    printed: Annotated[dict[str, str], BeforeValidator(_lines), WithJsonSchema(_PRINTED)] = Field(
         default={}, description="as the sheet prints it"
     )
     numbers: Annotated[dict[str, Any], BeforeValidator(_numbers)] = Field(

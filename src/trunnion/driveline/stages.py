@@ -18,7 +18,9 @@ LAWS = ("always", "in contact")
 
 
 quantities = as_tuple(
-    "quantities", 'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say'
+    "quantities",
+    'write breakpoints = ["-4 deg", "4 deg"], stiffnesses = ["2 kN*m/rad", 0, "2 kN*m/rad"], say',
+    none=True,
 )
 
 
@@ -89,11 +91,15 @@ class PiecewiseShaft(Element):
             raise InputError("is empty", key="breakpoints", value=[], remedy="write a Shaft instead")
         if len(self.stiffnesses) != len(self.breakpoints) + 1:
             problem = f"must be {len(self.breakpoints) + 1} quantities, one more than breakpoints"
-            raise InputError(problem, key="stiffnesses", value=list(self.stiffnesses))
+            remedy = f"write {self.example}, say"
+            raise InputError(problem, key="stiffnesses", value=list(self.stiffnesses), remedy=remedy)
         if any(b <= a for a, b in zip(self.breakpoints, self.breakpoints[1:], strict=False)):
-            raise InputError("must rise", key="breakpoints", value=list(self.breakpoints))
+            raise InputError(
+                "must rise", key="breakpoints", value=list(self.breakpoints), remedy="sort them; each once"
+            )
         if min(self.stiffnesses) < 0:
-            raise InputError("must not be negative", key="stiffnesses", value=min(self.stiffnesses))
+            remedy = "write 0 where it carries nothing"
+            raise InputError("must not be negative", key="stiffnesses", value=min(self.stiffnesses), remedy=remedy)
         if not (max(self.stiffnesses) > 0 or self.slack):
             raise InputError("are all zero", key="stiffnesses", remedy="leave the shaft out, or give a stage stiffness")
         not_negative(self, "damping", remedy="write 0 for none")

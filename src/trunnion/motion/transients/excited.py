@@ -159,6 +159,6 @@ def _at_load(assembly: Assembly, name: str, number: int, law: Excitation, speed:
     except InputError as error:
         raise error.but(element=name, key=f"excitation {number}") from None
     return law.but(
-        share=None, torques=(), amplitudes=(), phases=(), amplitude=abs(found),
+        share=None, speeds=None, torques=None, amplitudes=None, phases=None, amplitude=abs(found),
         phase=float(law.phase + np.angle(found)),
     )  # fmt: skip
