@@ -67,11 +67,11 @@ def test_two_exponents_that_have_met_grow_as_integration_says() -> None:
     span = Span(assembly, 0.5, 2.0)
     modes, sides = Modes.of(span), ExponentOrders.of(assembly, reach=6)
     one, two = (modes.at(speed, np.array([mode])) for mode in (0, 1))
-    found = colliding_exponents(
+    found, moved = colliding_exponents(
         assembly, sides, span.table(speed), 2 * sides.turns**0, (one[0], two[0]), (one[1], two[1])
     )  # fmt: skip
     assert found.real.max() == pytest.approx(tn.stability(line, 1.118).growth_rate, rel=1e-3)
-    assert found.real.max() > 0 > found.real.min()
+    assert found.real.max() > 0 > found.real.min() and moved.max() < 1e-7
 
 
 def test_unstable_ranges_are_the_known_ones() -> None:

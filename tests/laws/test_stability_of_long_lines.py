@@ -16,8 +16,8 @@ from trunnion.floquet.propagation import hill_line, tree_mode_motion, tree_modes
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.floquet.ranges import exponents
+from trunnion.floquet.ranges.collisions import exponent_collisions
 from trunnion.floquet.ranges.span import Span
-from trunnion.floquet.ranges.unstable import exponent_collisions
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.results.verdict import Verdict
@@ -218,9 +218,9 @@ def test_meetings_of_exponents_along_the_tree_and_by_whole_matrices(monkeypatch:
         if name.startswith("Shaft"):  # unlike each other, so that no more than two modes meet
             line = line.replace(name, stiffness=2e5 * (1.5 + np.sin(i)))
     span = Span(assemble(line), 200.0, 320.0)
-    along = exponent_collisions(span, 200.0, 320.0)[0]
+    along = exponent_collisions(span, 200.0, 320.0).speed
     monkeypatch.setattr(exponents, "LONG", 10**9)
-    whole = exponent_collisions(span, 200.0, 320.0)[0]
+    whole = exponent_collisions(span, 200.0, 320.0).speed
     assert len(along) > 3 and along == pytest.approx(whole, rel=1e-7)
 
 

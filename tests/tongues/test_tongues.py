@@ -12,12 +12,12 @@ from long_lines import long_line
 import trunnion as tn
 from trunnion.floquet.tongues.boundaries import boundary_functions
 from trunnion.floquet.tongues.boundary_traces import joined
-from trunnion.floquet.tongues.bracketing import bracketed
 from trunnion.floquet.tongues.multiplier_collisions import multiplier_collisions
 from trunnion.floquet.tongues.region import Region, patched
 from trunnion.floquet.tongues.rows import TongueRow, looked_at, unstable_intervals
 from trunnion.floquet.tongues.series_roots import row_roots
 from trunnion.floquet.tongues.tongues import PATCH_TOLERANCE, task_of
+from trunnion.numerics.bracketing import bracketed
 from trunnion.results.verdict import Verdict
 
 LINE = tn.catalogue("two-shaft-cardan")

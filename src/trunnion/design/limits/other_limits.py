@@ -28,7 +28,7 @@ from trunnion.driveline.limits import LIMIT_KINDS, OneLimit
 from trunnion.driveline.parameters import Columns
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
-from trunnion.floquet.tongues.bracketing import bracketed
+from trunnion.numerics.bracketing import bracketed
 from trunnion.response.orders.response import response_of_table
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.peaks.peak_limits import required_of, service_factors

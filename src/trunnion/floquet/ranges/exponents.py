@@ -35,7 +35,9 @@ from trunnion.waiting import keep_time
 
 REACH = 2
 """Layers of side orders about the mode's own: what is left out shifts it by the fourth power of the joints' spread."""
-STEPS, PAIR_STEPS = 6, 4
+MOST_STEPS = 16
+"""Between the harmonics of two modes that act on each other, at most."""
+STEPS, PAIR_STEPS, CLOSER_STEPS = 6, 3, 2
 SETTLED = 1e-9
 """Share of |λ| by which the last step may still move it."""
 ASIDE = (0.0, 2e-3 * (1 + 1j), -5e-3 * (1 + 1j))
@@ -63,8 +65,12 @@ class ExponentOrders:
         """Raises InputError where the line has no period."""
         turns = require_period(assembly.line, assembly.topology)
         layers = sorted(offsets({int(rate * turns) for rate in assembly.topology.rates}, reach))
-        width = layers[-1] - layers[0] + 1
-        return cls(turns, np.array(layers, dtype=np.int64), 1 << int(np.ceil(np.log2(max(64, 4 * width)))))
+        return cls(turns, np.zeros(1, dtype=np.int64), 0).over(np.array(layers, dtype=np.int64))
+
+    def over(self, harmonics: Integers) -> ExponentOrders:
+        """The same with other ``harmonics``."""
+        width = int(np.ptp(harmonics)) + 1
+        return replace(self, harmonics=harmonics, times=1 << int(np.ceil(np.log2(max(64, 4 * width)))))
 
 
 def floquet_exponents(
@@ -92,22 +98,37 @@ def colliding_exponents(
     cycles: Fraction,
     starts: tuple[Complex, Complex],
     shapes: tuple[NDArray[Any], NDArray[Any]],
-) -> Complex:
+    *,
+    statically_twisted: bool = True,
+) -> tuple[Complex, Array]:
     """The two exponents (case, 2) that are near λ_i and λ_j* + icΩ, of modes that meet or have met: with
-    ``cycles`` c of the coefficients per turn, as of ``floquet_exponents``.
+    ``cycles`` c of the coefficients per turn, as of ``floquet_exponents``; and by how much the last step moved either
+    (case,) [1/s].
     """
     away = -int(cycles * sides.turns)
-    both = replace(sides, harmonics=np.union1d(sides.harmonics, sides.harmonics + away))
-    found = np.full((len(table), 2), np.nan, dtype=complex)
+    path = _path(assembly, sides, away)
+    both = sides.over(np.unique(np.concatenate([sides.harmonics, sides.harmonics + away, path])))
+    found, moved = np.full((len(table), 2), np.nan, dtype=complex), np.full(len(table), np.nan)
     for some in _batches(np.arange(len(table)), both, assembly):
         keep_time()
-        blocks = _Blocks(assembly, both, table[some])
+        blocks = _Blocks(assembly, both, table[some], statically_twisted)
         partner = starts[1][some].conj() + 1j * float(cycles) * table[some, 0]
         x = np.zeros((len(some), len(both.harmonics), assembly.topology.size, 2), dtype=complex)
         x[:, int(np.searchsorted(both.harmonics, 0)), :, 0] = shapes[0][some]
         x[:, int(np.searchsorted(both.harmonics, away)), :, 1] = shapes[1][some].conj()
-        found[some] = _two(blocks, (starts[0][some] + partner) / 2, x.reshape(len(some), -1, 2))
-    return found
+        found[some], moved[some] = _two(blocks, (starts[0][some] + partner) / 2, x.reshape(len(some), -1, 2))
+    return found, moved
+
+
+def _path(assembly: Assembly, sides: ExponentOrders, away: int) -> Integers:
+    """Harmonics over which those about 0 act on those about ``away``, by as few steps as there are."""
+    rates = {int(rate * sides.turns) for rate in assembly.topology.rates}
+    steps, reach = {0: 0}, 0
+    while away not in steps and reach < MOST_STEPS:
+        reach += 1
+        steps = offsets(rates, reach)
+    between = [h for h, count in steps.items() if steps.get(away - h, reach + 1) + count <= reach]
+    return np.array(between, dtype=np.int64)
 
 
 def _along_tree(assembly: Assembly) -> bool:
@@ -127,8 +148,8 @@ def _batches(cases: Places, sides: ExponentOrders, assembly: Assembly) -> Iterat
 class _Blocks:
     """A(λ) of some rows of packed numbers and A′(λ), each (case, m, m)."""
 
-    def __init__(self, assembly: Assembly, sides: ExponentOrders, table: Array) -> None:
-        co = assembly.coefficients(table, any_frequency=True)
+    def __init__(self, assembly: Assembly, sides: ExponentOrders, table: Array, twisted: bool = True) -> None:
+        co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
         tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
         self.tree: TreeHill | None = None
@@ -185,13 +206,32 @@ def _one(blocks: _Blocks, value: Complex, shape: NDArray[Any]) -> Complex:
         return np.where(moved <= SETTLED * np.abs(value), value, np.nan)
 
 
-def _two(blocks: _Blocks, middle: Complex, x: Complex) -> Complex:
-    """Two exponents about their ``middle`` (case,), from a plane x (case, m, 2) near that of their motions."""
-    pair = np.stack([middle, middle], axis=1)
+def _two(blocks: _Blocks, middle: Complex, x: Complex) -> tuple[Complex, Array]:
+    """Two exponents about their ``middle`` (case,), from a plane x (case, m, 2) near that of their motions, and by how
+    much the last step moved either (case,)."""
     for _ in range(PAIR_STEPS):
         x = np.linalg.qr(x)[0]
         u = blocks.step_from(middle, x)
+        little = x.conj().transpose(0, 2, 1) @ u
         with np.errstate(divide="ignore", invalid="ignore"):
-            pair = middle[:, None] - 1 / np.linalg.eigvals(x.conj().transpose(0, 2, 1) @ u)
+            share, vectors = np.linalg.eig(little)
+            pair = middle[:, None] - 1 / share
         middle, x = pair.mean(axis=1), u
-    return pair
+    # Where a third is near, each by itself comes closer.
+    x, moved = x @ vectors, np.zeros(len(pair))
+    for k in range(2):
+        pair[:, k], last = _closer(blocks, pair[:, k], x[..., k : k + 1])
+        moved = np.maximum(moved, last)
+    return pair, moved
+
+
+def _closer(blocks: _Blocks, value: Complex, x: Complex) -> tuple[Complex, Array]:
+    """An exponent after a few steps more, and by how much the last moved it."""
+    moved = np.full(len(value), np.inf)
+    for _ in range(CLOSER_STEPS):
+        x = x / np.linalg.norm(x, axis=1, keepdims=True)
+        x_next = blocks.step_from(value, x)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            change = 1 / (x.conj() * x_next).sum(axis=(1, 2))
+        value, moved, x = value - change, np.abs(change), x_next
+    return value, moved

@@ -70,6 +70,8 @@ class Span:
     """Speeds at which what ``put`` does has a kink."""
     lost: tuple[Gap, ...] = field(default=())
     """Speeds at which the line has no motion to look at."""
+    statically_twisted: bool = True
+    """Whether mean torques shift the phases of joints, where stability is looked at."""
 
     def table(self, speed: Array) -> Array:
         """Packed numbers (case, column) at ``speed`` (case,) [rad/s]."""

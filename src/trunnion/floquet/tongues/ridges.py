@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from trunnion.arrays import Array, Flags, Places
-from trunnion.floquet.tongues.bracketing import bracketed
 from trunnion.floquet.tongues.region import Region
+from trunnion.numerics.bracketing import bracketed
 
 LOOKS = 9
 """Points across the window in each round."""

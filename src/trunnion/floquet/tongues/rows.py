@@ -20,10 +20,10 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex, Flags, Places
 from trunnion.floquet.tongues.boundaries import boundary_functions
-from trunnion.floquet.tongues.bracketing import bracketed
 from trunnion.floquet.tongues.multiplier_collisions import multiplier_collisions
 from trunnion.floquet.tongues.region import PatchRows, Region
 from trunnion.floquet.tongues.series_roots import row_roots
+from trunnion.numerics.bracketing import bracketed
 from trunnion.results.verdict import Verdict
 
 Marks = tuple[Places, Array, Places, Array]

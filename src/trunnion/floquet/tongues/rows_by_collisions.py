@@ -15,8 +15,9 @@ import numpy as np
 from trunnion.arrays import Array, Flags
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
+from trunnion.floquet.ranges.collisions import exponent_collisions
 from trunnion.floquet.ranges.span import Span
-from trunnion.floquet.ranges.unstable import UnstableRanges, exponent_collisions, unstable_ranges
+from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.floquet.tongues.boundary_traces import Search
 from trunnion.floquet.tongues.region import Region
@@ -48,7 +49,11 @@ class RowFamily:
     def span(self, y: float) -> Span:
         """The speeds of the row at ``y``."""
         low, high = self.family.x.values[[0, -1]].tolist()
-        return Span(self.family.assembly, low, high, lambda table: self.family.y.columns.put(table, y))
+        twisted = self.family.statically_twisted
+        return Span(
+            self.family.assembly, low, high, lambda table: self.family.y.columns.put(table, y),
+            statically_twisted=twisted,
+        )  # fmt: skip
 
     def judged(self, span: Span, y: float, speed: Array) -> StabilityOverSpeed:
         """Stability at speeds (speed,) of the row at ``y``."""
@@ -73,7 +78,7 @@ class RowFamily:
         """Speeds (collisions,) of the row at ``y`` at which two exponents meet that may open, and growth rates
         there."""
         span = self.span(y)
-        speed = np.unique(exponent_collisions(span, span.start, span.high, self._swing(y))[0])
+        speed = np.unique(exponent_collisions(span, span.start, span.high, self._swing(y)).speed)
         return speed, self.judged(span, y, speed).growth_rate if len(speed) else np.zeros(0)
 
     def _swing(self, y: float) -> float | None:

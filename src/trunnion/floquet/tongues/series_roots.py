@@ -16,7 +16,7 @@ import numpy as np
 from scipy.fft import dct
 
 from trunnion.arrays import Array, Places
-from trunnion.floquet.tongues.bracketing import bracketed
+from trunnion.numerics.bracketing import bracketed
 
 Functions = Callable[[Array], Array]
 """Quantities (q, …) → functions (f, …)."""

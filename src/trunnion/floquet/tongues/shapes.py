@@ -9,9 +9,9 @@ import numpy as np
 
 from trunnion.arrays import Array, Places
 from trunnion.floquet.tongues.boundary_traces import BoundaryTrace, Search
-from trunnion.floquet.tongues.bracketing import bracketed
 from trunnion.floquet.tongues.region import FAINT, Region
 from trunnion.floquet.tongues.ridges import TIP, ridge, tips
+from trunnion.numerics.bracketing import bracketed
 
 WindowEnd = tuple[BoundaryTrace, int]
 """A strand and which of its ends, 0 below and −1 above."""

@@ -9,21 +9,32 @@ import numpy as np
 from trunnion.arrays import Array, Places
 
 ROUNDS = 60
+FIRST = 0.05
+"""Share of a bracket beside its ends where the first step does not lead."""
 
 
-def bracketed(function: Callable[[Array, Places], Array], low: Array, high: Array, tolerance: Array | float) -> Array:
+def bracketed(
+    function: Callable[[Array, Places], Array],
+    low: Array,
+    high: Array,
+    tolerance: Array | float,
+    known: tuple[Array, Array] | None = None,
+) -> Array:
     """Zeros (brackets,) by Chandrupatla's method: inverse quadratic steps where they are safe, halves elsewhere.
 
     ``function(points, which)`` gives the values of the functions number ``which`` at one point each; it must change its
     sign between ``low`` and ``high``, or the end where it is nearest to zero is returned. ``tolerance`` is absolute.
+    ``known``: values at ``low`` and at ``high``, where they need not be computed.
     (T. R. Chandrupatla, Advances in Engineering Software 28 (1997) 145.)
     """
     everyone = np.arange(len(low))
     b, a = np.asarray(low, dtype=float).copy(), np.asarray(high, dtype=float).copy()
-    fb, fa = function(b, everyone), function(a, everyone)
+    fb, fa = (function(b, everyone), function(a, everyone)) if known is None else (one.copy() for one in known)
     c, fc = a.copy(), fa.copy()
     bound = np.broadcast_to(np.asarray(tolerance, dtype=float), a.shape)
     share = np.full(len(a), 0.5)
+    if known is not None:  # as of ends that stand close already
+        share = np.clip(fa / np.where(fa == fb, 1.0, fa - fb), FIRST, 1 - FIRST)
     open_ = np.sign(fa) * np.sign(fb) < 0  # products of small values vanish
     for _ in range(ROUNDS):
         which = np.flatnonzero(open_)
