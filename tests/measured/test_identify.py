@@ -290,7 +290,7 @@ def test_what_can_be_known_is_of_the_line_as_it_stands() -> None:
     """The Cramér–Rao bound at the line written out from order_response; elsewhere in the bounds it may be far less."""
     line = random_line(np.random.default_rng(13))
     run = tn.measure(line, (70.0, 300.0), 8.0, {"input": 36, "hub": 36}, jitter=2e-6, pitch_error=0.0)
-    data = tn.track_orders(run, [1, 2], line=line, reference="input")
+    data = tn.track_orders(run, [1, 2], line=line, reference="input", window=2)
     damping = part(line, "tube").damping
     known = tn.identifiability(line, data, {"tube.damping": (damping / 8, 8 * damping)}, begin=0.0)
 

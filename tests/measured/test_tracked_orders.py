@@ -155,6 +155,29 @@ def test_orders_are_found_by_themselves() -> None:
     assert found.order.tolist() == [1, 2, 3]
 
 
+def test_a_reference_run_tells_which_orders_are_the_shafts() -> None:
+    """A joint of 2° makes 305 µrad at order 2, pitch errors of 2 % 541 at every whole one: the run finds it."""
+    rng = np.random.default_rng(8)
+    wheels = {name: 0.02 * 2 * np.pi / 60 * rng.standard_normal(60) for name in ("in", "out")}
+    joint = {2.0: lambda speed: 3.05e-4 + 0j * speed, 1.5: lambda speed: 4e-5 + 0j * speed}
+
+    def run(orders: dict[float, Amplitude], seed: int, begin: float) -> tn.Measurement:
+        made = {"in": {}, "out": orders}
+        noise = {"jitter": 2e-7, "seed": seed, "begin": begin}
+        return tn.Measurement([pulses(60, made[n], name=n, pattern=p, **noise) for n, p in wheels.items()])
+
+    calibration = tn.pitch_errors(run({}, 1, 0.31))
+    assert tn.track_orders(run(joint, 2, -1.0), calibration=calibration).order.tolist() == [1.5, 2]
+    assert tn.track_orders(run(joint, 2, -1.0)).order.tolist() == [1.5]
+    with pytest.raises(tn.InputError) as caught:
+        tn.track_orders(run({2.0: joint[2.0]}, 3, -1.0))
+    assert "above its noise and the pitch errors of its wheels, as stated; name the orders, or take a refer" in str(
+        caught.value
+    )
+    with pytest.raises(tn.InputError, match="shows no order above its noise; name the orders, or record longer"):
+        tn.track_orders(run({}, 4, 0.4), calibration=calibration)
+
+
 def test_a_run_up_is_found_between_dwells() -> None:
     """40 rad/s for 4 s, up to 200 in 10 s, 6 s there, down to 100 in 5 s."""
     corners, speeds = np.array([0.0, 4.0, 14.0, 20.0, 25.0]), np.array([40.0, 40.0, 200.0, 200.0, 100.0])

@@ -22,9 +22,9 @@ from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.floquet.tolerance.parameter_intervals import ParameterInterval, table_at
-from trunnion.measured.identification.fitting import FitPoint, search, shares_of, twins_of, values_at
+from trunnion.measured.identification.fitting import FitPoint, descend, search, shares_of, twins_of, values_at
 from trunnion.measured.identification.knowable import knowable
-from trunnion.measured.identification.misfit import Misfit, misfit_of
+from trunnion.measured.identification.misfit import MOST_NODES, Misfit, misfit_of
 from trunnion.measured.identification.profile import (
     BetterFit,
     ProfileInterval,
@@ -114,7 +114,7 @@ def identify(
     before = knowable(misfit, around=False)
     advance(0.1)
     start = shares_of(misfit, np.array([one.nominal for one in space.free]))
-    minima = search(misfit, start, seed)
+    misfit, minima = _resolved(misfit, search(misfit, start, seed))
     advance(0.4)
     best, intervals, scale = _profiled(misfit, minima, freedom, lambda share: advance(0.4 + 0.4 * share))
     minima = [best, *minima]
@@ -178,6 +178,25 @@ def identify(
         unit=speed_unit(assembly.line),
     )
     return replace(made, findings=by_gravity(_findings(made, misfit)))
+
+
+def _resolved(misfit: Misfit, minima: list[FitPoint]) -> tuple[Misfit, list[FitPoint]]:
+    """The misfit at as many speeds a window as the best needs, and its minima by these.
+
+    Raises
+    ------
+    InputError : windows are too long for that.
+    """
+    free = np.zeros(len(misfit.free), dtype=bool)
+    while (finer := misfit.finer(values_at(misfit, minima[0].share))) is not None:
+        if finer.nodes > MOST_NODES:
+            raise InputError(
+                "is too long for resonances as sharp as this line's", key="window", value=misfit.data.window,
+                remedy=f"track the orders in windows of {max(1, misfit.data.window // 4)} turns",
+            )  # fmt: skip
+        misfit = finer
+        minima = sorted((descend(misfit, one.share, one.angle, free) for one in minima), key=lambda one: one.chi_square)
+    return misfit, minima
 
 
 def _windows(data: MeasuredOrders, most: int) -> Places:

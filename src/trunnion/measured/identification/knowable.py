@@ -161,6 +161,7 @@ def _next_pickups(misfit: Misfit, share: Array, scale: Array) -> tuple[tuple[str
             ratios=(*data.ratios, 1.0),
             amplitude=np.concatenate([data.amplitude, data.amplitude[:, :, [model]]], axis=2),
             deviation=np.concatenate([data.deviation, data.deviation[:, :, [model]]], axis=2),
+            curvature=np.concatenate([data.curvature, data.curvature[:, :, [model]]], axis=2),
             hidden=np.concatenate([data.hidden, data.hidden[:, [model]]], axis=1),
             floor=np.concatenate([data.floor, data.floor[:, [model]]], axis=1),
             residual=np.concatenate([data.residual, data.residual[:, [model]]], axis=1),

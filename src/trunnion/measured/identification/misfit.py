@@ -3,23 +3,31 @@
 A wheel's pitch errors add one constant to an order of a pickup at all speeds, known to a standard deviation τ: that of
 the reference run's noise, or of the pitch errors as they are stated. Of each order and channel the constant that fits
 best is taken off, and counts by itself: (Y − P e^{ikα} − C)/σ, and C/τ. Both are linear in P.
+
+Where the line's amplitude P bends within a window, the window's mean of it is compared, and σ is that of noise alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Places
+from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.tolerance.parameter_intervals import ParameterInterval, table_at
+from trunnion.measured.identification.window_speeds import WindowSpeeds, bent_windows, window_speeds
 from trunnion.measured.predicted import PredictedChannels, best_angle, predicted_channels, turned, usable
 from trunnion.measured.tracking.result import MeasuredOrders
 
 STEP = 1e-4
 """Share of a parameter's range by which it is moved for a derivative, to either side."""
+NODES, MOST_NODES = 12, 192
+"""Speeds of a window in which amplitudes bend, doubled until they suffice."""
+SETTLED = 0.05
+"""Standard deviations by which means over a window may differ from those over twice as many speeds."""
 
 
 @dataclass(frozen=True)
@@ -27,13 +35,14 @@ class Misfit:
     """Residuals of a line at values of its free parameters.
 
     channels : the measured ones. free : parameters. begin : rotation of the input [rad] at the first pulse, None where
-    it is free too, and then the last of the unknowns.
+    it is free too, and then the last of the unknowns. nodes : speeds of a window in which amplitudes bend.
     """
 
     channels: PredictedChannels
     free: tuple[ParameterInterval, ...]
     begin: float | None
     rows: Places
+    nodes: int = NODES
 
     @property
     def data(self) -> MeasuredOrders:
@@ -46,21 +55,31 @@ class Misfit:
             return self
         return replace(self, rows=self.rows[np.linspace(0, len(self.rows) - 1, count).astype(np.intp)])
 
-    @property
+    @cached_property
     def measured(self) -> Complex:
         """Amplitudes (window, order, channel) at the places."""
         return np.asarray(self.data.amplitude[self.rows][:, :, list(self.channels.columns)])
 
-    @property
+    @cached_property
+    def bent(self) -> Flags:
+        """Windows (window,) of which the line's mean is compared, not its amplitude in the middle."""
+        return bent_windows(self.data, self.rows, self.channels.columns)
+
+    @cached_property
+    def speeds(self) -> WindowSpeeds:
+        """That the line is asked at."""
+        return window_speeds(self.data, self.rows, self.channels.columns, self.bent, self.nodes)
+
+    @cached_property
     def deviation(self) -> Array:
         """Standard deviations (window, order, channel) of either part, infinite of what is not known."""
         columns = list(self.channels.columns)
-        known = usable(self.data, self.channels.columns)[self.rows] & (
-            self.data.deviation[self.rows][:, :, columns] > 0
-        )
-        return np.asarray(np.where(known, self.data.deviation[self.rows][:, :, columns], np.inf))
+        whole, bend = (one[self.rows][:, :, columns] for one in (self.data.deviation, self.data.curvature))
+        counted = np.where(self.bent[:, None, None], whole**2 - bend**2, whole**2)
+        known = usable(self.data, self.channels.columns)[self.rows] & (counted > 0)
+        return np.asarray(np.where(known, np.sqrt(np.where(known, counted, 1.0)), np.inf))
 
-    @property
+    @cached_property
     def constant(self) -> Array:
         """Standard deviations (order, channel) of either part of what a wheel adds."""
         return np.asarray(self.data.floor[:, list(self.channels.columns)] / np.sqrt(2))
@@ -72,11 +91,19 @@ class Misfit:
 
     def predicted(self, values: Array) -> Complex:
         """Amplitudes (line, window, order, channel) at values (line, free)."""
-        speeds = self.data.speed[self.rows]
+        speeds = self.speeds.speed
         table = np.repeat(table_at(self.channels.assembly, self.free, values), len(speeds), axis=0)
         table[:, 0] = np.tile(speeds, len(values))
         made = self.channels.at(table)
-        return np.asarray(made.reshape(len(values), len(speeds), *made.shape[1:]))
+        return self.speeds.means(made.reshape(len(values), len(speeds), *made.shape[1:]))
+
+    def finer(self, values: Array) -> Misfit | None:
+        """Over twice as many speeds a window, where means at values (free,) differ by them; None where they do not."""
+        if not self.bent.any():
+            return None
+        twice = replace(self, nodes=2 * self.nodes)
+        apart = np.abs(twice.predicted(values[None])[0] - self.predicted(values[None])[0]) / self.deviation
+        return twice if apart.max(initial=0.0) > SETTLED else None
 
     def angle(self, predicted: Complex) -> float:
         """Rotation of the input at the first pulse [rad] that fits best."""

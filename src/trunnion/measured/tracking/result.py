@@ -50,7 +50,8 @@ class MeasuredOrders(Result):
 
     Re[Y e^{iKφ}] with φ the mean rotation of the input, from the first pulse of the reference. Rotations are those of
     the shaft of each channel; the others are in SI units of their kind. ``deviation`` is the standard deviation of the
-    real and of the imaginary part by noise; ``floor`` is what pitch errors leave beside it at every window alike.
+    real and of the imaginary part by noise, and by what windows miss of amplitudes that change within them
+    (``curvature``); ``floor`` is what pitch errors leave beside it at every window alike.
     """
 
     time: Array = variable("window", "s", "of the middle")
@@ -62,6 +63,8 @@ class MeasuredOrders(Result):
     ratios: tuple[float, ...] = variable("channel", "1", "turns for one of the input")
     amplitude: Complex = variable("window order channel", "", "in SI of the kind")
     deviation: Array = variable("window order channel", "", "standard deviation of either part, by noise")
+    curvature: Array = internal("the part of the deviation that windows miss (window, order, channel)")
+    degree: int = internal("of the polynomials that amplitudes follow within a window")
     hidden: Flags = variable("order channel", "1", "1 where pitch errors of the wheel, or gravity, are in it too")
     floor: Array = variable("order channel", "", "rms amplitude that pitch errors leave, or what gravity adds")
     residual: Array = variable("window channel", "", "rms of what is not an order asked for")

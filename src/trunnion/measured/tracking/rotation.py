@@ -22,6 +22,7 @@ from scipy.interpolate import CubicHermiteSpline
 from trunnion.arrays import Array, Complex, Flags, Integers
 from trunnion.errors import InputError
 from trunnion.measured.signals.measurement import PulseTrain
+from trunnion.measured.tracking.within import missed_in_the_middle
 from trunnion.results.counts import counted
 
 SMOOTH = 4
@@ -36,12 +37,16 @@ WORST_CONDITION = 1e10
 class WindowFit:
     """Least squares over one window.
 
-    amplitude (order,), and its standard deviation (order,) of either part; smooth (c,): coefficients of powers of the
-    time from the middle over half the length; residual (sample,); freedom: samples beyond the unknowns.
+    amplitude (order,), and its standard deviation (order,) of either part; missed (order,): how far it is off where
+    amplitudes change otherwise than their polynomials, by the residual, and chance (order,), what noise makes of that;
+    smooth (c,): coefficients of powers of the time from the middle over half the length; residual (sample,); freedom:
+    samples beyond the unknowns.
     """
 
     amplitude: Complex
     deviation: Array
+    missed: Array
+    chance: Array
     smooth: Array
     residual: Array
     freedom: int
@@ -69,11 +74,13 @@ def fitted(y: Array, s: Array, phase: Array, orders: Array, smooth: int, trend: 
     inverse = np.linalg.inv(normal)
     found = (inverse @ (matrix.T @ y / scale)) / scale
     residual = y - matrix @ found
-    spread = np.sqrt(np.diag(inverse) * float(residual @ residual) / freedom) / scale
+    noise = float(np.sqrt(residual @ residual / freedom))
+    spread = np.sqrt(np.diag(inverse)) * noise / scale
+    missed, chance = missed_in_the_middle(residual, s, phase, orders, trend, noise)
     count, each = len(orders), (trend + 1) * len(orders)
     real, imaginary = slice(smooth, smooth + count), slice(smooth + each, smooth + each + count)
     deviation = np.sqrt((spread[real] ** 2 + spread[imaginary] ** 2) / 2)
-    return WindowFit(found[real] + 1j * found[imaginary], deviation, found[:smooth], residual, freedom)
+    return WindowFit(found[real] + 1j * found[imaginary], deviation, missed, chance, found[:smooth], residual, freedom)
 
 
 @dataclass(frozen=True)
@@ -213,6 +220,12 @@ def tooth_means(values: Array, tooth: Integers, teeth: int) -> tuple[Array, Arra
     count = np.bincount(tooth, minlength=teeth)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.bincount(tooth, values, minlength=teeth) / count, count.astype(float)
+
+
+def repeated(residuals: list[Array], tooth: list[Integers], teeth: int) -> Array:
+    """Pitch errors (tooth,) [rad] that take off what repeats with the teeth in residuals, of whole turns each."""
+    means = tooth_means(np.concatenate(residuals), np.concatenate(tooth), teeth)[0]
+    return -np.asarray(np.nan_to_num(means - np.nanmean(means)))
 
 
 def is_whole(values: Array) -> Flags:

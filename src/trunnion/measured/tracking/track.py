@@ -28,10 +28,11 @@ from trunnion.measured.tracking.rotation import (
     WindowFit,
     fitted,
     is_whole,
+    repeated,
     rotation_windows,
-    tooth_means,
 )
 from trunnion.measured.tracking.run_ups import MeasuredRamp, longest_ramp, run_ups
+from trunnion.measured.tracking.standing_out import standing_out
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.units import figures
 from trunnion.waiting import keep_time
@@ -41,14 +42,16 @@ SMOOTH_BESIDE = 3
 """Coefficients of the polynomial beside the orders of a channel that is not the reference."""
 STEADY = 2e-3
 """Relative change of speed within a window up to which amplitudes are taken as constant."""
-MOST_ORDERS, SHARE, ABOVE_NOISE = 12, 0.02, 4.0
-"""Orders found by themselves: how many, their least share of the largest, and the factor above the noise."""
-LEAKS = 0.05
-"""Share of an order that those half an order beside it may have from it."""
+MOST_ORDERS, SHARE = 12, 0.02
+"""Orders found by themselves: how many, and their least share of the largest."""
 HIGHEST = 24.0
 OVERSAMPLED = 16.0
 """Samples per cycle of the highest order that a sampled signal keeps."""
 SAME_RATIO = 5e-4
+ROW = 5
+"""Windows from which a row of them tells how amplitudes bend."""
+SHARP = 2.0
+"""Times of what noise looks like beyond which residuals of a window in such a row tell of a bend within it."""
 TOO_LONG = 0.01
 """Share of the largest amplitude that windows may miss beside a resonance before that is said."""
 LIKE_A_WHEEL = 3.0
@@ -147,12 +150,40 @@ def _stretch(main: PulseTrain, between: tuple[float, float] | None) -> MeasuredR
 
 @dataclass(frozen=True)
 class _Tracked:
-    """What was found of one channel."""
+    """What was found of one channel; missed and chance (window, order) as of ``WindowFit``."""
 
     amplitude: Complex
     deviation: Array
+    missed: Array
+    chance: Array
     residual: Array
     extreme: Array
+
+    def curvature(self, degree: int) -> Array:
+        """What polynomials of a ``degree`` over the windows miss (window, order)."""
+        if len(self.amplitude) < ROW:
+            # Nothing beside a window tells how an amplitude bends: its own residuals do, noise and all.
+            return np.asarray(np.sqrt(np.maximum(self.missed**2 - self.chance**2, 0.0)))
+        # The row of windows tells better, but not of what bends within one of them alone.
+        sharp = np.where(self.missed > SHARP * self.chance, self.missed, 0.0)
+        return np.maximum(bent(self.amplitude), sharp) if degree else sharp
+
+
+def _tracked(
+    fits: Sequence[WindowFit | None], orders: Array, *, reversed_: bool = False, extreme: Array | None = None
+) -> _Tracked:
+    """Fits window by window as one channel; NaN of windows that have none."""
+    nothing = np.full(len(orders), np.nan)
+
+    def rows(of: Callable[[WindowFit], Array]) -> Array:
+        return np.array([nothing if fit is None else of(fit) for fit in fits])
+
+    residual = [np.nan if one is None else np.sqrt(one.residual @ one.residual / one.freedom) for one in fits]
+    return _Tracked(
+        np.array([nothing + 0j if one is None else -one.amplitude if reversed_ else one.amplitude for one in fits]),
+        rows(lambda one: one.deviation), rows(lambda one: one.missed), rows(lambda one: one.chance),
+        np.array(residual), np.full(len(fits), np.nan) if extreme is None else extreme,
+    )  # fmt: skip
 
 
 class _Tracking:
@@ -185,8 +216,9 @@ class _Tracking:
         left: set[float] = set()
         for train in self.measurement.pulses:
             one = train.within(*self.span)
-            ratio, floor = self._ratio_of(one), pitch_floor(one)
-            for order, size in standing_out(one, np.zeros(one.pulses_per_turn), self.turns):
+            ratio = self._ratio_of(one)
+            pattern, floor = self._known_pattern(one)
+            for order, size in standing_out(one, pattern, self.turns):
                 key = round(order * ratio, 6)
                 if size < LIKE_A_WHEEL * floor and float(order).is_integer():
                     left.add(key)
@@ -197,19 +229,39 @@ class _Tracking:
         kept = [order for size, order in strong if size >= SHARE * strong[0][0]]
         if several := sorted(left - set(kept)):
             words = ", ".join(f"{one:g}" for one in several[:8]) + (" …" if len(several) > 8 else "")
+            told = "as stated" if self.calibration is None else "as far as the reference run tells them"
             self.findings.append(
                 Finding(
                     Gravity.NOTE,
-                    f"Whole orders no larger than the wheels' pitch errors, as stated, are not listed ({words}): name "
+                    f"Whole orders no larger than the wheels' pitch errors, {told}, are not listed ({words}): name "
                     "those that matter in orders.",
                 )
             )
         if not kept:
+            hidden = bool(left) and self.calibration is None
+            wheels = " and the pitch errors of its wheels, as stated" if hidden else ""
             raise InputError(
-                "shows no order above its noise", key="measurement", value=self.measurement.source,
-                remedy="name the orders, or record longer",
+                f"shows no order above its noise{wheels}", key="measurement", value=self.measurement.source,
+                remedy=f"name the orders, or {'take a reference run' if hidden else 'record longer'}",
             )  # fmt: skip
         return np.array(sorted(kept))
+
+    def _known_pattern(self, train: PulseTrain) -> tuple[Array, float]:
+        """Pitch errors (tooth,) that the reference run tells, by the teeth of this run, and the rms amplitude that they
+        leave at whole orders: before orders are known, the higher half of those that the wheel shows tells the tooth.
+        """
+        even = np.zeros(train.pulses_per_turn)
+        if self.calibration is None:
+            return even, pitch_floor(train)
+        pattern, spread = self.calibration.of(train)
+        windows, fits = rotation_windows(train, 1.0, self.turns, np.zeros(0), even, 0)
+        own = self._own_pattern(train, [(w.first, w.last) for w in windows], [fit.residual for fit in fits])
+        low = np.arange(1.0, train.pulses_per_turn // 4 + 1)
+        try:
+            place = shift_between(pattern, own, low, spread, train.name)
+        except InputError:
+            return even, pitch_floor(train)  # with its orders known the tooth may still be found, else it is refused
+        return np.roll(pattern, -place), 2 * spread / np.sqrt(train.pulses_per_turn)
 
     def _align(self, train: PulseTrain, ratio: float, orders: Array, own: Array) -> Array:
         """Pitch errors of the reference run by the teeth of this one, which began at another tooth; ``own`` (tooth,)
@@ -252,7 +304,7 @@ class _Tracking:
                 self._refuse_high(train, orders, ratio)
                 self._check_ratio(train)
                 if train.name == self.main.name:
-                    found[train.name] = self._told(fits, train, orders)
+                    found[train.name] = _tracked(fits, orders, reversed_=train.reversed)
                 else:
                     found[train.name] = self._beside(train, ratio, windows, orders, trend)
                 own = is_whole(orders / ratio)
@@ -267,10 +319,11 @@ class _Tracking:
                 floor.append(np.where(falls, channel.gravity, 0.0))
             if progress:
                 progress(share * (place + 1))
-        names, bend = tuple(found), bent if trend else lambda amplitude: np.zeros(amplitude.shape)
+        names = tuple(found)
         amplitude = np.stack([one.amplitude for one in found.values()], axis=2)
+        curvature = np.stack([one.curvature(trend) for one in found.values()], axis=2)
         self._say_hidden(names, orders, amplitude, np.stack(hidden, axis=1), np.stack(floor, axis=1))
-        self._say_short(names, amplitude, np.stack([bend(one.amplitude) for one in found.values()], axis=2), windows)
+        self._say_short(names, amplitude, curvature, windows)
         if stretch.last_speed and between_words(stretch, unit):
             self.findings.append(Finding(Gravity.NOTE, between_words(stretch, unit)))
         return MeasuredOrders(
@@ -284,7 +337,9 @@ class _Tracking:
             ),
             ratios=tuple(self._channel_ratio(one) for one in self.measurement.channels),
             amplitude=amplitude,
-            deviation=np.stack([np.hypot(one.deviation, bend(one.amplitude)) for one in found.values()], axis=2),
+            deviation=np.hypot(np.stack([one.deviation for one in found.values()], axis=2), curvature),
+            curvature=curvature,
+            degree=trend,
             extreme=np.stack([one.extreme for one in found.values()], axis=1),
             hidden=np.stack(hidden, axis=1),
             floor=np.stack(floor, axis=1),
@@ -337,17 +392,7 @@ class _Tracking:
 
     def _own_pattern(self, train: PulseTrain, places: list[tuple[int, int]], residuals: list[Array]) -> Array:
         of_edge = train.tooth
-        tooth = np.concatenate([of_edge[first:last] for first, last in places])
-        means = tooth_means(np.concatenate(residuals), tooth, train.pulses_per_turn)[0]
-        return -np.asarray(np.nan_to_num(means - np.nanmean(means)))
-
-    def _told(self, fits: Sequence[WindowFit | None], train: PulseTrain, orders: Array) -> _Tracked:
-        nothing = np.full(len(orders), np.nan)
-        amplitude: Complex = np.array([nothing + 0j if fit is None else fit.amplitude for fit in fits])
-        deviation = np.array([nothing if fit is None else fit.deviation for fit in fits])
-        residual = np.array([np.nan if f is None else np.sqrt(f.residual @ f.residual / f.freedom) for f in fits])
-        sign = -1.0 if train.reversed else 1.0
-        return _Tracked(sign * amplitude, deviation, residual, np.full(len(fits), np.nan))
+        return repeated(residuals, [of_edge[first:last] for first, last in places], train.pulses_per_turn)
 
     def _beside(
         self, train: PulseTrain, ratio: float, windows: tuple[RotationWindow, ...], orders: Array, trend: int
@@ -378,7 +423,7 @@ class _Tracking:
             if self.calibration is not None:
                 own = self._align(train, ratio, orders, own)
             fits, _ = fits_with(own)
-        return self._told(fits, train, orders)
+        return _tracked(fits, orders, reversed_=train.reversed)
 
     def _sampled(
         self, signal: SampledSignal, windows: tuple[RotationWindow, ...], orders: Array, trend: int
@@ -391,19 +436,16 @@ class _Tracking:
             )  # fmt: skip
         kept = thinned(signal, OVERSAMPLED * fastest)
         times = kept.times
-        nothing = np.full(len(orders), np.nan)
-        amplitude, deviation, residual, extreme = [], [], [], []
+        fits, extreme = [], []
         for one in windows:
             keep_time()
             first, last = np.searchsorted(times, (one.middle - one.half, one.middle + one.half))
             phase = one.angle(times[first:last])
             y = kept.values[first:last]
             extreme.append(np.abs(y).max(initial=np.nan if not len(y) else 0.0))
-            fit = fitted(y, one.local(times[first:last]), phase, orders, SMOOTH_BESIDE, trend) if len(y) else None
-            amplitude.append(nothing + 0j if fit is None else fit.amplitude)
-            deviation.append(nothing if fit is None else fit.deviation)
-            residual.append(np.nan if fit is None else np.sqrt(fit.residual @ fit.residual / fit.freedom))
-        return _Tracked(np.array(amplitude), np.array(deviation), np.array(residual), np.array(extreme))
+            local = one.local(times[first:last])
+            fits.append(fitted(y, local, phase, orders, SMOOTH_BESIDE, trend) if len(y) else None)
+        return _tracked(fits, orders, extreme=np.array(extreme))
 
     def _refuse_high(self, train: PulseTrain, orders: Array, ratio: float) -> None:
         limit = train.pulses_per_turn * ratio / 2
@@ -488,8 +530,6 @@ def bent(amplitude: Complex) -> Array:
     The fourth difference of the middles, 2h apart, is 16h⁴ d⁴Y, and holds next to no noise; beside a narrow resonance
     higher ones follow it, so it counts twice.
     """
-    if len(amplitude) < 5:
-        return np.zeros(amplitude.shape)
     fourth = _nearest_known(np.abs(np.diff(amplitude, 4, axis=0)) / (8 * 280))
     # What one order misses goes to the others of the window too.
     whole = np.broadcast_to(np.sqrt((fourth**2).sum(axis=1, keepdims=True)), fourth.shape)
@@ -558,28 +598,3 @@ def counted_ratio(train: PulseTrain, main: PulseTrain) -> float:
     ratio = float(turned[0] / turned[1])
     simple = Fraction(ratio).limit_denominator(60)
     return float(simple) if abs(float(simple) / ratio - 1) < SAME_RATIO else ratio
-
-
-def standing_out(train: PulseTrain, pattern: Array, turns: int) -> list[tuple[float, float]]:
-    """Whole and half orders of a pulse train's own shaft above its noise, with their amplitudes [rad]."""
-    length = 2 * max(1, turns // 2)
-    windows, fits = rotation_windows(train, 1.0, length, np.zeros(0), pattern, 0)
-    teeth = train.pulses_per_turn
-    power = np.zeros(length * teeth // 2 + 1)
-    for one, fit in zip(windows, fits, strict=True):
-        row = np.zeros(length * teeth)
-        place = (train.number[one.first : one.last] - train.number[one.first]) % (length * teeth)
-        row[place] = fit.residual
-        power += np.abs(2 * np.fft.rfft(row) / len(row)) ** 2
-    size = np.sqrt(power / len(fits))
-    # Each order against what stands around it at orders that are not halves.
-    noise = float(np.median(size[1:])) * 1.2
-    step = length // 2
-    halves = np.arange(step, len(size), step)
-    # A strong order that changes within the window reaches into those beside it.
-    beside = {at: max(float(size[at - step]), float(size[min(at + step, len(size) - 1)])) for at in halves.tolist()}
-    return [
-        (at / length, float(size[at]))
-        for at in halves.tolist()
-        if size[at] > max(ABOVE_NOISE * noise, LEAKS * beside[at])
-    ]
