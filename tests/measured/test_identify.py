@@ -10,6 +10,8 @@ from measured.benches import guess, part, random_line, recorded
 from scipy.optimize import minimize_scalar
 
 import trunnion as tn
+from trunnion.design.optimisation.space import Space
+from trunnion.equations.coefficients import assemble
 
 NAMES = ("joint.angle", "tube.stiffness", "tube.damping")
 
@@ -219,6 +221,18 @@ def test_the_distance_from_instability() -> None:
         for factor in (0.97 * distance.low, 1.03 * distance.high)
     ]
     assert radius[0] < 1 < radius[1], distance.sentence
+
+
+def test_zero_needs_no_unit() -> None:
+    """As a bound in a text; of a temperature it does, whose zero depends on it."""
+    line = assemble(random_line(np.random.default_rng(1)))
+    (one,) = Space(line, {"joint.angle": ("0", "20 deg")}).free
+    assert one.low == 0.0 and one.high == pytest.approx(np.deg2rad(20.0))
+    for text in ("-0", "+0.0", " 0 ", "0e3", ".0"):
+        assert Space(line, {"joint.angle": (text, "20 deg")}).free[0].low == 0.0
+    for text in ("1", "0,0", "00x", "0 N"):
+        with pytest.raises(tn.InputError, match=r"joint\.angle = "):
+            Space(line, {"joint.angle": (text, "20 deg")})
 
 
 REFUSED = (

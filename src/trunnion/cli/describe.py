@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 import trunnion as tn
+from trunnion.cli.files import check_not_read
 from trunnion.cli.output import table, write_json
 from trunnion.cli.readers import read_line
 from trunnion.cli.typed import Json
@@ -137,6 +138,7 @@ def export(
     as_json: Json = False,
 ) -> None:
     """Write a line for other programs: a table, a state space, openTorsion, Modelica, C, or an FMU."""
+    check_not_read([output], [file])
     besides = tn.export_line(read_line(file), output, to, fmi=fmi)
     if as_json:
         write_json("export", {"written": str(output), "not_written": list(besides)})

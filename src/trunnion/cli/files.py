@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+import tomllib
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NoReturn
 
@@ -41,11 +42,39 @@ def check_line_file(path: Path, key: str) -> None:
 
 
 def check_not_read(paths: Sequence[Path], texts: Iterable[object], key: str = "--output") -> None:
-    """Refuse to write over a file that a command reads: one that its argument or an option, ``texts``, names."""
-    read = [Path(text) for text in texts if isinstance(text, str) and text and os.path.isfile(text)]
-    for path in paths:
-        if path.exists() and any(path.samefile(one) for one in read):
+    """Refuse to write over a file that a command reads: one that its argument or an option, ``texts``, names, or a
+    table or sheet that a driveline file among these names."""
+    there = [path for path in paths if path.exists()]
+    read = [Path(text) for text in texts if isinstance(text, str) and text and os.path.isfile(text)] if there else []
+    for path in there:
+        if any(path.samefile(one) for one in read):
             _refuse(path, "is a file that this command reads", "write to another file", key)
+        for one in read:
+            if any(path.samefile(named) for named in _named_in(one, {one.resolve()})):
+                _refuse(path, f"is a file that {one.name} reads", "write to another file", key)
+
+
+def _named_in(file: Path, seen: set[Path]) -> Iterator[Path]:
+    """Files that the texts of a TOML file name, from its folder, and those that these name."""
+    if file.suffix.lower() != ".toml":
+        return
+    try:
+        texts = list(_texts_of(tomllib.loads(file.read_text(encoding="utf-8-sig"))))
+    except (OSError, ValueError):
+        return  # reading it says what is wrong
+    for named in (file.parent / text for text in texts):
+        if os.path.isfile(named) and named.resolve() not in seen:
+            seen.add(named.resolve())
+            yield named
+            yield from _named_in(named, seen)
+
+
+def _texts_of(value: object) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for one in value.values() if isinstance(value, dict) else value:
+            yield from _texts_of(one)
 
 
 def check_folder(folder: Path) -> None:

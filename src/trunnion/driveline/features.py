@@ -381,25 +381,23 @@ FEATURES = (
     Feature("prescribed far end", (), _prescribed_end),
 )  # fmt: skip
 
+RATINGS = (
+    "Shaft.tensile_strength",
+    *_of("Coupling", *Coupling.ratings, "highest_temperature"),
+    *(f"{kind}.heat_rating" for kind in (*_MESHED, "Planetary", "Brake", "TorqueConverter")),
+    *("ViscousDamper.heat_rating", "TunedDamper.heat_rating", "CentrifugalPendulum.largest_travel"),
+)
+"""What elements bear, by field: numbers that no motion has to do with."""
 NOT_FEATURES = {
     "Element.name": "a label",
     "Element.sheet": "where its numbers come from",
     **dict.fromkeys((f"Sheet.{key}" for key in Sheet.model_fields), "where numbers come from"),
     "PressureCurve.load": "a label",
-    "Shaft.tensile_strength": "a rating, which checks compare with",
-    **dict.fromkeys(
-        (f"Coupling.{key}" for key in (*Coupling.ratings, "highest_temperature")),
-        "a rating, which checks compare with",
-    ),
+    **dict.fromkeys(RATINGS, "a rating, which checks, responses and motions compare with"),
     **dict.fromkeys(
         ("Coupling.thermal_resistance", "Coupling.ambient_temperature"),
         "coupling_temperatures finds by them where the temperature settles",
     ),
-    **dict.fromkeys((f"{kind}.heat_rating" for kind in (*_MESHED, "Planetary")), "a rating, which checks compare with"),
-    "Brake.heat_rating": "a rating, which checks compare with",
-    "TorqueConverter.heat_rating": "a rating, which checks compare with",
-    "CentrifugalPendulum.largest_travel": "a rating, which responses and motions compare with",
-    **dict.fromkeys(("ViscousDamper.heat_rating", "TunedDamper.heat_rating"), "a rating, which checks compare with"),
     "Driveline.elements": "the elements themselves",
     "Driveline.name": "a label",
     "Driveline.description": "a label",

@@ -52,8 +52,8 @@ def export_line(line: Driveline, path: str | os.PathLike[str], to: str, *, fmi: 
         (cc, gcc, clang or that of CC).
     fmi : version of FMI of an FMU, 2 (by default) or 3.
 
-    Returns what the description says besides and the file does not: limits, scenarios and the like; and a binary, where
-    an FMU is written and no compiler is found.
+    Returns what the description says besides and the file does not: ratings, limits, duty, scenarios and the like; and
+    a binary, where an FMU is written and no compiler is found.
 
     Raises
     ------

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from trunnion.driveline.couplings import Coupling
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.features import FEATURES, UNEVEN
+from trunnion.driveline.features import FEATURES, RATINGS, UNEVEN
 from trunnion.driveline.joints import Joint
+from trunnion.driveline.operation import Operation
 from trunnion.driveline.shafts import SpringElement
 from trunnion.errors import InputError
 
@@ -97,13 +99,27 @@ def schedules_refused(line: Driveline) -> list[InputError]:
 
 def not_written(line: Driveline) -> tuple[str, ...]:
     """What else the description says and the file does not: what judges a line, not what moves it."""
-    operation = line.operation
+    operation = line.operation or Operation()
+    rated = (key.split(".") for key in RATINGS)
     found = {
+        "ratings": [key for kind, key in rated for _, one in line.parts if one.kind == kind and getattr(one, key)],
         "limits": line.limits,
         "S–N curves": line.sn_curves,
         "tolerances": line.tolerances,
         "scenarios": line.scenarios,
-        "load cases": operation.load_cases if operation else (),
+        "load cases": operation.load_cases,
+        "the speed range": operation.speed_range,
+        "the angle range": operation.angle_range,
+        "the application": operation.application,
+        "rules switched off": operation.switched_off,
+        "the operating time": operation.life,
+        "duty": operation.duty,
+        "passages": operation.passages,
+        "what couplings are cooled by": [
+            name for name, one in line.parts if isinstance(one, Coupling) and one.thermal_resistance
+        ],
+        "cylinders out of work": operation.misfiring or operation.cut_out,
+        "component sheets": [name for name, one in line.parts if one.sheet],
         "the title block": line.document,
     }
     return tuple(key for key, value in found.items() if value)

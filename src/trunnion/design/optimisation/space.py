@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite, log
@@ -10,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.quantities import kind_of, parse
+from trunnion.driveline.quantities import TEMPERATURE, kind_of, parse
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
 from trunnion.floquet.tolerance.parameter_intervals import (
@@ -21,6 +22,7 @@ from trunnion.floquet.tolerance.parameter_intervals import (
     table_at,
 )
 
+_ZERO = re.compile(r"[+-]?(0+\.?0*|\.0+)(e[+-]?\d+)?", re.IGNORECASE)
 WIDE = 10.0
 """Ratio of the bounds from which a positive number is searched by its logarithm."""
 
@@ -98,6 +100,8 @@ def _example(assembly: Assembly, path: str) -> str:
 
 def _bound(assembly: Assembly, path: str, end: object, unit: str) -> float:
     if isinstance(end, str) and (kind := kind_of(unit)):
+        if kind is not TEMPERATURE and _ZERO.fullmatch(end.strip()):
+            return 0.0  # in any unit
         try:
             return parse(end, kind)
         except InputError as error:

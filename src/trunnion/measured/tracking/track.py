@@ -229,11 +229,11 @@ class _Tracking:
         kept = [order for size, order in strong if size >= SHARE * strong[0][0]]
         if several := sorted(left - set(kept)):
             words = ", ".join(f"{one:g}" for one in several[:8]) + (" …" if len(several) > 8 else "")
-            told = "as stated" if self.calibration is None else "as far as the reference run tells them"
+            known = "as stated" if self.calibration is None else "as far as the reference run tells them"
             self.findings.append(
                 Finding(
                     Gravity.NOTE,
-                    f"Whole orders no larger than the wheels' pitch errors, {told}, are not listed ({words}): name "
+                    f"Whole orders no larger than the wheels' pitch errors, {known}, are not listed ({words}): name "
                     "those that matter in orders.",
                 )
             )
