@@ -144,7 +144,7 @@ class Excitation(Record):
         if self.speeds and self.speeds[0] < 0:
             raise InputError("must not be negative", key="speeds", value=self.speeds[0], remedy="turning counts as is")
 
-    @property
+    @cached_property
     def axes(self) -> tuple[tuple[str, tuple[float, ...]], ...]:
         """What its table goes over, "speeds" or "torques", and the points [rad/s], [N m]; none without a table."""
         stated = (("speeds", self.speeds), ("torques", self.torques))

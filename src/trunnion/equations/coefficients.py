@@ -34,7 +34,7 @@ from trunnion.equations.aligned import AlignedMatrices, aligned_matrices, freque
 from trunnion.equations.converters import placed_converters, require_even
 from trunnion.equations.coupling_tables import table_stiffness
 from trunnion.equations.line_coefficients import LineCoefficients, MeshWave, OilLink
-from trunnion.equations.loads import exciting_load, mean_load, mean_loads, static_torque, station_loads
+from trunnion.equations.loads import exciting_load, load_at_input, mean_load, mean_loads, static_torque, station_loads
 from trunnion.equations.mean_clutch import mean_clutch, states_a_motion
 from trunnion.equations.plain_springs import PlainSprings, plain_springs
 from trunnion.equations.sliders import refuse_friction
@@ -47,6 +47,8 @@ from trunnion.laws.joint import JointLaw
 
 SAME_SPEED = 1e-12
 """Relative difference of speeds that rounding makes."""
+AT_INPUT = -1
+"""Where loads kept by the place of their element have that at the input."""
 MOST_KNOWN = 8
 """Rows whose coefficients are kept."""
 
@@ -197,8 +199,21 @@ class Assembly:
         content = table.tobytes()
         known = self._last_loads.get(place)  # one value, as threads may ask at once
         if known is None or known[0] != content:
-            known = content, exciting_load(self.topology, self.packed.column, table, place)
+            known = (
+                content,
+                exciting_load(
+                    self.topology, self.packed.column, table, place, lambda: self._load_at_input(content, table)
+                ),
+            )
             self._last_loads[place] = known
+        return known[1]
+
+    def _load_at_input(self, content: bytes, table: Array) -> Array:
+        """Of the last table that was asked for, the same for all its drives."""
+        known = self._last_loads.get(AT_INPUT)
+        if known is None or known[0] != content:
+            known = content, load_at_input(self.topology, self.packed.column, table)
+            self._last_loads[AT_INPUT] = known
         return known[1]
 
     @cached_property

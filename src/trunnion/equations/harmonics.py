@@ -16,6 +16,7 @@ from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 
 import numpy as np
 
@@ -34,6 +35,8 @@ from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
 
 Spring = Callable[[int], Complex]
+Runnings = dict[int, Running]
+"""How disks run, by the place of their element, at the rows of one table."""
 
 
 @dataclass(frozen=True)
@@ -75,8 +78,9 @@ class LineHarmonic(Harmonic):
         return bool(self.amplitude != 0)
 
     @abstractmethod
-    def size(self, assembly: Assembly, table: Array) -> Complex:
-        """A e^{i phase} (case,) at rows of packed numbers: torque [N m], or transmission error as a twist [rad]."""
+    def size(self, assembly: Assembly, table: Array, running: Runnings | None = None) -> Complex:
+        """A e^{i phase} (case,) at rows of packed numbers: torque [N m], or transmission error as a twist [rad];
+        ``running``: how disks run there, as far as it is known already."""
 
     @abstractmethod
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
@@ -109,10 +113,15 @@ class DiskTorque(LineHarmonic):
         """Cycles per turn of the disk."""
         return self.law.order or 0.0
 
-    def size(self, assembly: Assembly, table: Array) -> Complex:
+    def size(self, assembly: Assembly, table: Array, running: Runnings | None = None) -> Complex:
+        known = None if running is None else running.get(self.element)
+        if known is None:
+            known = self._running(assembly, table)
+            if running is not None:
+                running[self.element] = known
         number, phase = table[:, self.columns[0]], table[:, self.columns[1]]
         try:
-            size = amplitude(self.law, number, self._running(assembly, table))
+            size = amplitude(self.law, number, known)
         except InputError as error:
             raise error.but(element=self.name, key=f"excitation {self.number}") from None
         return np.asarray(size * np.exp(1j * phase) * self.cylinders)
@@ -124,7 +133,7 @@ class DiskTorque(LineHarmonic):
 
     def _running(self, assembly: Assembly, table: Array) -> Running:
         speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
-        return Running(speed, lambda: -assembly.exciting_load(self.element, table))
+        return Running(speed, cache(lambda: -assembly.exciting_load(self.element, table)))
 
     def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
         s = self.station
@@ -158,7 +167,7 @@ class MeshError(LineHarmonic):
     mesh: Mesh
     radius: float
 
-    def size(self, assembly: Assembly, table: Array) -> Complex:
+    def size(self, assembly: Assembly, table: Array, running: Runnings | None = None) -> Complex:
         own = mesh_harmonics(assembly.packed, self.mesh, "transmission_error", table)[self.number - 1]
         return np.asarray(own.complex_amplitude / self.radius)
 

@@ -265,19 +265,21 @@ def own_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
     return np.asarray(own + driven)
 
 
-def exciting_load(topo: Topology, column: Column, table: Array, place: int) -> Array:
-    """The same, as tables and shares of its excitation go by it.
+def exciting_load(topo: Topology, column: Column, table: Array, place: int, asked: Callable[[], Array]) -> Array:
+    """The same, as tables and shares of its excitation go by it; ``asked()``: ``load_at_input`` of the table.
 
     Cylinders that drive by a share do so whatever else hangs on their throw: of these it is that share alone.
     """
     rotor = next(rotor for (_, i), (_, rotor) in zip(topo.disks, topo.rotors, strict=True) if i == place)
-    own, driven = _own_and_driven(topo, column, table, place)
+    own, driven = _own_and_driven(topo, column, table, place, asked)
     if not (isinstance(rotor, Disk) and (rotor.firing_angles or rotor.part_of is not None)):
         return np.asarray(own + driven)
     return np.asarray(np.where(table[:, column(place, "drive_share")] > 0, driven, own + driven))
 
 
-def _own_and_driven(topo: Topology, column: Column, table: Array, place: int) -> tuple[Array, Array]:
+def _own_and_driven(
+    topo: Topology, column: Column, table: Array, place: int, asked: Callable[[], Array] | None = None
+) -> tuple[Array, Array]:
     """What an element resists with by itself, and minus what it drives with by its share (case,) [N m]."""
     station, rotor = next((s, rotor) for (s, i), (_, rotor) in zip(topo.disks, topo.rotors, strict=True) if i == place)
     turning = table[:, 0] * abs(topo.mean_speeds[station])
@@ -286,7 +288,8 @@ def _own_and_driven(topo: Topology, column: Column, table: Array, place: int) ->
     own = np.broadcast_to(found.value(turning if by_speed else np.zeros_like(turning)), turning.shape)
     if topo.free and (at := column(place, "drive_share")) >= 0 and table[:, at].any():
         share = given_shares(topo, column, table)
-        torque = drive_torques(topo, share, load_at_input(topo, column, table))[:, station]
+        load = load_at_input(topo, column, table) if asked is None else asked()
+        torque = drive_torques(topo, share, load)[:, station]
         return np.asarray(own), torque * table[:, at] / np.where(share[:, station] > 0, share[:, station], 1.0)
     return np.asarray(own), np.zeros_like(turning)
 

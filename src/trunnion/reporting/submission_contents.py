@@ -306,4 +306,6 @@ def _malfunction(
 
 
 def _without(case: LoadCaseResponse, name: str, key: str, number: int) -> LoadCaseResponse:
-    return replace(case, assembly=assemble(case.assembly.line.replace(name, **{key: number})))
+    # Which mode leads is not printed of them, and takes the modes of every speed.
+    effort = replace(case.effort, named=False)
+    return replace(case, assembly=assemble(case.assembly.line.replace(name, **{key: number})), effort=effort)

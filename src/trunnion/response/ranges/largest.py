@@ -212,6 +212,7 @@ class _SearchedRanges:
         self.looks = 0
         self.look_of = np.zeros(0, dtype=np.intp)  # the look (speed,) in which each was new
         self.poles: dict[tuple[int, int], tuple[int, Poles]] = {}  # by quantity and piece, as after a look
+        self.parabolas: dict[int, tuple[int, Parabolas]] = {}  # by piece, as after a look
 
     def look(self, wanted: Sequence[Array], known: OrderResponse | None = None) -> None:
         """Take in the speeds ``wanted`` of each piece, where they are ``known`` as they are."""
@@ -281,10 +282,21 @@ class _SearchedRanges:
         found = []
         for k, run in enumerate(self._runs):
             x, v = self.response.speed[run], self.values[run, q]
-            few = len(x) < 3
-            poles = [] if few else [_tops(x, v, aim), *_ends(x, v, aim), self._resonances(q, k, run, parts).beyond(aim)]
-            found.append(_together(poles))
+            if len(x) < 3:
+                found.append(_together([]))
+                continue
+            tops = self._parabolas(k, run).tops(x, v, q, aim)
+            found.append(_together([tops, *_ends(x, v, aim), self._resonances(q, k, run, parts).beyond(aim)]))
         return found
+
+    def _parabolas(self, k: int, run: slice) -> Parabolas:
+        """Of all quantities in piece ``k``."""
+        assert self.response is not None
+        look, kept = self.parabolas.get(k, (0, None))
+        if kept is None or look < self.looks:
+            kept = Parabolas.of(self.response.speed[run], self.values[run])
+            self.parabolas[k] = self.looks, kept
+        return kept
 
     def _resonances(self, q: int, k: int, run: slice, parts: Complex) -> Poles:
         """Of quantity ``q`` in piece ``k``; those are kept about which no speed is new."""
@@ -366,22 +378,40 @@ def _beside(new: Flags) -> Flags:
     return near[1:-1]
 
 
-def _tops(x: Array, v: Array, wanted: SearchAim) -> PossiblePeaks:
-    """Places to look at for tops that may be the largest: those of parabolas, and between them and their neighbours
-    where these lie too far below."""
-    inner = np.flatnonzero(np.isfinite(v[:-2]) & np.isfinite(v[1:-1]) & np.isfinite(v[2:])) + 1
-    where, height, fall = parabola(x, v, inner)
-    above = height + np.where(fall > FLAT * height, BEND * fall, 0.0)
-    good = wanted.by(above, np.maximum(np.maximum(v[inner - 1], v[inner]), v[inner + 1]))
-    inner, where, above = inner[good], where[good], above[good]
-    place = np.clip(np.searchsorted(x, where), 1, len(x) - 1)
-    low, high = x[place - 1], x[place]
-    # A top that has been looked at is closed in on from both sides.
-    known = np.minimum(where - low, high - where) < CLOSE * (high - low)
-    nearer = np.where(where - low < high - where, low, high)
-    left, right = (nearer + x[inner - 1]) / 2, (nearer + x[inner + 1]) / 2
-    both = [np.concatenate([one, one[known]]) for one in (above, high - low)]
-    return PossiblePeaks(np.concatenate([np.where(known, left, where), right[known]]), *both)
+@dataclass(frozen=True)
+class Parabolas:
+    """Through every three neighbours, of every quantity (inner place, quantity): where their tops are, how high these
+    may be, NaN without one, and the largest of the three values."""
+
+    where: Array
+    above: Array
+    known: Array
+
+    @classmethod
+    def of(cls, x: Array, v: Array) -> Parabolas:
+        """Of values ``v`` (speed, quantity) at speeds ``x`` (speed,)."""
+        finite = np.isfinite(v)
+        with np.errstate(invalid="ignore", over="ignore"):
+            where, height, fall = parabola(x[:, None], v, np.arange(1, len(x) - 1))
+            above = height + np.where(fall > FLAT * height, BEND * fall, 0.0)
+        above[~(finite[:-2] & finite[1:-1] & finite[2:])] = np.nan
+        return cls(where, above, np.maximum(np.maximum(v[:-2], v[1:-1]), v[2:]))
+
+    def tops(self, x: Array, v: Array, q: int, wanted: SearchAim) -> PossiblePeaks:
+        """Places to look at for tops of quantity ``q`` that may be the largest: those of parabolas, and between them
+        and their neighbours where these lie too far below."""
+        inner = np.flatnonzero(wanted.by(self.above[:, q], self.known[:, q])) + 1
+        if not len(inner):
+            return _together([])
+        where, above = self.where[inner - 1, q], self.above[inner - 1, q]
+        place = np.clip(np.searchsorted(x, where), 1, len(x) - 1)
+        low, high = x[place - 1], x[place]
+        # A top that has been looked at is closed in on from both sides.
+        known = np.minimum(where - low, high - where) < CLOSE * (high - low)
+        nearer = np.where(where - low < high - where, low, high)
+        left, right = (nearer + x[inner - 1]) / 2, (nearer + x[inner + 1]) / 2
+        both = [np.concatenate([one, one[known]]) for one in (above, high - low)]
+        return PossiblePeaks(np.concatenate([np.where(known, left, where), right[known]]), *both)
 
 
 def _ends(x: Array, v: Array, wanted: SearchAim) -> list[PossiblePeaks]:

@@ -22,6 +22,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import (
     BaseOfExcitation,
     MeshError,
+    Runnings,
     base_of_excitation,
     disk_torques,
     line_harmonics,
@@ -300,8 +301,9 @@ class _SpectrumProblem:
         groups = groups_of(self.acting, None, 0)
         if groups:
             nu = np.stack([group.carrier_at(table[:, 0]) for group in groups])
+            running: Runnings = {}
             sources = [
-                self._sources(group, once, table, co, base, at[:, None], matrices.wave)
+                self._sources(group, once, table, co, base, at[:, None], matrices.wave, running=running)
                 for group, at in zip(groups, nu, strict=True)
             ]
             right = np.stack([force[:, 0] for force, _ in sources])
@@ -368,12 +370,13 @@ class _SpectrumProblem:
         alike = slice(None) if self.few is None else slice(0, 1)  # ratios do not depend on the speed
         ratio, relative, wave = (part[alike] for part in (out.matrices.ratio, out.base.relative, out.matrices.wave))
         total = OrderSum(len(speed), self.places)
+        running: Runnings = {}
         last, least = np.zeros(len(speed)), np.zeros(len(speed))  # least: below it a torque is rounding of its cause
         for group in out.groups:
             carrier = group.carrier_at(out.table[:, 0])
             h, rim = out.sides.of(group)
             nu = carrier[:, None] + h * out.blocks.step[:, None]
-            right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave)
+            right, error = self._sources(group, h, out.table, out.co, out.base, nu, out.matrices.wave, running=running)
             if group.own:
                 right += self._harmonics(out.matrices.forcing, h)
                 if isinstance(out.matrices, LineMatrices) and out.matrices.base_twist is not None:
@@ -399,6 +402,7 @@ class _SpectrumProblem:
 
         co, speed = own.coefficients, table[:, 0]
         total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
+        running: Runnings = {}
         kept = np.arange(-own.count, own.count + 1)
         for harmonic, part in zip(kept.tolist(), self._harmonics(own.seen, kept).swapaxes(0, 1), strict=True):
             total.add(harmonic / self.turns, 0.0, part)
@@ -407,7 +411,7 @@ class _SpectrumProblem:
             centres = [m for _, m in group.members]
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
             nu = carrier[:, None] + own.rate[:, None] * h
-            right, error = self._sources(group, h, table, co, own.base, nu, own.wave, own.mass)
+            right, error = self._sources(group, h, table, co, own.base, nu, own.wave, own.mass, running=running)
             seen = seen_about(own, self.topo, h, about(own, carrier, h, right))
             self._gather(total, group, h, seen, error, nu, co, own.wave)
             last = np.maximum(last, np.abs(seen[:, [0, -1]][..., self.places.torque]).max(axis=(1, 2)))
@@ -435,13 +439,16 @@ class _SpectrumProblem:
         nu: Array,
         wave: Array,
         mass: Array | float = 1.0,
+        *,
+        running: Runnings,
     ) -> tuple[Complex, Complex]:
         """Torques on the unknowns (case, h, n), over their ``mass`` (case, time, n), and twists by transmission errors
-        (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s]."""
+        (case, h, spring) of a group's members at its harmonics ``h`` (h,) of frequency ``nu`` (case, h) [rad/s].
+        ``running``: how disks run at the rows of ``table``, for all groups together."""
         right = np.zeros((len(base.relative), len(h), self.topo.size), dtype=complex)
         error = np.zeros((len(base.relative), len(h), len(self.topo.compliances)), dtype=complex)
         for one, m in group.members:
-            at, size = int(np.searchsorted(h, m)), one.size(self.assembly, table)
+            at, size = int(np.searchsorted(h, m)), one.size(self.assembly, table, running)
 
             def spring(e: int, turns: Array = nu[:, at, None]) -> Complex:
                 return np.asarray(co.stiffness[:, e, None] * wave[..., e] + 1j * turns * co.damping[:, e, None])
@@ -449,6 +456,9 @@ class _SpectrumProblem:
             force = one.forcing(self.topo, size, base, spring)
             if isinstance(one, MeshError):
                 error[:, at, one.mesh.compliance] += size
+            if force.shape[1] == 1 and not isinstance(mass, np.ndarray):  # nothing varies over the turn
+                right[:, at] += force[:, 0]
+                continue
             near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
             acted = np.flatnonzero(force.any(axis=(0, 1)))
             over = mass[..., acted] if isinstance(mass, np.ndarray) else mass
