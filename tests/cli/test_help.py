@@ -23,6 +23,7 @@ def test_every_help_text_is_shown_whole(name, width, monkeypatch):
     monkeypatch.setenv("COLUMNS", width)
     monkeypatch.setenv("TERMINAL_WIDTH", width)
     shown = squeezed(CliRunner().invoke(app, [name, "--help"]).output)
+    assert "<bool>" not in shown and "BOOLEAN" not in shown  # flags take no value
     written = app.registered_commands[[c.name for c in app.registered_commands].index(name)].callback
     texts = [
         part.help

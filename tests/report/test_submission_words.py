@@ -12,6 +12,9 @@ import pytest
 import trunnion as tn
 from trunnion.cli import output
 from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.pictures.looks import curve, look
+from trunnion.pictures.orders import same_looks
+from trunnion.pictures.picture import Axis, Line, single
 from trunnion.reporting.page import formula
 from trunnion.reporting.submission import Submission
 from trunnion.reporting.submission_tables import excitations
@@ -121,3 +124,21 @@ def test_small_numbers_read_as_powers_of_ten_and_stand_in_columns_of_numbers() -
 def test_a_table_of_the_command_line_has_a_dash_for_no_number(capsys: pytest.CaptureFixture[str]) -> None:
     output.table([{"mode": 1, "frequency [Hz]": float("nan"), "said": None}])
     assert "nan" not in capsys.readouterr().out
+
+
+def test_an_order_looks_the_same_in_every_picture() -> None:
+    """Whatever other orders a picture shows; what is no order keeps its look."""
+    at = np.linspace(1.0, 2.0, 3)
+    drawn = [("order 3", "order 4"), ("order 1", "order 4", "order 6"), ("order 6", "order 3")]
+    axis = Axis("torque", "N m")
+    before = [
+        single(axis, axis, [Line(at, at, "sum", "all"), *(Line(at, at, curve(i), one) for i, one in enumerate(names))])
+        for names in drawn
+    ]
+    after = same_looks(before)
+    roles = [{item.name: item.role for item in one.panel.items} for one in after]
+    assert [set(one) for one in roles] == [{"all", *names} for names in drawn]
+    looks = {name: {one[name] for one in roles if name in one} for name in {"all"}.union(*drawn)}
+    assert all(len(one) == 1 for one in looks.values()) and looks["all"] == {"sum"}
+    assert len(set.union(*looks.values())) == 5
+    assert len({(look(role).colour, look(role).dash) for role in set.union(*looks.values())}) == 5

@@ -38,6 +38,7 @@ class OneLineGroup(TyperGroup):
         super().__init__(**settings)
         for command in (self, *self.commands.values()):
             _keep_brackets(command)
+            _flags_without_a_value(command)
 
     def invoke(self, ctx: Any) -> Any:
         try:
@@ -72,6 +73,22 @@ def _keep_brackets(command: Any) -> None:
         for text in ("help", "epilog"):
             if written := getattr(part, text, None):
                 setattr(part, text, escape(written))
+
+
+def _flags_without_a_value(command: Any) -> None:
+    """A flag takes no value: help says no type behind it, nor behind --help, which is made when it is asked for."""
+    for part in command.params:
+        if getattr(part, "is_flag", False):
+            part.metavar = ""
+    made = command.get_help_option
+
+    def help_option(ctx: Any) -> Any:
+        option = made(ctx)
+        if option is not None:
+            option.metavar = ""
+        return option
+
+    command.get_help_option = help_option
 
 
 def _open_streams() -> None:

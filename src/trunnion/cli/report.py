@@ -66,8 +66,8 @@ def print_overview(seen: Overview, given: OverviewAssessment) -> None:
     output.table(modes, "Natural frequencies, all joints straight")
     span = f"from {words.ends(*seen.speed_range)}"
     able = [row for row, r in zip(seen.resonance_speeds.table(unit), seen.resonance_speeds, strict=True) if r.opens]
-    output.heading(f"Resonance speeds {span} that can open: {len(able) or 'none'}")
-    output.table([{k: v for k, v in row.items() if k != "can open"} for row in able[:MOST_ROWS]])
+    output.heading(f"Resonance speeds {span} at which instability can begin: {len(able) or 'none'}")
+    output.table([{k: v for k, v in row.items() if k != "instability can begin"} for row in able[:MOST_ROWS]])
     if len(able) > MOST_ROWS:
         output.say(f"  and {len(able) - MOST_ROWS} more; see trunnion resonance-speeds", wrap=True)
     if seen.turn is not None and seen.turn.joints:

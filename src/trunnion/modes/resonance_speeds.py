@@ -11,7 +11,7 @@ respond where m · 2|R|Ω = ω_i ± ω_j:
 (S1 equations 23–24, S3 equations 15–16.) Another joint excites with its own orders: a tripod, three times a turn,
 counts as a Hooke's joint of 3R/2. A mesh of varying stiffness excites with its teeth per turn of the input, z,
 and counts as a joint of R = z/2. While the stiffness stays positive definite only the first three
-can open: their modes have opposite Krein signatures. Difference tongues of the papers come from
+can lead to instability: their modes have opposite Krein signatures. Difference tongues of the papers come from
 mis-linearised equations.
 """
 
@@ -120,7 +120,7 @@ class ResonanceSpeeds(Result):
                 f"speed [{words.unit}]": r.speed * words.factor,
                 "kind": r.kind,
                 "formula": r.label,
-                "can open": "yes" if r.opens else "no",
+                "instability can begin": "yes" if r.opens else "no",
             }
             for r in self.resonances
         ]

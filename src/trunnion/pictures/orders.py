@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TypeGuard
 
 import numpy as np
 
@@ -105,6 +107,25 @@ def course(found: ResponseCurve, *, unit: str, operating: Operation | None = Non
     up = Axis(found.quantity.rpartition(" of ")[0], printed(symbol))
     up = up.logarithmic(low / 2, 2 * high) if high > 0 else up
     return over_speed(x, unit, up, items, operating, title=found.quantity)
+
+
+def same_looks(pictures: Sequence[Picture]) -> list[Picture]:
+    """The pictures with one look for each order, that of the first in which it is drawn or the next that is free."""
+    known: dict[str, str] = {}
+    for one in pictures:
+        for item in one.panel.items:
+            if _is_order(item):
+                known.setdefault(item.name, curve(1 + len(known)))
+    return [
+        one.with_panel(
+            items=tuple(replace(item, role=known[item.name]) if _is_order(item) else item for item in one.panel.items)
+        )
+        for one in pictures
+    ]
+
+
+def _is_order(item: Item) -> TypeGuard[Line]:
+    return isinstance(item, Line) and item.role.startswith(f"{curve(0).split()[0]} ")
 
 
 def wave(result: OrderResponse, *, spring: str | None = None, unit: str | None = None) -> Picture:

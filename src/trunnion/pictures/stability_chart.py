@@ -197,7 +197,7 @@ def _value_of(label: str, line: Driveline | None, operating: Operation | None) -
 
 
 def _named(chart: StabilityChart, resonances: Iterable[Resonance], factor: float, across: Axis, up: Axis) -> list[Item]:
-    """Names of the resonances that can open along the axis of the speed, the lowest orders first."""
+    """Names of the resonances at which instability can begin, along the axis of the speed, the lowest orders first."""
     if SPEED not in (chart.x_label, chart.y_label):
         return []
     axis, edge = (across, "top") if chart.x_label == SPEED else (up, "right")

@@ -104,22 +104,22 @@ def along_findings(assembly: Assembly, found: StabilityOverSpeed, words: Words) 
 def resonance_findings(
     here: ResonanceSpeeds, limits: tuple[float, float], speed: float | None, words: Words
 ) -> Iterator[Finding]:
-    """How many resonances lie in the range and how near the operating speed is to one that can open."""
+    """At how many resonances in the range instability can begin, and how near the operating speed is to one."""
     able = [r for r in here if r.opens]
     if not able:
         return
-    many, one = ("s", "") if len(able) > 1 else ("", "s")
-    count = f"{len(able)} resonance speed{many} that can open (up to order {here.orders})"
+    many = "s" if len(able) > 1 else ""
+    count = f"Instability can begin at {len(able)} parametric resonance speed{many} (up to order {here.orders})"
     within = f"between {words.span(*limits, 'and')}"
     if speed is None:
-        yield Finding(Gravity.NOTE, f"{count} lie{one} {within}.")
+        yield Finding(Gravity.NOTE, f"{count} {within}.")
         return
     nearest = min(able, key=lambda r: (abs(np.log(r.speed / speed)), r.order))
     distance = nearest.speed / speed - 1
     side = "above" if distance > 0 else "below"
     yield Finding(
         Gravity.CAUTION if abs(distance) < NEAR else Gravity.NOTE,
-        f"{count} lie{one} {within}; nearest to the operating speed is the {nearest.in_words} at "
+        f"{count} {within}; nearest to the operating speed is the {nearest.in_words} at "
         f"{words.rounded(nearest.speed)}, {100 * abs(distance):.2g} % {side} it.",
     )
 

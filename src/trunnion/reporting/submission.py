@@ -182,7 +182,8 @@ def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
     from trunnion.pictures.campbell_diagram import campbell_diagram
     from trunnion.pictures.draw_matplotlib import draw
     from trunnion.pictures.modes import mode_shapes
-    from trunnion.pictures.orders import course, order_response
+    from trunnion.pictures.orders import course, order_response, same_looks
+    from trunnion.pictures.picture import Picture
 
     seen, unit = contents.seen, contents.seen.unit
     frequencies = frequency_unit(unit)
@@ -194,18 +195,22 @@ def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
     if contents.campbell is not None:
         diagram = campbell_diagram(contents.campbell, unit=unit, frequency_unit=frequencies, operating=seen.operation)
         shown["campbell"] = picture(draw(diagram), "Campbell diagram: modes and excitations over speed")
+    drawn: list[tuple[str, Picture, str, str]] = []
     for check in _with_course(contents):
         assert check.course is not None
         loaded = f", load case {check.load_case}" if check.load_case else ""
         caption = f"{capital(check.name)}: orders, their synthesis and what is allowed over speed{loaded}."
         curve = course(check.course, unit=unit, operating=seen.operation)
-        shown[f"torque of {check.name}"] = picture(draw(curve), f"{check.name} over speed by order", caption)
+        drawn.append((check.name, curve, f"{check.name} over speed by order", caption))
     for spring, case in _unlimited(contents):
         response = next(one for one in contents.cases if one.name == case).answered
         curve = order_response(response, spring=spring, unit=unit, operating=seen.operation)
         loaded = f", load case {case}" if case else ""
         caption = f"Vibratory torque of {spring}, for which no limit is stated: orders and their synthesis{loaded}."
-        shown[f"torque of {spring}"] = picture(draw(curve), f"Torque of {spring} over speed by order", caption)
+        drawn.append((spring, curve, f"Torque of {spring} over speed by order", caption))
+    alike = same_looks([one for _, one, _, _ in drawn])
+    for (name, _, about, caption), one in zip(drawn, alike, strict=True):
+        shown[f"torque of {name}"] = picture(draw(one), about, caption)
     return shown
 
 

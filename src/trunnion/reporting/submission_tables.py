@@ -204,7 +204,7 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
         {
             "spring": row.name,
             f"torque [{prefix}N m]": MILLI * float(torque) / size,
-            "node": f"at {100 * at[row.name]:.0f} % of its twist" if row.name in at else "",
+            "node [% of the twist in front of it]": f"{100 * at[row.name]:.0f}" if row.name in at else "",
         }
         for row, torque in zip(springs(contents.seen.assembly), between, strict=True)
     ]
@@ -266,7 +266,7 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
             yield (
                 name,
                 f"{JOINTS.get(element.kind, element.kind)}, {counted if orders else 'even'}",
-                f"{angle}° bend",
+                f"joint angle {angle}°",
                 "",
                 "",
                 "",
@@ -283,12 +283,12 @@ def _firing_throw(name: str, engine: Engine) -> str:
 def _size(one: Excitation) -> str:
     """The amplitude of an excitation in words."""
     if one.amplitude is not None:
-        return f"{four(one.amplitude)} N m"
+        return f"{four(one.amplitude)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m"
     if one.quadratic_amplitude is not None:
-        return f"{four(one.quadratic_amplitude)} N m s² times ω²"
+        return f"{four(one.quadratic_amplitude)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m\N{NO-BREAK SPACE}s² times ω²"
     if one.share is not None:
         return f"{four(100 * one.share)} % of the mean torque"
-    return f"table of {len(one.amplitudes)} points up to {four(one.largest)} N m"
+    return f"table of {len(one.amplitudes)} points up to {four(one.largest)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m"
 
 
 def engines(contents: SubmissionContents) -> Table | None:

@@ -244,7 +244,7 @@ def not_applicable(judged: Assessment) -> tuple[str, ...]:
 
 
 def resonances(contents: Contents, unit: str) -> Table:
-    """Parametric resonance speeds in the range that can open."""
+    """Parametric resonance speeds in the range at which instability can begin."""
     able = [r for r in contents.overview.resonance_speeds if r.opens]
     return Table.of(
         {f"input speed [{unit}]": r.speed * Words(unit).factor, "kind": r.kind, "formula": r.label}
