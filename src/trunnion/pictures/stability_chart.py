@@ -130,13 +130,19 @@ def _verdicts(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
 
 
 def _folds(chart: StabilityChart, x: Array, y: Array) -> list[Item]:
-    """Where the line's own motion folds back, at both ends on every row."""
-    inside = [one for one in chart.folds if chart.y[0] <= one[0] <= chart.y[-1]]
-    ends = np.array([(at, row) for row, *pair in inside for at in pair if chart.x[0] < at < chart.x[-1]])
-    if not len(ends):
+    """Where the line's own motion folds back, at both ends on every row, and between rows."""
+    on_rows = [(at, row) for row, *pair in chart.folds for at in pair]
+    between = [(column, at) for column, *pair in chart.column_folds for at in pair]
+    (left, right), (low, high) = (axis[[0, -1]] for axis in (chart.x, chart.y))
+    ends = [(a, b) for a, b in on_rows if left < a < right and low <= b <= high]
+    ends += [(a, b) for a, b in between if left <= a <= right and low < b < high]
+    if not ends:
         return []
-    across, up = np.interp(ends[:, 0], chart.x, x), np.interp(ends[:, 1], chart.y, y)
-    return [Points(across, up, "fold", "the line's own motion folds back")]
+    across, up = np.array(ends).T
+    inside = Points(
+        np.interp(across, chart.x, x), np.interp(up, chart.y, y), "fold", "the line's own motion folds back"
+    )
+    return [inside]
 
 
 def _steps(decay: Array) -> tuple[float, float, str, Sequence[float]]:

@@ -44,6 +44,7 @@ WAYS = (
     '"periodic steady states", about the line\'s own motion'
 )
 FOLDS = "(y, from, to) in x where the line's own motion folds back or is lost, on the rows searched"
+COLUMN_FOLDS = "(x, from, to) in y where it folds back or is lost between neighbouring rows"
 BYTES_A_PIXEL = 64
 """Radius, error, multiplier and verdict of a pixel, and what is stored beside them while it is filled."""
 
@@ -99,6 +100,7 @@ class StabilityChart(Result):
     spot_check: SpotCheck | None = internal("direct integration at random pixels", default=None)
     way: str = attribute(WAYS, default="patches")
     folds: tuple[tuple[float, float, float], ...] = internal(FOLDS, default=())
+    column_folds: tuple[tuple[float, float, float], ...] = internal(COLUMN_FOLDS, default=())
     unit: str = internal("of speeds in print", default="rad/s")
 
     @property
@@ -175,6 +177,7 @@ class StabilityChart(Result):
             speed=float("nan") if self.speed is None else self.speed,
             spot_check=json.dumps(asdict(self.spot_check) if self.spot_check else None),
             folds=json.dumps(self.folds),
+            column_folds=json.dumps(self.column_folds),
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -296,8 +299,13 @@ def _chart_of(data: xr.Dataset) -> StabilityChart:
         function=_function_of(data),
         spot_check=SpotCheck(**check) if check else None,
         way=str(data.attrs["way"]),
-        folds=tuple((float(y), float(a), float(b)) for y, a, b in json.loads(data.attrs.get("folds", "[]"))),
+        folds=_folds(data, "folds"),
+        column_folds=_folds(data, "column_folds"),
     )
+
+
+def _folds(data: xr.Dataset, name: str) -> tuple[tuple[float, float, float], ...]:
+    return tuple((float(at), float(a), float(b)) for at, a, b in json.loads(data.attrs.get(name, "[]")))
 
 
 def _function_of(data: xr.Dataset) -> PatchedFunction:

@@ -188,6 +188,7 @@ def _about_steady_states(
         function=chart.function, evaluate_point=chart.point, resample=chart.resampled,
         spot_check=check if check.points else None, way=ABOUT_STEADY_STATES, unit=speed_unit(assembly.line),
         folds=tuple((y, one.low, one.high) for y, one in found.folds),
+        column_folds=tuple((x, one.low, one.high) for x, one in found.column_folds),
     )  # fmt: skip
 
 

@@ -2,9 +2,10 @@
 
 A free–free line with joint angles makes no other motion; of one that is driven at a prescribed speed the motion of
 rigid shafts, which other charts are about, is the limit of small twist. Along every row of a chart motions are solved
-by the balance of their harmonics, and followed in both directions wherever neighbours differ by more than a small step:
-where one direction ends in another motion than the other, the curve of motions folds back, several motions belong to
-one point, and which of them runs depends on how one came there. Such points are not judged.
+by the balance of their harmonics. Wherever the tangents of neighbours on a row or a column say that the curve of
+motions may turn back between them, it is followed in both directions: where one ends in another motion than the other,
+it folds back, several motions belong to one point, and which of them runs depends on how one came there. Such points
+are not judged.
 
 Motions are not analytic functions of the parameters across a fold, so that no patches are made: every point has its own
 equations, linearised about its own motion. Some are compared with ``stability``'s way, which finds the motion by
@@ -13,8 +14,8 @@ shooting, and a chart that differs from it by more than the errors of both is re
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,15 +27,18 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import AxisRequest, ChartAxis, axis, check_corners
 from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.propagation.about_steady_states import multipliers_about
+from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.patches.patches import Box, PatchedFunction
 from trunnion.results.chart import ChartPoint, SpotCheck
 from trunnion.results.verdict import Verdict
+from trunnion.steady.free.folds_between import Stretches, folds_between, folds_of, step_of
+from trunnion.steady.free.free_balance import SteadyStates
 from trunnion.steady.free.periodic_steady_states import (
     SEVERAL,
     Break,
+    KnownSteadyState,
     SteadyStateCurve,
     SteadyStatesBySpeed,
-    breaks,
     slopes_along,
 )
 from trunnion.steady.shooting.periodic_orbit import PeriodicOrbit
@@ -106,11 +110,17 @@ class SteadyStateChart:
         balance = self.unexcited.balance.along(lambda value: self.table(value, np.full(len(value), y)))
         return SteadyStateCurve(balance, (float(self.x.values[0]), float(self.x.values[-1])))
 
+    def column(self, x: float) -> SteadyStateCurve:
+        """The motions of one column, of which nothing is known yet."""
+        balance = self.unexcited.balance.along(lambda value: self.table(np.full(len(value), x), value))
+        return SteadyStateCurve(balance, (float(self.y.values[0]), float(self.y.values[-1])))
+
     def row(self, x: Array, y: float) -> SteadyStateRow:
         """The motions and multipliers at ``x`` (points,), rising, of one row."""
         keep_time()
         curve, size = self.curve(y), 2 * len(self.unexcited.balance.turn)
-        curve.broken = breaks(curve, x, between=False)
+        across, up = self._slopes(curve, x, y)
+        curve.broken = folds_between(curve, x, across)
         motions = slopes_along(curve, x)
         found = multipliers_about(motions)
         critical = np.where(found.critical.imag < 0, found.critical.conj(), found.critical)
@@ -122,25 +132,42 @@ class SteadyStateChart:
             aside = np.ones((len(known), every.shape[1] - values.shape[1]))
             every[known] = np.concatenate([aside, values], axis=1)
         pixels = Pixels(found.radius, found.error, critical, found.verdict)
-        return SteadyStateRow(pixels, every, curve.broken, curve.at_all(x).states[:, 0])
+        return SteadyStateRow(pixels, every, curve.broken, curve.at_all(x), up)
+
+    def _slopes(self, curve: SteadyStateCurve, x: Array, y: float) -> tuple[Array, Array]:
+        """d rows / dx and d rows / dy of the motions at ``x`` of one row."""
+        motions, steps = curve.at_all(x), (step_of(self.x.values), step_of(self.y.values))
+        # Towards the inside, so that no value leaves its range.
+        by_x = np.where(x + steps[0] > self.x.values[-1], -steps[0], steps[0])
+        by_y = -steps[1] if y + steps[1] > self.y.values[-1] else steps[1]
+        tables = [self.table(x + by_x, np.full(len(x), y)), self.table(x, np.full(len(x), y + by_y))]
+        across, up = curve.balance.changes(motions, tables)
+        return across / by_x[:, None, None], up / by_y
 
     def pixels(self, x: Array, y: Array, tell: Callable[[float], None] = lambda share: None) -> SteadyStatePixels:
         """All points (y, x)."""
-        every = Pixels.failed((len(y), len(x)))
-        several, none = np.zeros(every.radius.shape, dtype=bool), np.zeros(every.radius.shape, dtype=bool)
-        folds: list[tuple[float, Break]] = []
-        start = np.full((*every.radius.shape, 2 * len(self.unexcited.balance.turn)), np.nan)
+        rows = []
         for r, value in enumerate(y.tolist()):
-            row = self.row(x, value)
-            every.put((r,), row.pixels)
-            start[r] = row.start
-            for one in row.broken:
-                inside = (x > one.low) & (x < one.high)
-                several[r] |= inside & (one.why == SEVERAL)
-                none[r] |= inside & (one.why != SEVERAL)
-                folds.append((value, one))
-            tell((r + 1) / len(y))
-        return SteadyStatePixels(every, several, none, tuple(folds), start)
+            rows.append(self.row(x, value))
+            tell(0.9 * (r + 1) / len(y))
+        found = SteadyStatePixels.of(rows, x, y)
+        return found.with_columns(tuple((float(at), one) for at, one in self._column_folds(rows, x, y)), y, x)
+
+    def _column_folds(self, rows: list[SteadyStateRow], x: Array, y: Array) -> Iterator[tuple[float, Break]]:
+        """Folds between neighbouring rows, by value of x."""
+        h = max(row.motions.h for row in rows)
+        motions = np.stack([fourier.resized(row.motions.rows, h) for row in rows], axis=1)
+        slope = np.stack([fourier.resized(row.slope, h) for row in rows], axis=1)
+        known = np.stack([row.motions.found & row.motions.resolved for row in rows], axis=1)
+        for c, value in enumerate(x.tolist()):
+            keep_time()
+            both = known[c, 1:] & known[c, :-1]
+            pairs = Stretches.of(y, motions[c], slope[c]).part(both)
+            if not pairs.bent.any():
+                continue
+            curve = self.column(value)
+            curve.known = {float(y[r]): KnownSteadyState.of(rows[r].motions, c) for r in np.flatnonzero(known[c])}
+            yield from ((value, one) for one in folds_of(curve, pairs, float(y[0]), float(y[-1])))
 
     def check(self, found: SteadyStatePixels, x: Array, y: Array) -> SpotCheck:
         """Some points compared with multipliers about the motions that shooting from the same start closes.
@@ -210,29 +237,75 @@ class SteadyStateChart:
 
 @dataclass(frozen=True)
 class SteadyStateRow:
-    """pixels (point,), every multiplier (point, 2n), those set aside as 1; broken: where the motions break off; start
-    (point, 2n): the motion's state at no rotation of the input."""
+    """pixels (point,), every multiplier (point, 2n), those set aside as 1; broken: where the motions break off; motions
+    (point,), and how their harmonics change with y (point, n, 2h + 1)."""
 
     pixels: Pixels
     every: Complex
     broken: tuple[Break, ...]
-    start: Array
+    motions: SteadyStates
+    slope: Array
+
+    @property
+    def start(self) -> Array:
+        """States (point, 2n) at no rotation of the input."""
+        return self.motions.states[:, 0]
+
+
+Folds = tuple[tuple[float, Break], ...]
+"""Breaks by the value of the other parameter."""
 
 
 @dataclass(frozen=True)
 class SteadyStatePixels:
-    """``every`` point (y, x); where several motions were found and where none; the folds by value of y; start (y, x,
-    2n): states at no rotation of the input."""
+    """``every`` point (y, x); where several motions were found and where none; the folds by value of y, and those
+    between rows by value of x; start (y, x, 2n): states at no rotation of the input."""
 
     every: Pixels
     several: Flags
     none: Flags
-    folds: tuple[tuple[float, Break], ...]
+    folds: Folds
+    column_folds: Folds
     start: Array
+
+    @classmethod
+    def of(cls, rows: Sequence[SteadyStateRow], x: Array, y: Array) -> SteadyStatePixels:
+        """Of all rows."""
+        every = Pixels.failed((len(y), len(x)))
+        for r, row in enumerate(rows):
+            every.put((r,), row.pixels)
+        folds = tuple((value, one) for value, row in zip(y.tolist(), rows, strict=True) for one in row.broken)
+        flags = _inside(folds, y, x)
+        return cls(every, *flags, folds, (), np.stack([row.start for row in rows]))
+
+    def with_columns(self, folds: Folds, y: Array, x: Array) -> SteadyStatePixels:
+        """With folds between rows; what lies between two of them is not judged either."""
+        several, none = (flags.T for flags in _inside(folds, x, y))
+        every = Pixels.failed(several.shape)
+        good = ~(several | none)
+        every.put((good,), self.every.at((good,)))
+        return replace(self, every=every, several=self.several | several, none=self.none | none, column_folds=folds)
 
     def remarks(self, chart: SteadyStateChart, x: Array, y: Array) -> list[str]:
         """What a reader must know of points that are not judged."""
-        said = ["each point is judged about the line's own periodic motion, without its excitations"]
+        said = [
+            "each point is judged about the line's own periodic motion, without its excitations; where that folds back "
+            "is searched along rows and columns"
+        ]
+        narrow = [
+            f"{other.label} = {at:.6g}, {own.label} = {one.low:.8g} to {one.high:.8g}"
+            for folds, own, other, values in (
+                (self.folds, chart.x, chart.y, x),
+                (self.column_folds, chart.y, chart.x, y),
+            )
+            for at, one in folds
+            if one.why == SEVERAL and not ((values > one.low) & (values < one.high)).any()
+        ]
+        if narrow:
+            many = f"at {len(narrow)} places" if len(narrow) > 1 else "at one place"
+            said.append(
+                f"{many} the periodic motion folds back between two neighbouring points (the first: {narrow[0]})"
+            )
         unknown = (self.every.verdict == Verdict.FAILED) & ~self.several & ~self.none
         for flags, why in (
             (self.several, "the periodic motion folds back: several belong to one point, which are not judged"),
@@ -247,3 +320,13 @@ class SteadyStatePixels:
                     f"{chart.y.label} = {y[r]:.6g})"
                 )
         return said
+
+
+def _inside(folds: Folds, rows: Array, along: Array) -> tuple[Flags, Flags]:
+    """Points (row, along) between folds: where several motions were found, and where none."""
+    several, none = np.zeros((2, len(rows), len(along)), dtype=bool)
+    for value, one in folds:
+        inside = (rows[:, None] == value) & (along > one.low) & (along < one.high)
+        several |= inside & (one.why == SEVERAL)
+        none |= inside & (one.why != SEVERAL)
+    return several, none

@@ -15,7 +15,8 @@ from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
 from trunnion.floquet.propagation.about_steady_states import multipliers_about, pixels_of_rows
-from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, breaks, slopes_along
+from trunnion.steady.free.folds_between import folds_between, slopes
+from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, slopes_along
 from trunnion.waiting import keep_time
 
 FOLLOWED = 33
@@ -77,7 +78,8 @@ class SteadyStateFamily(LineFamily):
             if len(self.kept) >= MOST_KEPT:
                 self.kept.clear()
             curve = self.charted.curve(y)
-            curve.broken = breaks(curve, np.linspace(self.x.values[0], self.x.values[-1], FOLLOWED), between=False)
+            even = np.linspace(self.x.values[0], self.x.values[-1], FOLLOWED)
+            curve.broken = folds_between(curve, even, slopes(curve, even))
             self.kept[y] = curve
         return self.kept[y]
 

@@ -10,7 +10,7 @@ nonlinear equations at samples of the period; Newton's steps are taken for all s
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,11 +26,13 @@ from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
+from trunnion.numerics.harmonics import solved
 from trunnion.numerics.integration.integration import Equations
 from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.threads import on_one_thread
 from trunnion.results.counts import counted
+from trunnion.waiting import keep_time
 
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""
@@ -214,8 +216,7 @@ class FreeBalance:
         table = self.rows(value)
         speed, co = table[:, 0], self.line.untwisted(table)
         numbers, first = self.numbers(table, co), self._rigid(table, h, co) if guess is None else guess
-        inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
-        unit = ANGLE_SCALE * speed**2 * inertia / self.period
+        unit = self._torque_unit(speed, co)
 
         def motions(cases: Places, z: Array, found: Flags) -> SteadyStates:
             rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
@@ -228,6 +229,35 @@ class FreeBalance:
         z, found = solve_many(equations, start, tolerance=CLOSED, most=CORRECTIONS)
         z[~found] = 0.0
         return motions(np.arange(len(speed)), z, found)
+
+    def changes(self, motions: SteadyStates, tables: Sequence[Array]) -> list[Array]:
+        """How the rows (case, n, 2h + 1) [rad] of ``motions`` change, to first order, where their packed numbers become
+        each of ``tables`` (case, column); NaN at a motion that turns back."""
+        batch_size = max(1, MOST_NUMBERS // (motions.rows[0].size + 1) ** 2)
+        parts = [slice(i, i + batch_size) for i in range(0, len(motions.value), batch_size)]
+        with on_one_thread():
+            found = [self._changes(motions.part(one), [table[one] for table in tables]) for one in parts]
+        return [np.concatenate(each) for each in zip(*found, strict=True)]
+
+    def _changes(self, motions: SteadyStates, tables: list[Array]) -> list[Array]:
+        keep_time()
+        unit = self._torque_unit(motions.speed, motions.coefficients)
+        left, matrix = self._equations(motions, unit)
+        right = np.stack([self._moved(motions, table, unit) - left for table in tables], axis=2)
+        change = -ANGLE_SCALE * np.asarray(solved(matrix, right))[:, :-1]
+        return [change[..., k].reshape(motions.rows.shape) for k in range(len(tables))]
+
+    def _moved(self, motions: SteadyStates, table: Array, unit: Array) -> Array:
+        """What is missing of the balance of ``motions`` in lines of other packed numbers."""
+        other = self.along(lambda value: table)
+        numbers = self.numbers(table, self.line.untwisted(table))
+        moved = SteadyStates(other, motions.value, motions.found, motions.rows, motions.torque, numbers)
+        return self._equations(moved, unit)[0]
+
+    def _torque_unit(self, speed: Array, co: LineCoefficients) -> Array:
+        """In which the torque is counted (case,)."""
+        inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
+        return np.asarray(ANGLE_SCALE * speed**2 * inertia / self.period)
 
     def _equations(self, motions: SteadyStates, unit: Array) -> tuple[Array, Array]:
         """What is missing of the balance and of the phase (case, unknowns), and its derivative by the rows in units of

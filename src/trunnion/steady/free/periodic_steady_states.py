@@ -268,14 +268,16 @@ class SteadyStateCurve:
         further = faster.solve(np.array([speed]), one.h, one.rows[None])
         return float(further.torque[0] - one.torque) if further.found[0] else 0.0
 
-    def continued(self, motion: KnownSteadyState, begin: float, end: float) -> tuple[float, KnownSteadyState]:
+    def continued(
+        self, motion: KnownSteadyState, begin: float, end: float, leap: float = LEAP
+    ) -> tuple[float, KnownSteadyState]:
         """How far a ``motion`` at ``begin`` goes on towards ``end`` [rad/s], and what it is there: each step starts
-        where the last two lead to, and ends near that."""
+        where the last two lead to, and ends near that, within the share ``leap`` of its swing."""
         at, step = begin, end - begin
         slope = np.zeros_like(motion.rows)
         while at != end:
             to = end if abs(end - at) <= abs(step) else at + step
-            further = self._led_to(to, motion, slope * (to - at))
+            further = self._led_to(to, motion, slope * (to - at), leap)
             if further is None:
                 step = (to - at) / 2
                 if abs(step) < self._finest(at):
@@ -285,7 +287,7 @@ class SteadyStateCurve:
                 at, motion, step = to, further, 2 * (to - at)
         return at, motion
 
-    def _led_to(self, speed: float, motion: KnownSteadyState, change: Array) -> KnownSteadyState | None:
+    def _led_to(self, speed: float, motion: KnownSteadyState, change: Array, leap: float) -> KnownSteadyState | None:
         """The motion at ``speed`` that Newton's steps from ``motion`` and its ``change`` (n, 2h + 1) lead to, with as
         many harmonics as it needs; None where they lead nowhere, or so far that it is another."""
         guess = expected = motion.rows + change
@@ -295,7 +297,7 @@ class SteadyStateCurve:
                 return None
             if found.resolved[0]:
                 further = KnownSteadyState.of(found, 0)
-                return further if apart(further.rows, expected) <= LEAP * max(motion.swing, ALIKE) else None
+                return further if apart(further.rows, expected) <= leap * max(motion.swing, ALIKE) else None
             guess = found.rows[0]
         return None
 
@@ -412,12 +414,13 @@ def breaks(solved: SteadyStateCurve, speeds: Array, *, between: bool = True) -> 
     low, high = float(speeds[0]), float(speeds[-1])
     if not usable:
         return (Break(low, high, NONE),)
-    walk = _BranchWalk(solved, low, high, between)
-    found = _merged([*walk.outside(usable[0], low), *walk.between(usable), *walk.outside(usable[-1], high)])
+    walk = BranchWalk(solved, low, high)
+    pairs = walk.apart(list(pairwise(usable)), closely=between)
+    found = merged([*walk.outside(usable[0], low), *walk.between(pairs), *walk.outside(usable[-1], high)])
     return tuple(walk.with_outer_motions(one, usable) for one in found)
 
 
-def _merged(found: Iterable[Break]) -> Iterator[Break]:
+def merged(found: Iterable[Break]) -> Iterator[Break]:
     """Those that overlap as one."""
     left = sorted(found, key=lambda one: one.low)
     while left:
@@ -429,13 +432,13 @@ def _merged(found: Iterable[Break]) -> Iterator[Break]:
 
 
 @dataclass(frozen=True)
-class _BranchWalk:
+class BranchWalk:
     """From motion to motion between two speeds [rad/s]."""
 
     solved: SteadyStateCurve
     low: float
     high: float
-    closely: bool = True
+    leap: float = LEAP
 
     def outside(self, speed: float, end: float) -> Iterator[Break]:
         """What lies between the outermost motion found and the end of the range."""
@@ -443,16 +446,20 @@ class _BranchWalk:
         if last != end:
             yield Break(min(last, end), max(last, end), NONE)
 
-    def between(self, speeds: list[float]) -> Iterator[Break]:
-        """What lies between neighbours of which neither leads to the other."""
-        pairs = list(pairwise(speeds))
+    def apart(self, pairs: list[tuple[float, float]], *, closely: bool) -> list[tuple[float, float]]:
+        """Pairs of neighbours that do not lead to each other in one step, not in a large one either unless
+        ``closely``."""
         together = self._lead_over(pairs, LEAP)
-        if not self.closely:
+        if not closely:
             back = self._lead_over([(b, a) for a, b in pairs], FAR_LEAP)
             over = self._lead_over(pairs, FAR_LEAP)
             together = [one or (up and down) for one, up, down in zip(together, over, back, strict=True)]
-        for (a, b), same in zip(pairs, together, strict=True):
-            up = b if same else self._continued(a, b)
+        return [pair for pair, same in zip(pairs, together, strict=True) if not same]
+
+    def between(self, pairs: list[tuple[float, float]]) -> Iterator[Break]:
+        """What lies between neighbours of which neither leads to the other."""
+        for a, b in pairs:
+            up = self._continued(a, b)
             down = a if up == b else self._continued(b, a)
             if up != b and down != a:
                 yield Break(min(up, down), max(up, down), SEVERAL if up > down else NONE)
@@ -489,10 +496,10 @@ class _BranchWalk:
         """How far the motion at ``begin`` goes on: ``aim`` where it leads to the one known there, else as far as it
         goes, past that speed too where the one known there is another."""
         known = self.solved.known
-        at, motion = self.solved.continued(known[begin], begin, aim)
+        at, motion = self.solved.continued(known[begin], begin, aim, self.leap)
         goal = known.get(aim)
         if at == aim and goal is not None and goal.settled and apart(motion.rows, goal.rows) > ALIKE:
-            at, motion = self.solved.continued(motion, aim, self.high if aim > begin else self.low)
+            at, motion = self.solved.continued(motion, aim, self.high if aim > begin else self.low, self.leap)
         if at not in known or not known[at].settled:
             known[at] = motion
         return at
