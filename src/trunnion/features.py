@@ -102,7 +102,7 @@ BY_MEAN = "{} loses by its mean torque, in the sense in which power flows; of wh
 """What is said of gear losses by what counts them."""
 SET_ASIDE = "the multiplier at 1 is set aside"
 DRAGGED_ALONG = (
-    "{} has no spring that holds it: its multiplier at 1 (eigenvalue 0) is not an instability and is set aside"
+    "{} has no spring that holds it: its mode of frequency 0 (multiplier 1) is not an instability and does not count"
 )
 """What is said of a damper without a spring by what judges disturbances."""
 QUASI_STATIC: dict[str, Reason] = {

@@ -142,3 +142,16 @@ def test_an_order_looks_the_same_in_every_picture() -> None:
     assert all(len(one) == 1 for one in looks.values()) and looks["all"] == {"sum"}
     assert len(set.union(*looks.values())) == 5
     assert len({(look(role).colour, look(role).dash) for role in set.union(*looks.values())}) == 5
+
+
+def test_progress_says_which_cylinder_is_searched() -> None:
+    """In turn, each before its search."""
+    engine = tn.Disk(
+        inertia=0.2, excitation=[{"order": 1, "amplitude": 10.0}], firing_angles=["0 deg", "360 deg"], name="engine"
+    )
+    line = tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), engine])
+    said: list[str] = []
+    shares: list[float] = []
+    tn.submission(line, speed=30.0, progress=shares.append, doing=said.append)
+    assert said == [f"cylinder {number} of engine, misfiring" for number in (1, 2)]
+    assert shares == [1 / 3, 2 / 3, 1.0]

@@ -18,7 +18,7 @@ from importlib.abc import MetaPathFinder
 from math import isnan
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from trunnion._version import __version__
 from trunnion.cli.ending import EndedBy
@@ -158,8 +158,16 @@ def note(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
+class Advance(Protocol):
+    """Called with the share done; ``at`` says what the work is at."""
+
+    def __call__(self, share: float) -> None: ...
+
+    def at(self, step: str) -> None: ...
+
+
 @contextmanager
-def progress(what: str, within: float | None = None) -> Iterator[Callable[[float], None]]:
+def progress(what: str, within: float | None = None) -> Iterator[Advance]:
     """A callback for the share done: a bar with the time left on a terminal, else a line now and then.
 
     Time spent on compiling, which happens once, is not taken for the pace of the work. What is computed inside ends
@@ -176,8 +184,7 @@ def progress(what: str, within: float | None = None) -> Iterator[Callable[[float
         columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.percentage:3.0f} %"))
         left = TextColumn("{task.fields[left]}")
         with Progress(*columns, left, console=Console(stderr=True), transient=True) as bar:
-            task = bar.add_task(what, total=None, left="")
-            yield lambda share: bar.update(task, completed=share, total=1.0, left=clock.left(share))
+            yield _ProgressBar(what, bar, clock)
 
 
 COMPILING = "compiling once, a few seconds (up to half a minute on a slow machine)"
@@ -306,11 +313,25 @@ def _listening(clock: _Clock) -> AbstractContextManager[Any]:
     return listening
 
 
+class _ProgressBar:
+    """Progress on a terminal."""
+
+    def __init__(self, what: str, bar: Any, clock: _Clock) -> None:
+        self.what, self.bar, self.clock = what, bar, clock
+        self.task = bar.add_task(what, total=None, left="")
+
+    def __call__(self, share: float) -> None:
+        self.bar.update(self.task, completed=share, total=1.0, left=self.clock.left(share))
+
+    def at(self, step: str) -> None:
+        self.bar.update(self.task, description=f"{self.what}: {step}")
+
+
 class _ProgressLines:
     """Progress for logs: silent while it is quick, then a line now and then, whether the work tells a share or not."""
 
     def __init__(self, what: str, clock: _Clock) -> None:
-        self.what, self.clock = what, clock
+        self.what, self.step, self.clock = what, "", clock
         self.last = clock.start
         self.done = threading.Event()
 
@@ -322,15 +343,18 @@ class _ProgressLines:
     def __exit__(self, *_: object) -> None:
         self.done.set()
 
+    def at(self, step: str) -> None:
+        self.step = f", {step}"
+
     def __call__(self, share: float) -> None:
         left = self.clock.left(share)
         if share > 0 and time.monotonic() - self.last >= LONG:
-            self._say(f"{self.what}: {100 * share:.0f} %{f', {left}' if left else ''}")
+            self._say(f"{self.what}{self.step}: {100 * share:.0f} %{f', {left}' if left else ''}")
 
     def _tell(self) -> None:
         while not self.done.wait(SILENCE):
             if time.monotonic() - self.last >= SILENCE:
-                self._say(f"still at work after {time.monotonic() - self.clock.start:.0f} s: {self.what}")
+                self._say(f"still at work after {time.monotonic() - self.clock.start:.0f} s: {self.what}{self.step}")
 
     def _say(self, sentence: str) -> None:
         self.last = time.monotonic()

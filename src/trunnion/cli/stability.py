@@ -195,7 +195,7 @@ def _submitted(
 
     limit = output.stoppable(left, of_processor=within is None, stated=within)
     with limit, output.progress("report to hand in") as advance:
-        page = submission(given, source=file, progress=advance)
+        page = submission(given, source=file, progress=advance, doing=advance.at)
     with to_the_end():
         if to.suffix.lower() in REPORTS:
             return page, [page.save(to)]

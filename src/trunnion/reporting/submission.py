@@ -59,6 +59,7 @@ def submission(
     unit: str | None = None,
     source: str | os.PathLike[str] | None = None,
     progress: Callable[[float], None] | None = None,
+    doing: Callable[[str], None] | None = None,
 ) -> Submission:
     """The report on ``line`` that is handed in; title block and names come from its ``document``.
 
@@ -69,6 +70,7 @@ def submission(
     unit : of speeds: "rpm", "Hz" or "rad/s"; default the description's.
     source : the file the line was read from, for its name and hash.
     progress : called as progress(share done).
+    doing : called as doing("cylinder 3 of engine, misfiring") before each cylinder that is searched out of work.
 
     Within ``tn.time_limit(seconds)`` it holds what is known by then; first sheet and section 10 say what is missing.
 
@@ -85,7 +87,7 @@ def submission(
     report to hand in on a driveline, 0... MB of HTML; .save(path) writes it
     """
     seen = line if isinstance(line, OverviewAssessment) else answer(judged(asked(line, speed=speed, unit=unit)))
-    contents = gather(seen, progress)
+    contents = gather(seen, progress, doing)
     with to_the_end():  # what there is is drawn
         shown = _pictures(contents)
         return Submission(_page(contents, shown, None if source is None else Path(source)), contents, shown)

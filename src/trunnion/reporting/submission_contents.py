@@ -110,13 +110,18 @@ class SubmissionContents:
     complete: bool
 
 
-def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = None) -> SubmissionContents:
-    """What belongs on the pages after the verdict; ``progress`` is called as progress(share done).
+def gather(
+    seen: OverviewAssessment,
+    progress: Callable[[float], None] | None = None,
+    doing: Callable[[str], None] | None = None,
+) -> SubmissionContents:
+    """What belongs on the pages after the verdict; ``progress`` is called as progress(share done), ``doing`` with the
+    cylinder that is searched out of work.
 
     Where a time limit ends it, what is known by then, and ``left_out`` says what is missing.
     """
     left_out: list[str] = []
-    done = _Share(progress, seen)
+    done = _Share(progress, doing, seen)
 
     def unless_refused(question: str, answer: Callable[[], Found]) -> Found | None:
         try:
@@ -158,9 +163,19 @@ def gather(seen: OverviewAssessment, progress: Callable[[float], None] | None = 
 class _Share:
     """Counts the searches that are done: of every load case, and of every cylinder out of work."""
 
-    def __init__(self, progress: Callable[[float], None] | None, seen: OverviewAssessment) -> None:
-        self.progress, self.done = progress, 0
+    def __init__(
+        self,
+        progress: Callable[[float], None] | None,
+        doing: Callable[[str], None] | None,
+        seen: OverviewAssessment,
+    ) -> None:
+        self.progress, self.doing, self.done = progress, doing, 0
         self.all = len(seen.subject.cases) + len(_out_of_work(seen))
+
+    def begin(self, what: str) -> None:
+        """Say what is searched next."""
+        if self.doing is not None:
+            self.doing(what)
 
     def step(self) -> None:
         self.done += 1
@@ -277,6 +292,7 @@ def _malfunctions(
             if not firing:
                 raise ComputationError("there is no response with all cylinders firing to compare with")
             keep_time()
+            done.begin(f"{called}, {SILENT[key]}")
             found.append(_malfunction(seen, firing, key, one, called))
         except (InputError, ComputationError) as error:
             unsearched.append(f"{called}, {SILENT[key]}")

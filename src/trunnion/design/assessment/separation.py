@@ -33,7 +33,7 @@ RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical", "separation")
 ALL, ONE = "separation of modes", "separation of mode "
 NEEDS = "; a resonance needs "
 """Between where a mode meets an order and what would judge it."""
-LIMITED = "limits of torque or stress, which are stated"
+LIMITED = "limits of torque or stress to judge it, and these are stated"
 STEEP = 0.01
 """Share by which a mode may change between two speeds and still be taken as met where an order changes its side."""
 
