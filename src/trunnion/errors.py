@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import os
 import reprlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 
 Made = TypeVar("Made")
 MOST_LINES = 20
 """Most complaints that the text of one error lists."""
+MOST_ALIKE = 3
+"""Complaints that differ in their place and value alone which are written out of many."""
 LONGEST = 80
 """Most characters of what a user wrote that a message quotes in one piece."""
 
@@ -69,7 +71,7 @@ class InputError(TrunnionError, ValueError):
             return first
         whole = first.but()
         whole.problems = single
-        lines = list(dict.fromkeys(map(str, single)))
+        lines = list(_lines(single))
         more = [f"and {len(lines) - MOST_LINES} more"] if len(lines) > MOST_LINES else []
         whole.args = ("\n".join([*lines[:MOST_LINES], *more]),)
         return whole
@@ -88,13 +90,33 @@ class InputError(TrunnionError, ValueError):
         stated = {"element": self.element, "key": self.key, "value": self.value, "remedy": self.remedy}
         return InputError(changes.pop("problem", self.problem), **{**stated, **changes})
 
+    @property
+    def place(self) -> str:
+        """Element and key, each cut where it is long."""
+        return ".".join(short(part) for part in (self.element, self.key) if part)
+
     def sentence(self) -> str:
         """The whole message on one line."""
-        place = ".".join(short(part) for part in (self.element, self.key) if part)
+        place = self.place
         shown = "" if self.value is None else f" = {_brief(self.value)}"
         head = f"{place}{shown}: " if place or shown else ""
         tail = f"; {self.remedy}" if self.remedy else ""
         return " ".join(f"{head}{self.problem}{tail}".split())
+
+
+def _lines(problems: Iterable[InputError]) -> Iterator[str]:
+    """A line each, once; of many that differ in their place and value alone the first, and how many more."""
+    every = {str(one): one for one in problems}
+    alike: dict[tuple[str, str, str], list[InputError]] = {}
+    for one in every.values():
+        alike.setdefault((one.problem, one.key, one.remedy), []).append(one)
+    for line, one in every.items():
+        same = alike[one.problem, one.key, one.remedy]
+        place, folded = same.index(one), len(same) > MOST_ALIKE + 1
+        if place < MOST_ALIKE or not folded:
+            yield line
+        if folded and place == MOST_ALIKE:
+            yield f"and {len(same) - MOST_ALIKE} more of the same, the last at {same[-1].place}"
 
 
 class NothingToDraw(InputError):

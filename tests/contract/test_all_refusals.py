@@ -95,7 +95,27 @@ def test_a_text_lists_a_page_and_the_error_all():
     with pytest.raises(InputError) as caught:
         loads("format = 1\n" + '[[element]]\ntype = "Dsk"\n' * 1000)
     assert len(caught.value.problems) == 1000
-    assert str(caught.value).splitlines()[-1] == "and 980 more"
+    *first, last = str(caught.value).splitlines()
+    assert len(first) == 3 and last.startswith("and 997 more of the same, the last at element 1000")
+    with pytest.raises(InputError) as caught:
+        loads('format = 1\n[[element]]\ntype = "Disk"\ninertia = 1\n' + "".join(f"a{i} = 1\n" for i in range(1000)))
+    assert len(str(caught.value).splitlines()) == 21 and str(caught.value).endswith("\nand 980 more")
+
+
+def test_of_many_that_differ_in_their_place_alone_three_are_written_out():
+    shafts = "".join(f'[[element]]\ntype = "Shaft"\nstifness = {k}\n' for k in range(1, 8))
+    text = f'format = 1\n{shafts}[[element]]\ntype = "Disk"\ninertia = -1\n'
+    with pytest.raises(InputError) as caught:
+        loads(text)
+    lines = str(caught.value).splitlines()
+    assert [line.partition(":")[0] for line in lines[:3]] == [
+        f"Shaft {k} (element {k}).stifness = {k}" for k in (1, 2, 3)
+    ]
+    assert lines[3] == "and 4 more of the same, the last at Shaft 7 (element 7).stifness"
+    assert "must be" in lines[4] and len(lines) == 5
+    with pytest.raises(InputError) as caught:
+        loads(text.replace("stifness", "stiffness", 3))
+    assert len(str(caught.value).splitlines()) == 5 and "of the same" not in str(caught.value)
 
 
 LONG = "x" * 5000
