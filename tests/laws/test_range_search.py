@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -15,8 +17,10 @@ from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.modes.loaded_modes import loaded_modes
+from trunnion.response.orders import response
 from trunnion.response.orders.response import response_about
 from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search, sharpened
+from trunnion.response.speed_sweep import response_over
 from trunnion.steady.orders.amplitudes import joined
 from trunnion.steady.orders.spectrum import order_spectrum
 
@@ -221,6 +225,29 @@ def test_side_orders_of_joints_and_meshes_act_beside_those_of_disks() -> None:
     turning = set(order[frequency == 0].tolist())
     assert {1.0, 2.0, 3.0, 4.0, 5.0, 7.0} <= turning
     assert {-4.0, -2.0, 2.0, 4.0} <= set(order[frequency == 7.0].tolist())
+
+
+@pytest.mark.parametrize("line", [shaken(0.4), bent(0.3, 0.05, second=0.4)], ids=["straight", "bent"])
+def test_a_response_over_a_range_solves_each_speed_once(line: tn.Driveline, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And is that at the same speeds; 2e-9 of what two meshes of interpolation make of a resonance."""
+    ends = (60.0, 200.0) if len(line.elements) == 3 else (0.4, 1.05)
+    looked: list[float] = []
+
+    def counted(assembly: Any, speed: Any, **more: Any) -> Any:
+        looked.extend(speed.tolist())
+        return order_spectrum(assembly, speed, **more)
+
+    with monkeypatch.context() as spied:
+        spied.setattr(response, "order_spectrum", counted)
+        found = response_over(line, *ends, points=31)
+    assert sorted(looked) == found.speed.tolist() == tn.sweep_speeds(line, *ends, 31).tolist()
+    again = tn.order_response(line, found.speed)
+    assert found.order.tolist() == again.order.tolist()
+    assert max(found.cut_off.max(), again.cut_off.max()) < 1e-11
+    for key in ("torque", "rotation", "mean_torque", "peak_torque"):
+        one, other = getattr(found, key), getattr(again, key)
+        assert np.abs(one - other).max() <= 2e-9 * np.abs(other).max(initial=0.0) + 1e-12, key
+    assert np.array_equal(found.verdict, again.verdict)
 
 
 def test_spectra_joined_are_those_computed_at_once() -> None:

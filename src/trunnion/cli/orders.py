@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from trunnion.design.limits.result import StableLimit
+    from trunnion.driveline.driveline import Driveline
     from trunnion.response.orders.misfire import Misfire
     from trunnion.response.orders.result import OrderResponse
     from trunnion.response.speed_sweep import SpeedSweep
@@ -50,6 +51,27 @@ def _close_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
     if not rest:
         return np.array([low])
     return np.linspace(low, rest[0], counted) if counted else tn.sweep_speeds(asked.line, low, rest[0], POINTS)
+
+
+def _searched_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array | tuple[float, float]:
+    """The same, but the two ends of a range where no number of speeds is stated."""
+    import numpy as np
+
+    ends, counted = _stated_speeds(asked, text, key)
+    if len(ends) == 1 or not counted:
+        return np.array(ends) if len(ends) == 1 else (ends[0], ends[1])
+    return np.linspace(*ends, counted)
+
+
+def _response(
+    line: Driveline, speeds: Array | tuple[float, float], orders: list[float] | None = None, **more: Any
+) -> OrderResponse:
+    """At the speeds, or over the range between two ends."""
+    from trunnion.response.speed_sweep import response_over
+
+    if isinstance(speeds, tuple):
+        return response_over(line, *speeds, orders, points=POINTS, **more)
+    return tn.order_response(line, speeds, orders, **more)
 
 
 def _even_speeds(asked: CommandInput, text: str = "", key: str = "") -> Array:
@@ -103,6 +125,9 @@ def _raised(asked: CommandInput, text: str, key: str) -> tuple[str, float, float
     return read_even_axis(asked, text, key, SCAN + 1)
 
 
+SearchedSpeeds = Annotated[
+    "Array | tuple[float, float]", SPEEDS, OptionReader(_searched_speeds, missing=_searched_speeds)
+]
 CloseSpeeds = Annotated["Array", SPEEDS, OptionReader(_close_speeds, missing=_close_speeds)]
 EvenSpeeds = Annotated["Array", SPEEDS, OptionReader(_even_speeds, missing=_even_speeds)]
 
@@ -111,7 +136,7 @@ EvenSpeeds = Annotated["Array", SPEEDS, OptionReader(_even_speeds, missing=_even
 def order_response(
     line: Line,
     *,
-    speeds: CloseSpeeds,
+    speeds: SearchedSpeeds,
     orders: Annotated[list[float] | None, OptionReader(_orders)],
     spring: Annotated[str | None, OptionReader(_known_spring)],
     unit: SpeedUnit,
@@ -122,7 +147,7 @@ def order_response(
     --orders K,K,…  Cycles per turn of the input to list: 0.5,1,2; default: all.
     --spring  Shaft or mesh to draw; default: the one that swings most.
     """
-    result = tn.order_response(line, speeds, orders, progress=progress).in_unit(unit)
+    result = _response(line, speeds, orders, progress=progress).in_unit(unit)
     findings = result.findings
 
     def more() -> None:
@@ -171,9 +196,11 @@ def coupling_temperatures(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit) -
 
 
 @Command("torque over speed")
-def speed_sweep(line: Line, *, speeds: CloseSpeeds, unit: SpeedUnit, progress: Progress) -> CommandOutput:
+def speed_sweep(line: Line, *, speeds: SearchedSpeeds, unit: SpeedUnit, progress: Progress) -> CommandOutput:
     """Example: trunnion speed-sweep truck.toml --speed 300rpm:2400rpm -o truck.png"""
-    result = tn.speed_sweep(line, speeds, progress=progress).in_unit(unit)
+    from trunnion.response.speed_sweep import sweep_of
+
+    result = sweep_of(_response(line, speeds, progress=progress)).in_unit(unit)
     return CommandOutput(
         result, draw=partial(result.plot, operating=line.operation), table=_in_unit(result),
         content=lambda: _sweep_json(result),

@@ -27,7 +27,7 @@ from trunnion.reporting.under_load import LoadedMotion, load_findings, loaded_mo
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
 from trunnion.response.kinetostatics import kinetostatics
 from trunnion.response.kinetostatics.result import Kinetostatics
-from trunnion.response.speed_sweep import SpeedSweep, speed_sweep, sweep_speeds
+from trunnion.response.speed_sweep import SpeedSweep, response_over, sweep_of
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, time_kept
@@ -77,7 +77,7 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
         sweep = unless_refused(
             "Torque over speed",
-            lambda: speed_sweep(assembly, sweep_speeds(assembly, low, high)),
+            lambda: sweep_of(response_over(assembly, low, high)),
         )
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
     bending = bending_speeds(assembly)

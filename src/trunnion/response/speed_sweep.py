@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -17,7 +17,14 @@ from trunnion.floquet.ranges.resonances import resonances
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.stability.where_unstable import where_unstable
 from trunnion.numerics.memory import require_memory
-from trunnion.response.orders.response import has_rating, order_response, response_about
+from trunnion.response.orders.response import (
+    completed_response,
+    has_rating,
+    order_response,
+    response_about,
+    steady_states_of,
+)
+from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
@@ -30,6 +37,7 @@ from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0])
 """Extra speeds about each resonance of the forced response, in half-widths of its peak: what draws it."""
@@ -125,7 +133,11 @@ def speed_sweep(
            [1108.5],
            [  69.1]])
     """
-    found = order_response(line, speeds, statically_twisted=statically_twisted, progress=progress)
+    return sweep_of(order_response(line, speeds, statically_twisted=statically_twisted, progress=progress))
+
+
+def sweep_of(found: OrderResponse) -> SpeedSweep:
+    """A response without its orders."""
     return SpeedSweep(
         speed=found.speed, shafts=found.springs, twist_amplitude=found.vibratory_twist,
         torque_amplitude=found.vibratory_torque, torque_mean=found.mean_torque, joint_rotation=found.joint_rotation,
@@ -157,19 +169,52 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     >>> print(len(speeds) > 21, speeds[[0, -1]])
     True [40. 70.]
     """
-    assembly = assemble(line)
+    assembly, even = assemble(line), _even(low, high, points)
+    found = _searched(assembly, even)
+    return even if found is None else _with(even, found.speed)
+
+
+def response_over(
+    line: Driveline | Assembly,
+    low: float,
+    high: float,
+    orders: Iterable[float] | None = None,
+    *,
+    points: int = 241,
+    progress: Callable[[float], None] | None = None,
+) -> OrderResponse:
+    """``order_response`` at the speeds of ``sweep_speeds``, each of them solved once."""
+    assembly, even = assemble(line), _even(low, high, points)
+    motions = steady_states_of(assembly)
+    found = _searched(assembly, even, motions)
+    if found is None:
+        return order_response(assembly, even, orders, progress=progress)
+    speeds, known = _with(even, found.speed), found.spectrum
+    del found
+    return completed_response(assembly, known, speeds, orders, motions=motions, progress=progress)
+
+
+def _even(low: float, high: float, points: int) -> Array:
     require_memory(64.0 * points, key="points", value=points, remedy="ask for fewer speeds")
-    even = np.linspace(low, high, points)
-    span = Span(assembly, low, high)
+    return np.linspace(low, high, points)
+
+
+def _with(even: Array, found: Array) -> Array:
+    every = np.union1d(even, found)
+    return every[(every >= even[0]) & (every <= even[-1])]
+
+
+def _searched(assembly: Assembly, even: Array, motions: SteadyStatesBySpeed | None = None) -> OrderResponse | None:
+    """The response at all speeds at which the search for the largest torques looked; None where there is none."""
+    span = Span(assembly, float(even[0]), float(even[-1]))
     try:
         met = resonances(span)
         about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
         first = [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
-        found = search(assembly, partial(response_about, assembly), first, _torques(assembly)).response.speed
+        respond = partial(response_about, assembly, motions=motions)
+        return search(assembly, respond, first, _torques(assembly)).response
     except (InputError, ComputationError):  # said where the response is asked for
-        found = np.zeros(0)
-    every = np.union1d(even, found)
-    return every[(every >= low) & (every <= high)]
+        return None
 
 
 def _between(speeds: Array, part: Array) -> Array:

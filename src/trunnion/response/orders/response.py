@@ -39,7 +39,7 @@ from trunnion.results.finding import Finding, Gravity
 from trunnion.results.units import figures
 from trunnion.results.verdict import Verdict
 from trunnion.results.words import Words
-from trunnion.steady.orders.amplitudes import OrderSpectrum
+from trunnion.steady.orders.amplitudes import OrderSpectrum, joined
 from trunnion.steady.orders.forced_response import shaft_names
 from trunnion.steady.orders.spectrum import order_spectrum
 
@@ -93,6 +93,26 @@ def order_response(
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
     return _result(assembly, spectrum, judged, wanted)
+
+
+def completed_response(
+    assembly: Assembly,
+    known: OrderSpectrum,
+    speeds: Array,
+    orders: Iterable[float] | None = None,
+    *,
+    motions: SteadyStatesBySpeed | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> OrderResponse:
+    """As ``order_response`` at rising ``speeds``, of which those of ``known`` are not solved again."""
+    speed = settled_speeds(assembly.line, speeds)
+    place = np.flatnonzero(np.isin(known.speed, speed) & (np.diff(known.speed, prepend=-np.inf) > 0))
+    missing = np.setdiff1d(speed, known.speed)
+    parts = [known if len(place) == len(known.speed) else known.take(place)]
+    if len(missing):
+        parts.append(order_spectrum(assembly, missing, motions=motions, progress=progress))
+    del known
+    return _result(assembly, joined(parts)[0], partial(verdicts_at, assembly, speed, motions=motions), _listed(orders))
 
 
 def steady_states_of(assembly: Assembly) -> SteadyStatesBySpeed | None:

@@ -221,6 +221,8 @@ class _SearchedRanges:
         new = known or self.respond(speeds)
         values = np.stack([q.values(new) for q in self.quantities], axis=1) if self.quantities else self.values[:0]
         parts = [new.spectrum] if self.response is None else [self.response.spectrum, new.spectrum]
+        del new, known
+        self.response = None  # of many speeds it is large
         together, order = joined(parts)
         self.response = response_of_spectrum(self.assembly, together, remarked=False)
         self.values = np.concatenate([self.values, values.reshape(len(speeds), -1)])[order]

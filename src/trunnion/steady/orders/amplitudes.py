@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
@@ -185,18 +184,25 @@ class OrderSpectrum:
         return np.asarray(mean + (turned @ amplitude).real)
 
 
-def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
-    """Spectra of one line as one, the speeds of one after those of the other."""
+def stacked(parts: list[OrderSpectrum]) -> OrderSpectrum:
+    """Spectra of one line as one, the speeds of one after those of the other; the list is left empty, so that no more
+    is held than the whole and one part."""
+    return _whole(parts, np.arange(sum(len(part.speed) for part in parts)))
+
+
+def joined(parts: list[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
+    """The same by rising speed, and where its speeds stood before."""
+    order = np.argsort(np.concatenate([part.speed for part in parts]), kind="stable")
+    return _whole(parts, order), order
+
+
+def _whole(parts: list[OrderSpectrum], order: Places) -> OrderSpectrum:
+    """All ``parts``, which are taken out of the list, their speeds in ``order``."""
     first, speeds = parts[0], [len(part.speed) for part in parts]
-    if len(parts) == 1:
-        return first
+    if len(parts) == 1 and np.array_equal(order, np.arange(len(order))):
+        return parts.pop()
     keys = sorted({key for part in parts for key in part.keys}, key=_by_frequency)
-    place = {key: j for j, key in enumerate(keys)}
-    amplitude = np.zeros((sum(speeds), len(keys), first.channels.count), dtype=complex)
-    base = np.zeros((sum(speeds), len(keys), first.channels.points), dtype=complex)
-    for end, part in zip(accumulate(speeds), parts, strict=True):
-        rows, columns = slice(end - len(part.speed), end), [place[key] for key in part.keys]
-        amplitude[rows, columns], base[rows, columns] = part.amplitude, part.base
+    column = {key: j for j, key in enumerate(keys)}
 
     def springs(every: list[Array]) -> Array:
         """One row for all speeds, or a row each."""
@@ -204,26 +210,26 @@ def stacked(parts: Sequence[OrderSpectrum]) -> OrderSpectrum:
             return every[0][:1]
         return np.concatenate([np.broadcast_to(one, (n, one.shape[1])) for one, n in zip(every, speeds, strict=True)])
 
-    return OrderSpectrum(
-        speed=np.concatenate([part.speed for part in parts]),
-        order=tuple(order for order, _ in keys),
+    damping, loss = (springs([getattr(part, key) for part in parts]) for key in ("damping", "loss"))
+    counted = range(min(len(part.oils) for part in parts))
+    whole = OrderSpectrum(
+        speed=np.concatenate([part.speed for part in parts])[order],
+        order=tuple(key[0] for key in keys),
         frequency=np.array([frequency for _, frequency in keys]),
-        amplitude=amplitude,
-        base=base,
-        mean=np.concatenate([part.mean for part in parts]),
-        cut_off=np.concatenate([part.cut_off for part in parts]),
+        amplitude=np.zeros((sum(speeds), len(keys), first.channels.count), dtype=complex),
+        base=np.zeros((sum(speeds), len(keys), first.channels.points), dtype=complex),
+        mean=np.concatenate([part.mean for part in parts])[order],
+        cut_off=np.concatenate([part.cut_off for part in parts])[order],
         channels=first.channels,
-        damping=springs([part.damping for part in parts]),
-        loss=springs([part.loss for part in parts]),
-        oils=tuple(
-            oil_in_turn([part.oils[k] for part in parts], speeds) for k in range(min(len(part.oils) for part in parts))
-        ),
+        damping=damping[order] if len(damping) > 1 else damping,
+        loss=loss[order] if len(loss) > 1 else loss,
+        oils=tuple(oil_in_turn([part.oils[k] for part in parts], speeds).take(order) for k in counted),
         side_orders=max(part.side_orders for part in parts),
     )
-
-
-def joined(parts: Sequence[OrderSpectrum]) -> tuple[OrderSpectrum, Places]:
-    """The same by rising speed, and where its speeds stood before."""
-    whole = stacked(parts)
-    order = np.argsort(whole.speed, kind="stable")
-    return whole.take(order), order
+    place = np.argsort(order)
+    del first
+    for end in reversed(list(accumulate(speeds))):
+        part = parts.pop()
+        rows, columns = place[end - len(part.speed) : end, None], [column[key] for key in part.keys]
+        whole.amplitude[rows, columns], whole.base[rows, columns] = part.amplitude, part.base
+    return whole
