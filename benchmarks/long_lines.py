@@ -5,13 +5,18 @@
 Straight free chains stand beside openTorsion where that is installed, side by side. ``order_response`` at 50 speeds
 and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed,
 and whether it takes the cheaper of its two ways; ``stability_chart`` over speed and joint angles, once, as chosen and
-without grids of whole matrices where that takes no more than a minute. Medians on one thread.
+without grids of whole matrices where that takes no more than a minute; once each, with the largest memory, what looks
+over the whole range: its unstable speeds, the response with the largest torques, ``assess`` and ``sensitivity``.
+Medians on one thread.
 """
 
 from __future__ import annotations
 
 import argparse
+import resource
 import statistics
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 
@@ -19,8 +24,13 @@ import numpy as np
 from orders import open_torsion
 
 import trunnion as tn
+from trunnion.equations.coefficients import assemble
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.propagation import tree_modes
+from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.unstable import unstable_ranges
+from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.response.speed_sweep import response_over
 from trunnion.steady.orders import spectrum
 
 SPEEDS = tn.rpm(np.linspace(600.0, 3000.0, 50))
@@ -83,7 +93,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--most", type=int, default=300)
+    parser.add_argument("--one", choices=list(RANGES), help="one row of the last table, for --most inertias")
     asked = parser.parse_args()
+    if asked.one:
+        over_range(asked.one, asked.most)
+        return
     print("| inertias | order_response, straight [s] | two angled joints [s] | target |\n|---|---|---|---|")
     for n in (10, 20, 50, 100, 300):
         if n <= asked.most:
@@ -121,6 +135,47 @@ def main() -> None:
             chart(chain(n), (8, 6))
             chosen, other = chart(chain(n), size), without_whole_matrices(chain(n), size) if both else float("nan")
             print(f"| {n}, {size[0]} × {size[1]} | {chosen:.2f} | {other:.2f} |", flush=True)
+
+    print("\n| inertias | over the range | seconds | largest memory [GB] |\n|---|---|---|---|", flush=True)
+    for n in (10, 20, 50, 100):
+        for what in RANGES if n <= asked.most else ():
+            subprocess.run([sys.executable, __file__, "--one", what, "--most", str(n)], check=True)
+
+
+def response_over_range(line: tn.Driveline) -> None:
+    """As the command order-response without a number of speeds."""
+    response_over(line, *ENDS)
+
+
+def unstable_speeds(line: tn.Driveline) -> None:
+    """As ``assess`` searches them."""
+    span = Span(assemble(line), *ENDS)
+    unstable_ranges(span, lambda speeds: stability_along(span.assembly, speeds))
+
+
+def assessed(line: tn.Driveline) -> None:
+    """All checks over the range."""
+    tn.assess(line, ENDS)
+
+
+def differentiated(line: tn.Driveline) -> None:
+    """Frequencies, growth and torques at the ends of the range by all numbers."""
+    tn.sensitivity(line, ENDS, of=["frequencies", "growth", "torques"])
+
+
+ENDS = (float(tn.rpm(600.0)), float(tn.rpm(3000.0)))
+RANGES = {work.__name__: work for work in (unstable_speeds, response_over_range, assessed, differentiated)}
+"""Each in a process of its own, whose largest memory is that of one."""
+
+
+def over_range(what: str, inertias: int) -> None:
+    """A row of the last table."""
+    line = chain(inertias)
+    tn.stability(line, 150.0)  # compiles
+    begin = time.process_time()
+    RANGES[what](line)
+    seconds, memory = time.process_time() - begin, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    print(f"| {inertias} | {what.replace('_', ' ')} | {seconds:.1f} | {memory:.2f} |", flush=True)
 
 
 CHARTS = (
