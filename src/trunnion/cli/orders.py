@@ -57,10 +57,10 @@ def _searched_speeds(asked: CommandInput, text: str = "", key: str = "") -> Arra
     """The same, but the two ends of a range where no number of speeds is stated."""
     import numpy as np
 
-    ends, counted = _stated_speeds(asked, text, key)
-    if len(ends) == 1 or not counted:
-        return np.array(ends) if len(ends) == 1 else (ends[0], ends[1])
-    return np.linspace(*ends, counted)
+    (low, *rest), counted = _stated_speeds(asked, text, key)
+    if not rest:
+        return np.array([low])
+    return np.linspace(low, rest[0], counted) if counted else (low, rest[0])
 
 
 def _response(
