@@ -32,6 +32,8 @@ def line(schedules: list[tn.Schedule], cases: tuple[tn.LoadCase, ...] = ()) -> t
 def test_a_line_at_a_point_of_a_schedule() -> None:
     one = line([TRAVEL, PULL])
     assert one.at_schedule("axle", 0.05).elements[3].angle == pytest.approx(np.radians(9))
+    left = one.at_schedule("axle", 0.05).operation
+    assert left is not None and "axle" not in [schedule.name for schedule in left.schedules]
     assert one.at_schedule("pull", 50.0).elements[5].load_torque == pytest.approx(50.0)
     with pytest.raises(tn.InputError, match="lies beyond the schedule, which goes from -0.05 to 0.1 m"):
         one.at_schedule("axle", 0.2)

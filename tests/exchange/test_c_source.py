@@ -43,18 +43,18 @@ def compiled(source: Path) -> Rate:
     return rate
 
 
-def agrees(line: tn.Driveline, folder: Path, seed: int = 0) -> int:
+def agrees(line: tn.Driveline, folder: Path, seed: int = 0, speed: float = SPEED) -> int:
     """Rates at random states, of sizes from a thousandth of a degree to some degrees, within 1e-13 of the largest term
     of each; returns how many stages were met."""
     path = folder / "line.c"
     tn.export_line(line, path, "c")
-    rate, system = compiled(path), line_system(line, SPEED, leaves=True).system
+    rate, system = compiled(path), line_system(line, speed, leaves=True).system
     rng, met = np.random.default_rng(seed), set()
     n, size = system.size, system.size // 2
     assert n == 2 * size
     for k in range(STATES):
         reach = 10.0 ** rng.uniform(-4.0, -1.0)
-        state = np.concatenate([reach * rng.normal(size=size), 0.3 * reach * SPEED * rng.normal(size=size)])
+        state = np.concatenate([reach * rng.normal(size=size), 0.3 * reach * speed * rng.normal(size=size)])
         time = float(rng.uniform(0.0, 1.0))
         regime = system.regimes.at(time, state, system.parameters, system.numbers) if system.regimes else 0
         met.add(regime)
@@ -141,6 +141,23 @@ def test_a_motion_of_the_compiled_function(tmp_path: Path) -> None:
     found = solve_ivp(slope, (0.0, span), start, method="DOP853", rtol=1e-12, atol=1e-13)
     own = tn.simulate(system.system, span, start=start, tolerance=1e-12)
     assert np.abs(found.y[:, -1] - own.at(np.array([span]))[0])[: len(start) // 2].max() < 1e-9
+
+
+EXAMPLES = (
+    "electric-drive",
+    "gear-stage",
+    "harbour-tug",
+    "rolling-mill-spindle",
+    "six-cylinder-ship",
+    "steering-column",
+)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_examples(name: str, tmp_path: Path) -> None:
+    line = tn.load(Path(__file__).parents[2] / "examples" / f"{name}.toml")
+    agrees(line, tmp_path, speed=float(line.operation.speed))  # type: ignore[union-attr]
 
 
 def test_names_cannot_leave_their_comment(tmp_path: Path) -> None:

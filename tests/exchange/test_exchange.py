@@ -299,6 +299,7 @@ def test_a_schedule_is_refused(tmp_path: Path) -> None:
     way = tn.Schedule(name="way", travel=["0 mm", "9 mm"], angles={"HookeJoint 1": [0.0, 0.1]})
     with pytest.raises(InputError, match=r"schedule\.way.*at_schedule\('way'"):
         exported(driven(schedules=[way]), tmp_path, "csv")
+    exported(driven(schedules=[way]).at_schedule("way", 0.0), tmp_path, "csv")  # the remedy
 
 
 def test_what_else_is_left_out_is_said(tmp_path: Path) -> None:

@@ -313,3 +313,46 @@ def test_a_version_belongs_to_an_fmu(tmp_path: Path) -> None:
         tn.export_line(feature_lines.bent(), tmp_path / "line.csv", "csv", fmi=2)
     with pytest.raises(InputError, match="an FMU does not say what it is made of"):
         tn.import_line(tmp_path / "line.fmu")
+
+
+def example(name: str) -> tn.Driveline:
+    """One that is shipped; with a schedule at its second travel, as the refusal of it says."""
+    line = tn.load(Path(__file__).parents[2] / "examples" / f"{name}.toml")
+    for schedule in line.operation.schedules if line.operation else ():
+        line = line.at_schedule(schedule.name, schedule.travel[1])
+    return line
+
+
+HELD = (
+    "electric-drive", "gear-stage", "harbour-tug", "pto-shaft", "rolling-mill-spindle", "six-cylinder-ship",
+    "steering-column", "truck", "two-stroke-ship",
+)  # fmt: skip
+NOT_HELD = {
+    "dumper": "converter.curves: is not written as an FMU",
+    "four-wheel-drive": "front tyres: closes a loop",
+    "passenger-car": "axle drive: ties one shaft to two others",
+    "rolling-mill-strip": "strip: closes a loop",
+    "tractor-and-baler": "overload clutch: is not written as an FMU",
+}
+
+
+def test_every_example_is_written_or_refused() -> None:
+    shipped = {path.stem for path in (Path(__file__).parents[2] / "examples").glob("*.toml")}
+    assert shipped == {*HELD, *NOT_HELD}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", HELD)
+def test_examples_move_as_they_do_here(name: str, tmp_path: Path) -> None:
+    """Over a turn of the input."""
+    line, path = example(name), tmp_path / "line.fmu"
+    tn.export_line(line, path, "fmu")
+    agrees(line, path, 2 * np.pi / float(line.operation.speed), ("ModelExchange",))  # type: ignore[union-attr]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "words"), NOT_HELD.items())
+def test_examples_that_an_fmu_does_not_hold(name: str, words: str, tmp_path: Path) -> None:
+    with pytest.raises((InputError, ComputationError)) as caught:
+        tn.export_line(example(name), tmp_path / "line.fmu", "fmu")
+    assert str(caught.value).startswith(words), str(caught.value)

@@ -211,9 +211,11 @@ class Driveline(ElementChain):
         return next((one for name, one in self._silent.items() if case == name or case.endswith(f", {name}")), None)
 
     def at_schedule(self, name: str, value: float) -> Driveline:
-        """The same line with what one of its schedules has at a travel [m] or a speed [rad/s]."""
-        schedule = (self.operation or Operation()).schedule(name)
-        return self.replace_all(schedule.changes_at(value)).with_factors(schedule.factors_at(value))
+        """The same line with what one of its schedules has at a travel [m] or a speed [rad/s], in place of it."""
+        operation = self.operation or Operation()
+        schedule = operation.schedule(name)
+        there = self.replace_all(schedule.changes_at(value)).with_factors(schedule.factors_at(value))
+        return there.but(operation=operation.but(schedules=[one for one in operation.schedules if one.name != name]))
 
     def replace(self, name: str, **changes: Any) -> Driveline:
         """The same line with fields of the element called `name` changed; None takes a field away.
