@@ -29,6 +29,7 @@ from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.propagation import tree_modes
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import unstable_ranges
+from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.response.speed_sweep import response_over
 from trunnion.steady.orders import spectrum
@@ -121,6 +122,13 @@ def main() -> None:
                 median(lambda line=line: tn.stability(line, 150.0), asked.repeats) for line in (chain(n, 0), chain(n))
             )
             print(f"| {n} | {straight:.3f} | {bent:.3f} | {'0.02, 0.5' if n == 100 else ''} |", flush=True)
+    print("\n| inertias, free, two angled joints | stability, about its own motion [s] | by shooting |\n|---|---|---|")
+    for n, both in ((16, True), (24, True), (50, False), (100, False), (200, False)):
+        if n <= asked.most:
+            line = tn.Driveline(chain(n).elements[2:])
+            along = median(lambda line=line: tn.stability(line, 150.0), asked.repeats)
+            shot = median(lambda line=line: by_shooting(line), 1) if both else float("nan")
+            print(f"| {n} | {along:.3f} | {shot:.3f} |", flush=True)
     print("\n| inertias, angle | stability, as chosen [s] | by modes | states carried in time |\n|---|---|---|---|")
     for n, angle in ((20, 15.0), (50, 15.0), (100, 15.0), (200, 15.0), (20, 45.0), (100, 45.0), (100, 60.0)):
         if n <= asked.most:
@@ -203,6 +211,15 @@ def without_whole_matrices(line: tn.Driveline, size: tuple[int, int]) -> float:
         return chart(line, size)
     finally:
         LineFamily.whole_matrices = own  # type: ignore[method-assign]
+
+
+def by_shooting(line: tn.Driveline) -> None:
+    """``stability`` of a free line in the way of shorter ones."""
+    own, judged.LONG = judged.LONG, 10**6
+    try:
+        tn.stability(line, 150.0)
+    finally:
+        judged.LONG = own
 
 
 def ways() -> Iterator[None]:

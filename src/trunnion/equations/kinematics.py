@@ -16,13 +16,14 @@ a ratio ρ divides all of them by ρ.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from trunnion.arrays import Array
+from trunnion.equations.given_rotation import GivenRotation
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import LinkKind, Topology
 from trunnion.laws.joint import JointLaw, through
@@ -58,16 +59,26 @@ class Rotations:
         return np.stack(self.angle[station])
 
 
-def walk(places: Iterable[StationKinematics], drive: Jet, stood: Array | None = None) -> Rotations:
+def walk(
+    places: Iterable[StationKinematics],
+    drive: Jet,
+    stood: Array | None = None,
+    given: Mapping[int, Jet] | None = None,
+) -> Rotations:
     """Rotation of all stations, of which the first has the jet ``drive``, at most of order 4.
 
     Parameters
     ----------
     places : the stations behind the first, in an order in which every one comes after the one before it.
     stood : (…, station) where joints find the stations in front of them [rad]; by default where the walk leads.
+    given : the jets of stations that turn by themselves.
     """
-    found = Rotations([drive], {}, {})
+    given = given or {}
+    found = Rotations([given.get(0, drive)], {}, {})
     for s, (before, shift, law, ratio, of) in enumerate(places, start=1):
+        if s in given:
+            found.angle.append(given[s])
+            continue
         if of:
             parts = [[share * a for a in found.angle[one]] for one, share in of]
             found.angle.append([np.sum(together, axis=0) for together in zip(*parts, strict=True)])
@@ -101,12 +112,18 @@ class BaseMotion:
 
 
 def base_motion(
-    topo: Topology, coefficients: LineCoefficients, tau: Array, *, stood: Array | None = None
+    topo: Topology,
+    coefficients: LineCoefficients,
+    tau: Array,
+    *,
+    stood: Array | None = None,
+    given: GivenRotation | None = None,
 ) -> BaseMotion:
     """Walk the stations from the input, at input angles ``tau`` [rad] of shape (time,) or (case, time).
 
     ``stood`` (case, time, station) : where stations stand that shafts let twist [rad]; ``relative`` is then that of
     the joints there. By default where the walk leads them.
+    ``given`` : how the unknowns turn, in place of rigid shafts.
     """
     stations, laws = topo.stations[1:], iter(coefficients.joints)
     places = [
@@ -119,14 +136,19 @@ def base_motion(
         )
         for station, shift, ratio in zip(stations, coefficients.shift.T[1:], topo.ratio_values[1:], strict=True)
     ]
+    own = _given(topo, coefficients, tau, given) if given else {}
     tau = np.broadcast_to(tau, (len(coefficients.speed), np.shape(tau)[-1]))
-    turning = walk(places, [tau], stood)
+    turning = walk(places, [tau], stood, {s: jet[:1] for s, jet in own.items()})
     # Each station lies in one piece over time, which is how it is filled.
     a = np.moveaxis(np.array([angle for (angle,) in turning.angle]), 0, -1)
     w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(5))
     w[..., 0], r[..., 0] = 1.0, 1.0
+    for s, (_, speed, acceleration) in own.items():
+        w[..., s], w1[..., s], r[..., s] = speed, acceleration, 1.0
     for s, (station, place) in enumerate(zip(stations, places, strict=True), start=1):
         b = place.before
+        if s in own:
+            continue
         if station.link is LinkKind.SUM:
             for quantity in (w, w1):
                 quantity[..., s] = sum(share * quantity[..., one] for one, share in place.of)
@@ -143,3 +165,21 @@ def base_motion(
             for quantity in (w, w1, r, r1, r2):
                 quantity[..., s] = quantity[..., b] / place.ratio
     return BaseMotion(a, w, w1, r, r1, r2)
+
+
+def _given(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, given: GivenRotation
+) -> dict[int, tuple[Array, Array, Array]]:
+    """Angle, speed and acceleration by the input's (case, time) of the first station of each unknown."""
+    even, (angle, speed, acceleration) = even_angles(topo, coefficients, tau)[..., topo.firsts], given.at(tau)
+    mean = topo.mean_speeds[topo.firsts]
+    return {
+        s: (even[..., i] + angle[..., i], mean[i] + speed[..., i], acceleration[..., i])
+        for i, s in enumerate(topo.firsts)
+    }
+
+
+def even_angles(topo: Topology, coefficients: LineCoefficients, tau: Array) -> Array:
+    """Angles of all stations (case, time, station) [rad] in even rotation, joints straight: what deviations count
+    from."""
+    return base_motion(topo, coefficients.straight, tau).angle

@@ -20,7 +20,7 @@ would.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -28,8 +28,9 @@ import numpy as np
 from trunnion.arrays import Array, Flags, Integers
 from trunnion.equations.aligned import aligned_matrices, frequencies, loaded_matrices
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.graph_matrices import graph_matrices
-from trunnion.equations.kinematics import base_motion
+from trunnion.equations.given_rotation import GivenRotation
+from trunnion.equations.graph_matrices import ends_of, graph_matrices
+from trunnion.equations.kinematics import BaseMotion, base_motion, even_angles
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.steady_base import refuse_periodic_base, require_steady_base
 from trunnion.equations.topology import Topology, require_period
@@ -98,15 +99,22 @@ def put_entries(
     damping: Entries,
     stiffness: Entries,
     forcing: Array,
+    given: GivenRotation | None = None,
 ) -> tuple[Array, Array]:
     """Add the equations at input angles ``tau`` [rad] to matrices and ``forcing`` (case, time, n), which are zero.
 
-    Returns ratio and wave as of ``LineMatrices``.
+    Returns ratio and wave as of ``LineMatrices``. ``given`` : the motion that they are linearised about; forcing is
+    then what it leaves unbalanced.
     """
-    motion = base_motion(topo, coefficients, tau)
+    motion = base_motion(topo, coefficients, tau, given=given)
     cases, times = motion.angle.shape[:2]
     speed = coefficients.speed[:, None]
     ratio_seen, wave = np.zeros((cases, times, len(topo.compliances))), stiffness_waves(topo, coefficients, tau)
+    torques = coefficients.torque[:, None] * wave if coefficients.waves else coefficients.torque[:, None]
+    not_carried = coefficients.not_carried
+    if given:
+        coefficients = replace(coefficients, load=coefficients.load + given.load)
+        torques, not_carried = _torques_of(topo, coefficients, tau, motion, wave), np.zeros_like(not_carried)
     acting = (coefficients.inertia, coefficients.load, coefficients.viscous, coefficients.quadratic)
     loaded = np.any([part.any(axis=0) for part in acting[1:]], axis=0)
     inert, springs = (NONE, NONE)
@@ -135,23 +143,21 @@ def put_entries(
         # A constant load resists the mean sense of rotation of its own station, the others the rotation itself.
         sense = np.sign(float(topo.speed_ratio[s]))
         load = load * sense + (viscous + quadratic * np.abs(v)) * v
-        carried = load - coefficients.not_carried[:, s, None] * sense
+        carried = load - not_carried[:, s, None] * sense
         j, j1, j2 = inertia * r**2, 2 * inertia * r * r1, 2 * inertia * (r1**2 + r * r2)
         mass[i, i] += j
         damping[i, i] += j1 * w + r**2 * growth
         stiffness[i, i] += j1 * w1 + j2 * w**2 / 2 + r1 * carried + r * growth * r1 * w
         forcing[..., i] -= j * w1 + j1 * w**2 / 2 + r * load
     if len(springs):
-        _put_springs(topo, coefficients, springs, damping, stiffness, forcing)
+        _put_springs(topo, coefficients, torques, springs, damping, stiffness, forcing)
         ratio_seen[..., springs] = 1.0
     for e in np.setdiff1d(np.arange(len(topo.compliances)), springs).tolist():
         compliance, (far, near) = topo.compliances[e], topo.ends[e]
         ref = topo.reference[topo.group_of(compliance.near)]
-        k, c, torque = (
-            part[:, e, None] for part in (coefficients.stiffness, coefficients.damping, coefficients.torque)
-        )
+        k, c, torque = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None], torques[..., e]
         if coefficients.waves:
-            k, torque = k * wave[..., e], torque * wave[..., e]
+            k = k * wave[..., e]
         r, r1, r_dot = np.ones(1), np.zeros(1), np.zeros(1)
         if compliance.near != ref:
             r, r1 = motion.relative[..., compliance.near], motion.relative_slope[..., compliance.near]
@@ -171,6 +177,14 @@ def put_entries(
             stiffness[far, near] -= k * r + c * r_dot
             stiffness[near, far] -= k * r
     return ratio_seen, wave
+
+
+def _torques_of(topo: Topology, co: LineCoefficients, tau: Array, motion: BaseMotion, wave: Array) -> Array:
+    """Torques of the springs (case, time, compliance) [N m] in a ``motion`` that twists them."""
+    far, near = ends_of(topo)
+    turned, speed = motion.angle - even_angles(topo, co, tau), motion.speed - topo.mean_speeds
+    twist, rate = turned[..., far] - turned[..., near], speed[..., far] - speed[..., near]
+    return np.asarray(co.stiffness[:, None] * wave * twist + (co.damping * co.speed[:, None])[:, None] * rate)
 
 
 NONE = np.zeros(0, dtype=np.intp)
@@ -198,6 +212,7 @@ def alike(topo: Topology, loaded: Flags) -> tuple[Integers, Integers]:
 def _put_springs(
     topo: Topology,
     coefficients: LineCoefficients,
+    torques: Array,
     springs: Integers,
     damping: Entries,
     stiffness: Entries,
@@ -211,7 +226,7 @@ def _put_springs(
         matrix[near, near] += values
         matrix[far, near] -= values
         matrix[near, far] -= values
-    torque = coefficients.torque[:, None, springs]
+    torque = torques[..., springs]
     forcing[..., far] -= torque
     forcing[..., near] += torque
 

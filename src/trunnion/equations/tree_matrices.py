@@ -14,6 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Integers
 from trunnion.equations.aligned import loaded_matrices
+from trunnion.equations.given_rotation import GivenRotation
 from trunnion.equations.graph_entries import EntryProducts
 from trunnion.equations.graph_matrices import ends_of, graph_matrices
 from trunnion.equations.line_coefficients import LineCoefficients
@@ -85,14 +86,17 @@ def parents(topo: Topology) -> Integers:
     return found
 
 
-def tree_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> TreeMatrices:
-    """M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
+def tree_matrices(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, given: GivenRotation | None = None
+) -> TreeMatrices:
+    """M, C, K and forcing in physical time at input angles ``tau`` [rad]; of a tree about a motion that is ``given``,
+    by default that of rigid shafts."""
     if topo.graph:
         return _of_graph(topo, coefficients, tau)
     parent, shape = parents(topo), (len(coefficients.speed), len(tau))
     mass, damping, stiffness = (TreeEntries(parent, *shape) for _ in range(3))
     forcing = np.zeros((topo.size, *shape)).transpose(1, 2, 0)
-    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing)
+    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing, given)
     return TreeMatrices(parent, mass, damping, stiffness, forcing, ratio, wave)
 
 

@@ -19,11 +19,12 @@ import numpy as np
 from scipy import linalg
 
 from trunnion.arrays import Array, Complex, Flags, Integers
+from trunnion.equations.given_rotation import GivenRotation
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import EntryBeside, TreeMatrices, tree_matrices
 from trunnion.floquet.propagation.tree_propagation import SHORTER, TreePropagation, rounding
-from trunnion.steady.orders.sidebands import side_orders, spreads
+from trunnion.steady.orders.sidebands import LARGEST_SPREAD, LEAST_SPREAD, side_orders, spreads
 from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
@@ -71,22 +72,44 @@ class FollowedModes:
         return FollowedModes(empty[0], empty, empty, np.zeros(0))
 
 
+@dataclass(frozen=True)
+class OwnMotion:
+    """The periodic motion that a line makes, ``given``, one that is known less well, ``rough``, from whose difference
+    the error follows, and its largest ``swing`` [rad]."""
+
+    given: GivenRotation
+    rough: GivenRotation
+    swing: float
+
+    def spreads(self, fall: dict[int, float]) -> dict[int, float]:
+        """Decades by which harmonics fall, of joints that would do so by ``fall``: where they stand swings too."""
+        most = -float(np.log10(np.clip(self.swing, LEAST_SPREAD, LARGEST_SPREAD)))
+        return {rate: min(one, most) for rate, one in fall.items()}
+
+
 class HillLine:
     """Its equations over a period, in a narrow and a wide set of harmonics."""
 
-    def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction) -> None:
+    def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction, about: OwnMotion | None = None) -> None:
+        """``about`` : by default the motion of rigid shafts."""
         fall = spreads(topo, co, turns)
+        if about:
+            fall = about.spreads(fall)
         self.narrow, self.wide = (_harmonics(fall, decades) for decades in (DECADES, DECADES + WIDER))
         # Of a straight line nothing varies.
         times = 1 << int(np.ceil(np.log2(max(64 if fall else 1, 4 * int(np.ptp(self.wide)) + 4))))
         period = 2 * np.pi * float(turns)
-        matrices = tree_matrices(topo, co, period * np.arange(times) / times)
+        tau = period * np.arange(times) / times
+        matrices = tree_matrices(topo, co, tau, about.given if about else None)
         self.n, self.speed = topo.size, float(co.speed[0])
         self.rate, self.time = self.speed / float(turns), period / self.speed
         self._mean = [_mean(matrices, k) for k in range(3)]
         self.root = np.sqrt(np.diagonal(self._mean[2]))
         self.trace = _decay(matrices) * self.time
-        self.blocks = TreeHill(topo, matrices, np.zeros((1, len(topo.compliances))), np.array([self.rate]))
+        lossless, rate = np.zeros((1, len(topo.compliances))), np.array([self.rate])
+        self.blocks = TreeHill(topo, matrices, lossless, rate)
+        self._rough = TreeHill(topo, tree_matrices(topo, co, tau, about.rough), lossless, rate) if about else None
+        self._at_rest = topo.still if about else 0
 
     @cached_property
     def _modes(self) -> tuple[Array, Array]:
@@ -143,6 +166,8 @@ class HillLine:
         between undamped modes is left out."""
         square, basis = self._modes
         moves = np.abs(square) > LEAST * np.abs(square).max()
+        # About a motion of its own what turns a line as a whole has a mean stiffness.
+        moves[np.argsort(np.abs(square))[: self._at_rest]] = False
         square, basis = square[moves], basis[:, moves]
         damping = self._mean[1] / (self.root[:, None] * self.root)
         half = np.einsum("ij,ij->j", basis, damping @ basis) / 2
@@ -171,9 +196,15 @@ class HillLine:
 
     def _seen(self, value: Complex, x: Complex, h: Integers) -> FollowedModes:
         s = value[:, None] + 1j * h * self.rate
-        left = self.blocks.at(s, h).times(x) / self.root[:, None, None]
-        total = np.sqrt((np.abs(left) ** 2).sum(axis=0)).sum(axis=1)
+        felt = self.blocks.at(s, h).times(x)
+        total = self._total(felt)
+        if self._rough:
+            total = total + self._total(self._rough.at(s, h).times(x) - felt)
         return FollowedModes(value, x.sum(axis=2), (x * s).sum(axis=2), total)
+
+    def _total(self, left: Complex) -> Array:
+        """Σ_h ‖r_h‖ (mode,) of torques r (n, mode, h), in units of √mass."""
+        return np.asarray(np.sqrt((np.abs(left / self.root[:, None, None]) ** 2).sum(axis=0)).sum(axis=1))
 
     def _settled(self, value: Complex, x: Complex, h: Integers) -> tuple[Complex, Complex]:
         value, x = value.copy(), x.copy()
@@ -217,13 +248,14 @@ class HillLine:
         return np.asarray(least + 1j * self.rate * np.round((turns - least.imag) / self.rate))
 
     def carried(self, energies: Array) -> tuple[Array, float]:
-        """States (2n, m) one period later, and the Frobenius norm of their error: from shorter steps, of mixtures of
-        them where there are many."""
+        """States (2n, m) one period later, and the Frobenius norm of their error: from shorter steps, about a motion
+        that is known less well where there is one, of mixtures of them where there are many."""
         count, carry, steps = energies.shape[1], self._propagation, self.steps
         later = self.energies(*carry.carried(*self.states(energies), steps))
         mixed, sure = np.eye(count), 1.0
         if count > SEEN:
             mixed, sure = np.random.default_rng(0).normal(size=(count, SEEN)) / np.sqrt(SEEN), SURE
+        carry = TreePropagation(self._rough) if self._rough else carry
         again = self.energies(*carry.carried(*self.states(energies @ mixed), int(np.ceil(SHORTER * steps))))
         off = sure * float(np.linalg.norm(again - later @ mixed))
         return later, off + rounding(steps) * float(np.linalg.norm(later))

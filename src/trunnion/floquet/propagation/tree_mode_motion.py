@@ -19,7 +19,7 @@ from trunnion.arrays import Complex
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
-from trunnion.floquet.propagation.hill_line import HillLine
+from trunnion.floquet.propagation.hill_line import HillLine, OwnMotion
 from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.tree_blocks import TreeMatrix
 
@@ -29,9 +29,12 @@ CONSTANT = 1e-6
 """Share by which l·r may vary over the period."""
 
 
-def mode_motion(topo: Topology, co: LineCoefficients, turns: Fraction, exponent: complex) -> ModeMotion | None:
-    """The mode of ``exponent`` [1/s] of the one case of ``co``; None where it is double, or not found."""
-    line = HillLine(topo, co, turns)
+def mode_motion(
+    topo: Topology, co: LineCoefficients, turns: Fraction, exponent: complex, about: OwnMotion | None = None
+) -> ModeMotion | None:
+    """The mode of ``exponent`` [1/s] of the one case of ``co``; None where it is double, or not found. ``about`` as of
+    ``HillLine``."""
+    line = HillLine(topo, co, turns, about)
     h, speed = line.wide, line.speed
     s = np.array([exponent + BESIDE * line.rate]) + 1j * h[None] * line.rate
     matrix, slope = line.blocks.at(s, h), line.blocks.at(s, h, slope=True)
@@ -40,7 +43,7 @@ def mode_motion(topo: Topology, co: LineCoefficients, turns: Fraction, exponent:
         return None
     count = 1 << int(np.ceil(np.log2(4 * int(np.ptp(h)) + 4)))
     tau = 2 * np.pi * float(turns) * np.arange(count) / count
-    matrices = tree_matrices(topo, co, tau)
+    matrices = tree_matrices(topo, co, tau, about.given if about else None)
     mu = (exponent + 1j * h * line.rate) / speed
     wave = np.exp(np.outer(tau, mu))  # (time, h)
     x, rate = wave @ right.T, wave @ (mu * right).T

@@ -19,11 +19,12 @@ from fractions import Fraction
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import rigid_motions
 from trunnion.equations.topology import Topology
 from trunnion.floquet.propagation.cost_model import by_modes, in_time
-from trunnion.floquet.propagation.hill_line import FollowedModes, HillLine
+from trunnion.floquet.propagation.hill_line import FollowedModes, HillLine, OwnMotion
 from trunnion.numerics.spectrum import bounds_of, without
 
 REAL = 1e-9
@@ -55,12 +56,18 @@ class FloquetModes:
     carried: int
 
 
-def floquet_modes(topo: Topology, co: LineCoefficients, turns: Fraction) -> FloquetModes | None:
+def floquet_modes(
+    topo: Topology, co: LineCoefficients, turns: Fraction, about: OwnMotion | None = None
+) -> FloquetModes | None:
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where nothing is known of
-    them."""
-    line = HillLine(topo, co, turns)
+    them. ``about`` the motion that the line makes, by default that of rigid shafts; a shift of the phase of the motion
+    of a free line is a rigid motion then."""
+    line = HillLine(topo, co, turns, about)
     found = line.followed(*line.starts()) if _blocks_pay(line) else FollowedModes.nothing(line.n)
-    return _judged(line, found, rigid_motions(topo, co))
+    if about is None:
+        return _judged(line, found, rigid_motions(topo, co))
+    shift = about.given.shift(rigid_rotation(topo)).T if topo.free else np.zeros((2 * line.n, 0))
+    return _judged(line, found, shift)
 
 
 def _blocks_pay(line: HillLine) -> bool:

@@ -20,6 +20,7 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
+from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import (
@@ -304,6 +305,8 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
     from trunnion.steady.free.periodic_steady_state import periodic_steady_state
     from trunnion.steady.shooting.periodic_orbit import speed_in_words
 
+    if (long := _about_long_motion(assembly, speed, tolerance)) is not None:
+        return long
     require_time(assembly, speed, by_shooting, "stability about its own periodic motion")
     motion = periodic_steady_state(assembly.line, speed, tolerance=OWN * tolerance)
     orbit = motion.orbit
@@ -335,6 +338,49 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
         extra_torque=orbit.values[-1] if topo.free else None,
         carried=carried_at_input(assembly, assembly.table(1, speed)[0]),
         speed_sentence=speed_in_words(orbit) if np.isfinite(orbit.speed_multiplier) else "",
+    )
+
+
+def _about_long_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability | None:
+    """Of a long line, by modes along its tree; None of one that is short or no tree, and where they are known less well
+    than asked."""
+    from trunnion.floquet.propagation.own_modes import own_modes
+    from trunnion.steady.free.long_steady_state import long_steady_state
+    from trunnion.steady.shooting.periodic_orbit import change_of_speed_in_words
+
+    topo = assembly.topology
+    motion = long_steady_state(assembly.line, speed, LONG)
+    found = None if motion is None else own_modes(motion, max(tolerance, ROUNDING * topo.size))
+    if motion is None or found is None:
+        return None
+    turns, modes, named = require_period(assembly.line, topo), found.modes, None
+    speed_alone = abs(modes.multiplier[found.critical] - 1) <= SPEED_ALONE
+    if found.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and not speed_alone:
+        frequency = natural_frequencies(assembly).undamped_frequency / speed
+        named = _named(found.critical_motion(), found.verdict, speed, frequency, sources(assembly), turns)
+    shift = motion.given.shift(rigid_rotation(topo)).T[:, : int(topo.free)]
+    value = np.concatenate([modes.multiplier, np.ones(shift.shape[1])])
+    order = np.argsort(-np.abs(value), kind="stable")
+    told = np.isfinite(found.speed_multiplier)
+    period = 2 * np.pi * float(turns)
+    return Stability(
+        multipliers=value[order],
+        multiplier_error=np.concatenate([modes.error, np.zeros(shift.shape[1])])[order],
+        floquet_modes=np.concatenate([modes.states, shift / np.abs(shift).max(axis=0, initial=0.0)], axis=1)[:, order],
+        spectral_radius=found.radius,
+        error_estimate=found.error,
+        verdict=found.verdict,
+        period=period,
+        speed=speed,
+        resonance=named,
+        forced=partial(linear_response, assembly, speed),
+        liouville_defect=modes.liouville_defect,
+        names=topo.names,
+        set_aside=int(topo.free),
+        about_steady_state=True,
+        extra_torque=motion.torque if topo.free else None,
+        carried=carried_at_input(assembly, assembly.table(1, speed)[0]),
+        speed_sentence=change_of_speed_in_words(found.speed_multiplier, period / speed) if told else "",
     )
 
 

@@ -31,7 +31,7 @@ from trunnion.errors import InputError
 from trunnion.floquet.propagation.tree_modes import floquet_modes
 from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
 from trunnion.numerics.spectrum import spectral_radius, without
-from trunnion.results.verdict import verdicts
+from trunnion.results.verdict import Verdict, verdicts
 from trunnion.waiting import keep_time
 
 if TYPE_CHECKING:
@@ -145,9 +145,12 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
 
 def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesBySpeed | None) -> StabilityOverSpeed:
     from trunnion.floquet.propagation.about_steady_states import multipliers_about
-    from trunnion.steady.free.periodic_steady_states import steady_state_slopes
+    from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, steady_state_slopes
 
     require_balance(assembly, assembly.table(len(speed), speed))
+    solved = solved or SteadyStatesBySpeed(assembly.line)
+    if assembly.topology.size >= LONG and not solved.obstacle and solved.balance.along_tree:
+        return _by_own_modes(solved, speed)
     motions = steady_state_slopes(assembly.line, speed, solved)
     if motions is None:
         raise SpeedBySpeedError(
@@ -157,6 +160,19 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
         )
     found = multipliers_about(motions)
     return _along(speed, found.radius, found.error, found.critical, found.verdict, motions.period)
+
+
+def _by_own_modes(solved: SteadyStatesBySpeed, speed: Array) -> StabilityOverSpeed:
+    """Of a long line; FAILED where no motion is known, or its modes are known less well than the tolerance."""
+    from trunnion.floquet.propagation.own_modes import own_modes_along
+
+    nothing = np.nan, np.nan, complex(np.nan), Verdict.FAILED
+    found = [
+        (one.radius, one.error, complex(one.modes.multiplier[one.critical]), one.verdict) if one else nothing
+        for one in own_modes_along(solved, speed, TOLERANCE)
+    ]
+    radius, error, critical, verdict = (np.array(part) for part in zip(*found, strict=True))
+    return _along(speed, radius, error, critical, verdict.astype(np.int8), solved.balance.period)
 
 
 def _by_modes(assembly: Assembly, table: Array, twisted: bool) -> StabilityOverSpeed:

@@ -23,6 +23,7 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
+from trunnion.equations.loads import drive_places, drive_torques
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
@@ -32,6 +33,8 @@ from trunnion.numerics.integration.sampled_rates import sampled_rates
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.threads import on_one_thread
 from trunnion.results.counts import counted
+from trunnion.steady.free import tree_newton
+from trunnion.steady.free.tree_newton import TreeNewton
 from trunnion.waiting import keep_time
 
 FEWEST, MOST = 6, 48
@@ -42,6 +45,8 @@ NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
 CORRECTIONS, MATRICES = 8, 4
 """Newton's steps, and matrices of all unknowns that one takes."""
+LONG = 24
+"""Unknowns from which on steps along the tree cost less than matrices of all unknowns."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -111,7 +116,7 @@ class SteadyStates:
     def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
         """Rates (case, time, 2n) and their slopes (case, time, 2n, 2n) by the states, under ``more`` torque; NaN if
         none."""
-        states, numbers = self.states, self._driven(more)
+        states, numbers = self.states, self.driven(more)
         cases, times, size = states.shape
         rates, slopes = np.full(states.shape, np.nan), np.full((cases, times, size, size), np.nan)
         for i, speed in enumerate(self.speed):
@@ -125,7 +130,7 @@ class SteadyStates:
         """Twist, torque (case, time, spring) and rotation (case, time, station) along the motions."""
         each = [
             self.balance.line.observed(self.tau / speed, states, numbers)
-            for speed, states, numbers in zip(self.speed, self.states, self._driven(0.0), strict=True)
+            for speed, states, numbers in zip(self.speed, self.states, self.driven(0.0), strict=True)
         ]
         return LineMotion(*(np.stack([getattr(one, key) for one in each]) for key in ("twist", "torque", "rotation")))
 
@@ -135,7 +140,8 @@ class SteadyStates:
             self.balance, self.value[at], self.found[at], self.rows[at], self.torque[at], self.numbers[at]
         )
 
-    def _driven(self, more: float) -> Array:
+    def driven(self, more: float) -> Array:
+        """What the compiled equations read (case, number), with ``more`` torque than the motions have."""
         if not self.balance.free:
             return self.numbers
         return self.numbers + (self.torque + more)[:, None] * self._drive
@@ -144,6 +150,13 @@ class SteadyStates:
     def _drive(self) -> Array:
         """What one N m of the drives at the input changes of the numbers (case, number)."""
         return self.balance.line.drive_numbers(self.table)
+
+
+def of_tree(line: LineSystem) -> bool:
+    """Whether the entries of a tree are all that a line's equations have about any motion."""
+    topo, co = line.assembly.topology, line.untwisted(line.assembly.table(1, 1.0))
+    acting = topo.graph or topo.lost or topo.rubs or topo.drags or line.sliders or line.clutches or line.pendulums
+    return not (acting or co.waves or co.across or co.loss.any())
 
 
 Rows = Callable[[Array], Array]
@@ -165,6 +178,8 @@ class FreeBalance:
         self.line = LineSystem(assembly, 1.0)
         self.weight = np.ones(2 * topo.size)
         self.rows: Rows = self._at_speeds
+        self.of_tree = of_tree(self.line)
+        self.along_tree = topo.size >= LONG and self.of_tree
 
     @property
     def address(self) -> int:
@@ -207,6 +222,8 @@ class FreeBalance:
         InputError : says how long they would take, and how much memory.
         """
         size = len(self.turn)
+        if self.along_tree:  # no more than the response does along the tree
+            return
         unknowns = size * (2 * h + 1) + 1
         seconds, memory = many * (1.5e-9 * unknowns**3 + 3e-7 * unknowns**2), MATRICES * 8.0 * unknowns**2
         what = f"its own periodic motion in {h} harmonics at {counted(many, 'point')}"
@@ -215,8 +232,14 @@ class FreeBalance:
     def _batch(self, value: Array, h: int, guess: Array | None) -> SteadyStates:
         table = self.rows(value)
         speed, co = table[:, 0], self.line.untwisted(table)
-        numbers, first = self.numbers(table, co), self._rigid(table, h, co) if guess is None else guess
-        unit = self._torque_unit(speed, co)
+        numbers, first = self.numbers(table, co), self.rigid(table, h, co) if guess is None else guess
+        unit = self.torque_unit(co)
+        if self.along_tree:
+            motions_found, found = tree_newton.solved(
+                lambda some: self.newton(table[some]), first, unit, ANGLE_SCALE, tolerance=CLOSED, most=CORRECTIONS
+            )
+            rows = np.where(found[:, None, None], motions_found.rows, 0.0)
+            return SteadyStates(self, value, found, rows, np.where(found, motions_found.torque, 0.0), numbers)
 
         def motions(cases: Places, z: Array, found: Flags) -> SteadyStates:
             rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
@@ -241,7 +264,7 @@ class FreeBalance:
 
     def _changes(self, motions: SteadyStates, tables: list[Array]) -> list[Array]:
         keep_time()
-        unit = self._torque_unit(motions.speed, motions.coefficients)
+        unit = self.torque_unit(motions.coefficients)
         left, matrix = self._equations(motions, unit)
         right = np.stack([self._moved(motions, table, unit) - left for table in tables], axis=2)
         change = -ANGLE_SCALE * np.asarray(solved(matrix, right))[:, :-1]
@@ -254,10 +277,19 @@ class FreeBalance:
         moved = SteadyStates(other, motions.value, motions.found, motions.rows, motions.torque, numbers)
         return self._equations(moved, unit)[0]
 
-    def _torque_unit(self, speed: Array, co: LineCoefficients) -> Array:
-        """In which the torque is counted (case,)."""
+    def torque_unit(self, co: LineCoefficients) -> Array:
+        """The torque of the drives (case,) [N m] that counts as one."""
         inertia = co.inertia @ np.array([float(q) for q in self.assembly.topology.speed_ratio]) ** 2
-        return np.asarray(ANGLE_SCALE * speed**2 * inertia / self.period)
+        return np.asarray(ANGLE_SCALE * co.speed**2 * inertia / self.period)
+
+    def newton(self, table: Array) -> TreeNewton:
+        """Newton's steps along the tree for lines of packed numbers ``table`` (case, column)."""
+        topo, ones = self.assembly.topology, np.ones(len(table))
+        drive = np.zeros((len(table), len(topo.stations)))
+        if self.free:
+            drive = drive_torques(topo, drive_places(topo, self.assembly.packed.column, table), ones)
+        held = int(self.phase.argmax()) if self.free else None
+        return TreeNewton(topo, self.line.untwisted(table), self.period, drive, held)
 
     def _equations(self, motions: SteadyStates, unit: Array) -> tuple[Array, Array]:
         """What is missing of the balance and of the phase (case, unknowns), and its derivative by the rows in units of
@@ -290,7 +322,7 @@ class FreeBalance:
         missing[:, size] = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
         return missing, whole
 
-    def _rigid(self, table: Array, h: int, co: LineCoefficients) -> Array:
+    def rigid(self, table: Array, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""
         topo, times = self.assembly.topology, 4 * h + 4
         tau = self.period * np.arange(times) / times

@@ -14,7 +14,6 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
-from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.aligned import aligned_matrices, frequencies
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import unexcited
@@ -25,8 +24,8 @@ from trunnion.equations.steady_base import refuse_dragged, require_balance
 from trunnion.errors import ComputationError
 from trunnion.modes.mode_content import ModeMotion, floquet_pair
 from trunnion.numerics.integration.integration import IntegrationEnd, integrate
-from trunnion.results.speeds import show_speed
-from trunnion.steady.free.periodic_steady_states import SEVERAL, SteadyStatesBySpeed, breaks
+from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
+from trunnion.steady.free.several_motions import BENT, FAR, require_one_motion
 from trunnion.steady.shooting.free_orbit import kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import TOLERANCE, PeriodicOrbit, periodic_orbit
 from trunnion.systems.maps import IntegratedMap
@@ -34,12 +33,6 @@ from trunnion.systems.maps import IntegratedMap
 SAMPLES = 256
 PER_CYCLE = 8
 """Samples at least per cycle of the highest mode."""
-FAR, BENT = 0.05, 0.25
-"""Distance from rigid shafts [rad], and what a linear step misses of it, beyond which a motion is followed from speeds
-beside its own."""
-ASIDE, ASIDE_OF_LONG, LONG = 0.1, 0.02, 30
-"""Share of the speed by which those differ from it; the same of lines of so many unknowns, which take seconds a
-step."""
 
 
 @dataclass(frozen=True)
@@ -146,17 +139,7 @@ def _followed(line: Driveline, prepared: LineSystem, speed: float, tolerance: fl
     curve = SteadyStatesBySpeed(line)
     if curve.obstacle:
         return None
-    long = prepared.assembly.topology.size >= LONG
-    aside = ASIDE_OF_LONG if long else ASIDE
-    curve.broken = breaks(curve, speed * np.array([1 - aside, 1.0, 1 + aside]), between=not long)
-    for one in curve.broken:
-        if one.low < speed < one.high and one.why == SEVERAL:
-            low, at, high = (show_speed(each, speed_unit(line)) for each in (one.low, speed, one.high))
-            raise ComputationError(
-                f"the line has several periodic motions at {at}, none of which can be told to be the one it makes: the "
-                f"one that goes on from slower speeds ends at {high}, the one that goes on from faster speeds at "
-                f"{low}; judge it outside these, or give it more damping"
-            )
+    require_one_motion(curve, line, speed)
     motions = curve.at_all(np.array([speed]))
     if not (motions.found[0] and motions.resolved[0]):
         return None

@@ -218,7 +218,8 @@ class _SpectrumProblem:
             self.few = interpolation_nodes(numbers[:, 0], self.coefficients(numbers))
         if self.own is not None:
             self.own.balance.require_time(self.own.balance.fewest, len(numbers))
-            self.batch = max(1, MOST_NUMBERS // (self.topo.size * (2 * self.own.balance.fewest + 1)) ** 2)
+            each = self.topo.size * (2 * self.own.balance.fewest + 1)
+            self.batch = max(1, MOST_NUMBERS // (8 * each if self.own.balance.along_tree else each**2))
         elif self.varies:
             self.batch = self._batch()
         else:
@@ -398,7 +399,7 @@ class _SpectrumProblem:
 
     def _about_steady_states(self, own: SteadyStateBase, table: Array) -> tuple[OrderSum, Array]:
         """Some speeds of a free–free line with joint angles."""
-        from trunnion.steady.orders.steady_state_orders import about, seen_about
+        from trunnion.steady.orders.steady_state_orders import seen_about
 
         co, speed = own.coefficients, table[:, 0]
         total, last = OrderSum(len(speed), self.places), np.zeros(len(speed))
@@ -412,7 +413,7 @@ class _SpectrumProblem:
             h = np.arange(min(centres) - own.count, max(centres) + own.count + 1, dtype=np.int64)
             nu = carrier[:, None] + own.rate[:, None] * h
             right, error = self._sources(group, h, table, co, own.base, nu, own.wave, own.mass, running=running)
-            seen = seen_about(own, self.topo, h, about(own, carrier, h, right))
+            seen = seen_about(own, self.topo, h, own.equations.solved(carrier, h, right))
             self._gather(total, group, h, seen, error, nu, co, own.wave)
             last = np.maximum(last, np.abs(seen[:, [0, -1]][..., self.places.torque]).max(axis=(1, 2)))
         return total, self._share(last, total)

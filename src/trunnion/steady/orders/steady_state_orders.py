@@ -23,31 +23,27 @@ from trunnion.equations.linear import stiffness_waves
 from trunnion.equations.steady_base import refuse_periodic_base
 from trunnion.equations.topology import Topology
 from trunnion.errors import ComputationError
-from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.sparse_matrices import SparseMatrices
 from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 from trunnion.steady.orders.channels import channels_of, channels_of_harmonics
+from trunnion.steady.orders.steady_state_slopes import StateSlopes, TreeSlopes
 
 
 @dataclass(frozen=True)
 class SteadyStateBase:
     """The periodic steady states at some speeds, over the period, and the equations linearised about them.
 
-    ratio (case, time, spring): r of the near ends; mass (case, time, n); base: what excitations need; seen (case, time,
-    channel): the motion itself; by_state (case, harmonic, n, 2n) and by_drive (case, harmonic, n): Fourier coefficients
-    of the slopes of accelerations, by states and by the drives' torque; phase (n,): the input among the unknowns; rate
-    (case,) b Ω [rad/s]; count: harmonics kept on each side.
+    ratio (case, time, spring): r of the near ends; mass (case, time, n): by what torques are divided for the equations,
+    1 where they are not; base: what excitations need; seen (case, time, channel): the motion itself; equations: what
+    solves them; rate (case,) b Ω [rad/s]; count: harmonics kept on each side.
     """
 
     ratio: Array
-    mass: Array
+    mass: Array | float
     base: BaseOfExcitation
     wave: Array
     seen: Array
-    by_state: Complex
-    by_drive: Complex
+    equations: StateSlopes | TreeSlopes
     coefficients: LineCoefficients
-    phase: Array
     rate: Array
     count: int
 
@@ -73,10 +69,8 @@ class SteadyStateOrders:
         if not motions.found.all():
             lost = speeds[~motions.found][0] * 30 / np.pi
             raise ComputationError(f"no periodic steady state of the free line was found at {lost:.5g} rpm")
-        topo, co, n = self.topo, motions.coefficients, self.topo.size
+        topo, co = self.topo, motions.coefficients
         tau = motions.tau
-        rates, slopes = motions.sampled()
-        drive = motions.sampled(more=1.0)[0] - rates
         observed = motions.observed()
         uniform = base_motion(topo, co.straight, tau).angle
         rigid = base_motion(topo, co, tau).angle - uniform
@@ -93,46 +87,20 @@ class SteadyStateOrders:
         seen[..., places.joint_input] = (swing - swing.mean(axis=1, keepdims=True))[..., before]
         return SteadyStateBase(
             ratio=relative[..., [c.near for c in topo.compliances]],
-            mass=topo.on_unknowns(co.inertia[:, None], relative),
+            mass=1.0 if self.balance.along_tree else topo.on_unknowns(co.inertia[:, None], relative),
+            equations=TreeSlopes.of(motions) if self.balance.along_tree else StateSlopes.of(motions),
             base=BaseOfExcitation(relative, observed.rotation),
             wave=stiffness_waves(topo, co, tau),
             seen=seen,
-            by_state=np.fft.fft(slopes[:, :, n:], axis=1) / len(tau),
-            by_drive=np.fft.fft(drive[..., n:], axis=1) / len(tau),
             coefficients=co,
-            phase=self.balance.phase,
             rate=motions.rate,
             count=motions.h,
         )
 
 
-def about(own: SteadyStateBase, carrier: Array, h: Integers, right: Complex) -> Complex:
-    """X (case, h, n) [rad] at harmonics ``h`` under accelerations ``right`` (case, h, n).
-
-    ``carrier`` (case,) [rad/s] is κΩ + ν. NaN where nothing resists the motion.
-    """
-    cases, times, n = own.mass.shape
-    s = 1j * (carrier[:, None] + own.rate[:, None] * h)
-    parts = fourier.hill_matrices(s, h, (-own.by_state[..., :n], -own.by_state[..., n:]))
-    size = len(h) * n
-    matrix = np.zeros((cases, size + 1, size + 1), dtype=complex)
-    matrix[:, :size, :size] = SparseMatrices.added(size, parts).dense()
-    every = np.arange(size)
-    matrix[:, every, every] += np.repeat(s**2, n, axis=1)
-    unit = np.abs(matrix[:, :size, :size]).max(axis=(1, 2))
-    matrix[:, size, size] = unit
-    if not carrier.any() and h[0] <= 0 <= h[-1]:
-        column = own.by_drive[:, h % times].reshape(cases, size)
-        at = int(-h[0]) * n
-        matrix[:, :size, size] = -column * (unit / np.abs(column).max(axis=1))[:, None]
-        matrix[:, size, at : at + n], matrix[:, size, size] = unit[:, None] * own.phase, 0.0
-    forced = np.concatenate([right.reshape(cases, size), np.zeros((cases, 1))], axis=1)
-    return np.asarray(fourier.solved(matrix, forced)[:, :size].reshape(cases, len(h), n))
-
-
 def seen_about(own: SteadyStateBase, topo: Topology, h: Integers, x: Complex) -> Complex:
     """Channels (case, h, channel) without torque of X (case, h, n)."""
-    times = 1 << int(np.ceil(np.log2(len(h) + own.mass.shape[1])))
+    times = 1 << int(np.ceil(np.log2(len(h) + own.ratio.shape[1])))
     return channels_of_harmonics(topo, x, h, times, _finer(own.ratio, times), _finer(own.base.relative, times))
 
 

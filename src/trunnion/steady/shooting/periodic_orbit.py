@@ -203,10 +203,15 @@ class PeriodicOrbit(Result, IntegratedOrbit):
 
 def speed_in_words(orbit: IntegratedOrbit) -> str:
     """What becomes of a change of the mean speed of a free line none of whose torques depends on the speed."""
-    rate = float(np.log(orbit.speed_multiplier) / orbit.period) if orbit.speed_multiplier > 0 else np.nan
+    return change_of_speed_in_words(orbit.speed_multiplier, orbit.period)
+
+
+def change_of_speed_in_words(multiplier: float, period: float) -> str:
+    """The same by its ``multiplier`` over a ``period`` [s]."""
+    rate = float(np.log(multiplier) / period) if multiplier > 0 else np.nan
     return (
         f"no torque depends on the speed: a change of the mean speed goes at {rate:+.3g} 1/s (multiplier "
-        f"{orbit.speed_multiplier:.10g}), which the verdict leaves out"
+        f"{multiplier:.10g}), which the verdict leaves out"
     )
 
 
