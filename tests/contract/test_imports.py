@@ -26,7 +26,7 @@ LAYERS = (
     {"exchange"},
     # What stands still, and what repeats: modes of the straight line, then the periodic motion that stability,
     # responses and motions are judged about. A free–free line finds its own by shooting or by balance.
-    {"modes", "steady", "steady/shooting"},
+    {"modes", "steady", "steady/shooting", "steady/hill"},
     {"steady/free"},
     {"steady/orders"},
     # What grows beside that motion comes before what it amounts to: a response without a verdict is worth nothing.

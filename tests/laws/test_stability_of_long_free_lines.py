@@ -14,7 +14,7 @@ from oracles.multipliers import matched
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.errors import InputError
-from trunnion.floquet.propagation.own_modes import own_modes
+from trunnion.floquet.propagation.periodic_motion_modes import periodic_motion_modes
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.results.verdict import Verdict
@@ -134,7 +134,7 @@ def test_what_harmonics_of_the_motion_leave_out_is_in_the_error(monkeypatch: pyt
     monkeypatch.setattr(long_steady_state, "AGREES", 1.0)
     rough = long_steady_state.long_steady_state(line, SPEED, 2)
     assert rough is not None
-    found = own_modes(rough, 1.0)
+    found = periodic_motion_modes(rough, 1.0)
     assert found is not None
     off = np.abs(found.modes.multiplier[:, None] - right.multipliers).min(axis=1)
     assert off.max() > 1e-10 and (off <= found.modes.error + right.multiplier_error.max()).all()

@@ -24,8 +24,8 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import EntryBeside, TreeMatrices, tree_matrices
 from trunnion.floquet.propagation.tree_propagation import SHORTER, TreePropagation, rounding
+from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.steady.orders.sidebands import LARGEST_SPREAD, LEAST_SPREAD, side_orders, spreads
-from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
 DECADES, WIDER = 9.0, 4.0
@@ -73,7 +73,7 @@ class FollowedModes:
 
 
 @dataclass(frozen=True)
-class OwnMotion:
+class PeriodicMotionGiven:
     """The periodic motion that a line makes, ``given``, one that is known less well, ``rough``, from whose difference
     the error follows, and its largest ``swing`` [rad]."""
 
@@ -90,7 +90,9 @@ class OwnMotion:
 class HillLine:
     """Its equations over a period, in a narrow and a wide set of harmonics."""
 
-    def __init__(self, topo: Topology, co: LineCoefficients, turns: Fraction, about: OwnMotion | None = None) -> None:
+    def __init__(
+        self, topo: Topology, co: LineCoefficients, turns: Fraction, about: PeriodicMotionGiven | None = None
+    ) -> None:
         """``about`` : by default the motion of rigid shafts."""
         fall = spreads(topo, co, turns)
         if about:

@@ -19,7 +19,7 @@ from trunnion.arrays import Complex
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices, tree_matrices
-from trunnion.floquet.propagation.hill_line import HillLine, OwnMotion
+from trunnion.floquet.propagation.hill_line import HillLine, PeriodicMotionGiven
 from trunnion.modes.mode_content import ModeMotion
 from trunnion.numerics.tree_blocks import TreeMatrix
 
@@ -30,7 +30,7 @@ CONSTANT = 1e-6
 
 
 def mode_motion(
-    topo: Topology, co: LineCoefficients, turns: Fraction, exponent: complex, about: OwnMotion | None = None
+    topo: Topology, co: LineCoefficients, turns: Fraction, exponent: complex, about: PeriodicMotionGiven | None = None
 ) -> ModeMotion | None:
     """The mode of ``exponent`` [1/s] of the one case of ``co``; None where it is double, or not found. ``about`` as of
     ``HillLine``."""

@@ -24,7 +24,7 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import rigid_motions
 from trunnion.equations.topology import Topology
 from trunnion.floquet.propagation.cost_model import by_modes, in_time
-from trunnion.floquet.propagation.hill_line import FollowedModes, HillLine, OwnMotion
+from trunnion.floquet.propagation.hill_line import FollowedModes, HillLine, PeriodicMotionGiven
 from trunnion.numerics.spectrum import bounds_of, without
 
 REAL = 1e-9
@@ -57,7 +57,7 @@ class FloquetModes:
 
 
 def floquet_modes(
-    topo: Topology, co: LineCoefficients, turns: Fraction, about: OwnMotion | None = None
+    topo: Topology, co: LineCoefficients, turns: Fraction, about: PeriodicMotionGiven | None = None
 ) -> FloquetModes | None:
     """Of the one case of ``co``, whose coefficients repeat after ``turns`` of the input; None where nothing is known of
     them. ``about`` the motion that the line makes, by default that of rigid shafts; a shift of the phase of the motion

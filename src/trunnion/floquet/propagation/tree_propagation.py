@@ -17,7 +17,7 @@ import numpy as np
 from scipy import sparse
 
 from trunnion.arrays import Array, Complex, Places
-from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
 ORDER, REACH = 32, 4.0

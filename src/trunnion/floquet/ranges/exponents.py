@@ -28,9 +28,9 @@ from trunnion.equations.linear import line_matrices
 from trunnion.equations.topology import require_period
 from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.numerics.sparse_matrices import SparseMatrices
+from trunnion.steady.hill.hill import HillBlocks
+from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.steady.orders.groups import offsets
-from trunnion.steady.orders.hill import HillBlocks
-from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
 REACH = 2

@@ -63,7 +63,7 @@ OWN = 0.1
 """Tolerance of the motion that a free line is judged about, over that of its multipliers."""
 EXTRA = "what the drives of a free–free line with joint angles give beyond the balance of the loads; None elsewhere"
 NO_EXTRA = 1e-6
-"""Share of the torques that a line carries below which what its drives give beyond their balance is not told."""
+"""Share of the torques that a line carries below which what its drives give beyond their balance is not said."""
 SPEED_ALONE = 0.05
 """A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
@@ -344,13 +344,13 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
 def _about_long_motion(assembly: Assembly, speed: float, tolerance: float) -> Stability | None:
     """Of a long line, by modes along its tree; None of one that is short or no tree, and where they are known less well
     than asked."""
-    from trunnion.floquet.propagation.own_modes import own_modes
+    from trunnion.floquet.propagation.periodic_motion_modes import periodic_motion_modes
     from trunnion.steady.free.long_steady_state import long_steady_state
     from trunnion.steady.shooting.periodic_orbit import change_of_speed_in_words
 
     topo = assembly.topology
     motion = long_steady_state(assembly.line, speed, LONG)
-    found = None if motion is None else own_modes(motion, max(tolerance, ROUNDING * topo.size))
+    found = None if motion is None else periodic_motion_modes(motion, max(tolerance, ROUNDING * topo.size))
     if motion is None or found is None:
         return None
     turns, modes, named = require_period(assembly.line, topo), found.modes, None
@@ -361,7 +361,7 @@ def _about_long_motion(assembly: Assembly, speed: float, tolerance: float) -> St
     shift = motion.given.shift(rigid_rotation(topo)).T[:, : int(topo.free)]
     value = np.concatenate([modes.multiplier, np.ones(shift.shape[1])])
     order = np.argsort(-np.abs(value), kind="stable")
-    told = np.isfinite(found.speed_multiplier)
+    is_known = np.isfinite(found.speed_multiplier)
     period = 2 * np.pi * float(turns)
     return Stability(
         multipliers=value[order],
@@ -380,7 +380,7 @@ def _about_long_motion(assembly: Assembly, speed: float, tolerance: float) -> St
         about_steady_state=True,
         extra_torque=motion.torque if topo.free else None,
         carried=carried_at_input(assembly, assembly.table(1, speed)[0]),
-        speed_sentence=change_of_speed_in_words(found.speed_multiplier, period / speed) if told else "",
+        speed_sentence=change_of_speed_in_words(found.speed_multiplier, period / speed) if is_known else "",
     )
 
 

@@ -150,7 +150,7 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
     require_balance(assembly, assembly.table(len(speed), speed))
     solved = solved or SteadyStatesBySpeed(assembly.line)
     if assembly.topology.size >= LONG and not solved.obstacle and solved.balance.along_tree:
-        return _by_own_modes(solved, speed)
+        return _by_modes_of_the_motion(solved, speed)
     motions = steady_state_slopes(assembly.line, speed, solved)
     if motions is None:
         raise SpeedBySpeedError(
@@ -162,14 +162,14 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
     return _along(speed, found.radius, found.error, found.critical, found.verdict, motions.period)
 
 
-def _by_own_modes(solved: SteadyStatesBySpeed, speed: Array) -> StabilityOverSpeed:
+def _by_modes_of_the_motion(solved: SteadyStatesBySpeed, speed: Array) -> StabilityOverSpeed:
     """Of a long line; FAILED where no motion is known, or its modes are known less well than the tolerance."""
-    from trunnion.floquet.propagation.own_modes import own_modes_along
+    from trunnion.floquet.propagation.periodic_motion_modes import periodic_motion_modes_along
 
     nothing = np.nan, np.nan, complex(np.nan), Verdict.FAILED
     found = [
         (one.radius, one.error, complex(one.modes.multiplier[one.critical]), one.verdict) if one else nothing
-        for one in own_modes_along(solved, speed, TOLERANCE)
+        for one in periodic_motion_modes_along(solved, speed, TOLERANCE)
     ]
     radius, error, critical, verdict = (np.array(part) for part in zip(*found, strict=True))
     return _along(speed, radius, error, critical, verdict.astype(np.int8), solved.balance.period)

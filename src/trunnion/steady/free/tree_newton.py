@@ -25,7 +25,7 @@ from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.tree_blocks import TreeMatrix
-from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.waiting import keep_time
 
 

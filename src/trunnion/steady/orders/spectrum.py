@@ -36,6 +36,9 @@ from trunnion.errors import InputError
 from trunnion.laws.joint import JointLaw
 from trunnion.numerics.memory import require_memory
 from trunnion.numerics.tree_blocks import AT_ONCE
+from trunnion.steady.hill.hill import HillBlocks, interpolated, interpolation_nodes, weights_at
+from trunnion.steady.hill.straight import coupled_response, straight_response
+from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.steady.orders.amplitudes import OrderSpectrum, OrderSum, stacked
 from trunnion.steady.orders.channels import (
     channels_of,
@@ -45,10 +48,7 @@ from trunnion.steady.orders.channels import (
 )
 from trunnion.steady.orders.cost_model import places_left, tree_pays
 from trunnion.steady.orders.groups import OWN, CarrierGroup, SideOrders, groups_of, offsets
-from trunnion.steady.orders.hill import HillBlocks, interpolated, interpolation_nodes, weights_at
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
-from trunnion.steady.orders.straight import coupled_response, straight_response
-from trunnion.steady.orders.tree_hill import TreeHill
 from trunnion.steady.orders.unbalanced import balanced
 from trunnion.waiting import keep_time
 

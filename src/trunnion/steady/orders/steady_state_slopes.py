@@ -16,7 +16,7 @@ from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.sparse_matrices import SparseMatrices
 from trunnion.steady.free.free_balance import SteadyStates
 from trunnion.steady.free.tree_newton import TreeMotions, held_solution
-from trunnion.steady.orders.tree_hill import TreeHill
+from trunnion.steady.hill.tree_hill import TreeHill
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.sparse_matrices import Part, SparseMatrices
-from trunnion.steady.orders.straight import SINGULAR
+from trunnion.steady.hill.straight import SINGULAR
 
 NARROW = 1e-2
 """Share of the speed below which a range is too narrow to be interpolated from its ends."""

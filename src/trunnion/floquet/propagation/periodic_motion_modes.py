@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.topology import require_period
-from trunnion.floquet.propagation.hill_line import OwnMotion
+from trunnion.floquet.propagation.hill_line import PeriodicMotionGiven
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
 from trunnion.modes.mode_content import ModeMotion
@@ -31,7 +31,7 @@ UNDAMPED = 1e-13
 
 
 @dataclass(frozen=True)
-class OwnModes:
+class PeriodicMotionModes:
     """All ``modes`` about a ``motion`` but the shift of its phase; ``counted`` (m,) those that are judged; radius and
     its error; ``speed_multiplier``: of the one left out, NaN without."""
 
@@ -55,7 +55,7 @@ class OwnModes:
         return mode_motion(topo, motion.coefficients, turns, exponent, _about(motion))
 
 
-def own_modes(motion: LongSteadyState, tolerance: float) -> OwnModes | None:
+def periodic_motion_modes(motion: LongSteadyState, tolerance: float) -> PeriodicMotionModes | None:
     """None where they are known less well than ``tolerance``."""
     topo, co = motion.assembly.topology, motion.coefficients
     modes = floquet_modes(topo, co, require_period(motion.assembly.line, topo), _about(motion))
@@ -67,13 +67,15 @@ def own_modes(motion: LongSteadyState, tolerance: float) -> OwnModes | None:
         counted[place], speed = False, float(modes.multiplier[place].real)
     radius, error = (float(part) for part in spectral_radius(modes.multiplier[counted], modes.error[counted]))
     verdict = Verdict(int(verdicts(radius, error, abs(modes.trace) < UNDAMPED * topo.size)))
-    return OwnModes(motion, modes, counted, radius, error, verdict, speed)
+    return PeriodicMotionModes(motion, modes, counted, radius, error, verdict, speed)
 
 
-def own_modes_along(curve: SteadyStateCurve, values: Array, tolerance: float) -> list[OwnModes | None]:
+def periodic_motion_modes_along(
+    curve: SteadyStateCurve, values: Array, tolerance: float
+) -> list[PeriodicMotionModes | None]:
     """About the motions at all ``values`` of a curve, one by one; None where there is none, or it is known less well
     than ``tolerance``."""
-    return [None if motion is None else own_modes(motion, tolerance) for motion in _motions(curve, values)]
+    return [None if motion is None else periodic_motion_modes(motion, tolerance) for motion in _motions(curve, values)]
 
 
 def _motions(curve: SteadyStateCurve, values: Array) -> Iterator[LongSteadyState | None]:
@@ -84,8 +86,8 @@ def _motions(curve: SteadyStateCurve, values: Array) -> Iterator[LongSteadyState
         yield refined(curve, motions.part(slice(i, i + 1))) if there else None
 
 
-def _about(motion: LongSteadyState) -> OwnMotion:
-    return OwnMotion(motion.given, motion.rough, motion.swing)
+def _about(motion: LongSteadyState) -> PeriodicMotionGiven:
+    return PeriodicMotionGiven(motion.given, motion.rough, motion.swing)
 
 
 def _of_speed(motion: LongSteadyState, modes: FloquetModes) -> int:

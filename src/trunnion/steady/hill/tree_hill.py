@@ -18,8 +18,8 @@ from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
 from trunnion.numerics.condensation import Plan
 from trunnion.numerics.tree_blocks import TreeBlock, TreeMatrix
-from trunnion.steady.orders.hill import interpolated
-from trunnion.steady.orders.straight import about_first, bounded
+from trunnion.steady.hill.hill import interpolated
+from trunnion.steady.hill.straight import about_first, bounded
 
 CONSTANT = 1e-15
 """Share of its size by which an entry may vary over the period and count as constant: rounding."""
