@@ -29,7 +29,8 @@ ROUNDS = 12
 SETTLED = 1e-3
 """Share of the fastest growth, or of the slowest decay, that may still be missing."""
 ASTRAY = np.array([-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0]) * 1.5e-3
-"""Shares of the speed beside a meeting at which one looks too where its place is not known closely."""
+"""Shares of the speed beside a meeting at which one looks too where more than two modes act on each other, so that its
+place is not known closely."""
 BEYOND = 0.04
 """Share of a stretch over which two modes grow by which one looks beyond and within its ends."""
 ENDS = 1e-7
@@ -117,11 +118,13 @@ def _beside_met(
     growth = along.growth_rate[np.searchsorted(along.speed, met.speed)]
     with np.errstate(invalid="ignore"):
         out = growth > -RAISED * np.maximum(met.decay, 0.0)
+    astray = met.speed[np.isnan(met.growth), None] * (
+        1 + ASTRAY
+    )  # growth at a wrong place tells nothing of the right one
     met, known = met.of(out), ((growth > 0) & (met.half > 0))[out]
     away = np.where(known, (1 + BEYOND) * met.half, 0.5 * met.width)
     beside = met.speed[:, None] + away[:, None] * np.array([-1.0, 1.0])
     top = met.speed[known, None] + 0.5 * met.width[known, None] * np.array([-1.0, 1.0])  # the line's is not the pair's
-    astray = met.speed[~known, None] * (1 + ASTRAY)
     along = _looked(along, judge, np.concatenate([beside.ravel(), top.ravel(), astray.ravel()]), ends)
     ended = along.verdict[np.minimum(np.searchsorted(along.speed, beside), len(along.speed) - 1)] == Verdict.STABLE
     within = (met.speed[:, None] + (1 - BEYOND) * met.half[:, None] * np.array([-1.0, 1.0]))[ended & known[:, None]]
