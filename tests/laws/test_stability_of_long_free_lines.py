@@ -202,6 +202,6 @@ def test_torques_that_do_not_balance_are_refused() -> None:
 
 @pytest.mark.slow
 def test_200_inertias_are_judged() -> None:
-    """For which matrices of the period took hours."""
+    """More inertias than matrices of the period are kept for."""
     found = tn.stability(chain(200, 0.4), SPEED)
     assert len(found.multipliers) == 400 and found.error_estimate < 1e-8 and found.liouville_defect < 1e-8
