@@ -75,6 +75,10 @@ class _OpenErrors:
         mine = self._taken(owners, key)
         return "; ".join(f"{e.problem}{'; ' + e.remedy if e.remedy else ''}" for e in mine)
 
+    def said_within(self, owners: tuple[Any, ...], key: str, name: str) -> str:
+        """What is said of the entry ``name`` of a table ``key``, of its value or of whom it names."""
+        return "; ".join(filter(None, (self.said(owners, f"{key}.{name}"), self.said(owners, name))))
+
     def rest(self, owners: tuple[Any, ...]) -> str:
         """What is said of a group, once its fields have taken theirs."""
         return "\n".join(map(str, self._taken(owners)))
@@ -168,13 +172,13 @@ def _load_case(place: int, table: Any, disks: Sequence[str], machines: Sequence[
     fields = [Field((*path, "name"), "name", name, "full load", left.said(owners, "name"))]
     loads = stated if isinstance(stated, dict) else {}
     for disk in dict.fromkeys([*disks, *loads]):
-        text = text_of(loads.get(disk, ""), TORQUE)
-        fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", left.said(owners, disk)))
+        text, said = text_of(loads.get(disk, ""), TORQUE), left.said_within(owners, LOADS, disk)
+        fields.append(Field((*path, LOADS, disk), f"torque at {disk}", text, "as it is", said))
     factors = table.get(FACTORS) if isinstance(table.get(FACTORS), dict) else {}
     for one in dict.fromkeys([*machines, *(factors or {})]):
         text = text_of((factors or {}).get(one, ""), RATIO)
-        what = f"factor on the torque of {one}"
-        fields.append(Field((*path, FACTORS, one), what, text, "as it is", left.said(owners, one)))
+        what, said = f"factor on the torque of {one}", left.said_within(owners, FACTORS, one)
+        fields.append(Field((*path, FACTORS, one), what, text, "as it is", said))
     return FieldGroup(path, f"load case {name}", LOAD_KIND, tuple(fields), (), left.rest(owners))
 
 
