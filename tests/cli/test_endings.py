@@ -16,6 +16,8 @@ from typer.core import TyperGroup
 import trunnion
 import trunnion.papers.entries as catalogue
 from trunnion._version import __version__
+from trunnion.cli import main
+from trunnion.cli.ending import EndedBy
 
 posix = pytest.mark.skipif(os.name != "posix", reason="pipes and devices")
 
@@ -101,3 +103,17 @@ def test_a_reader_who_leaves_is_no_error():
 def test_a_full_disk_behind_stdout_is_one_line():
     done = trunnion_with(open("/dev/full", "wb"), "schema")
     assert (done.returncode, done.stderr) == (1, b"error: No space left on device\n")
+
+
+def test_an_interrupt_after_all_is_done_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The exit code stands, whatever falls into the last line."""
+
+    def late() -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(EndedBy, "ignore", late)
+        with pytest.raises(SystemExit) as ended:
+            main(["catalogue"])
+    EndedBy.ignore()
+    assert not ended.value.code

@@ -6,6 +6,7 @@ import os
 import sys
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import typer
@@ -173,4 +174,5 @@ def main(args: list[str] | None = None) -> None:
     except KeyboardInterrupt:  # before a command was reached, or after it
         sys.exit(answer(Interrupted(), sys.argv[1:] if args is None else args))
     finally:
-        EndedBy.ignore()
+        with suppress(KeyboardInterrupt):  # one that falls into it comes too late: the exit code stands
+            EndedBy.ignore()
