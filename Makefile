@@ -13,7 +13,7 @@ PYTEST := OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n $(
 # Sources are read anew by every process of the tests where no machine-independent code is kept.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test walks slow studies check docs format clean
+.PHONY: demo test thorough walks slow studies check docs format clean
 
 demo: $(VENV)/.installed
 	$(BIN)/trunnion analyze examples/pto-shaft.toml
@@ -21,11 +21,14 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-dev
 	$(PYTEST) -m "not slow"
 
+thorough: $(VENV)/.installed-dev
+	$(PYTEST) -m thorough
+
 walks: $(VENV)/.installed-dev
 	$(PYTEST) -m slow tests/contract/test_walk_*.py
 
 slow: $(VENV)/.installed-dev
-	$(PYTEST) -m "slow and not study"
+	$(PYTEST) -m "slow and not study and not thorough"
 
 studies: $(VENV)/.installed-dev
 	$(PYTEST) -m study

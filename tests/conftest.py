@@ -23,7 +23,7 @@ from trunnion.cli import app
 from trunnion.floquet.charts import cost_model
 from trunnion.papers.shared.result import Reproduction
 
-pytest_plugins = ["served", "skips"]  # fixtures of the browser; what may be skipped
+pytest_plugins = ["served", "skips", "thorough"]  # fixtures of the browser; what may be skipped; what takes long
 
 STUDIES = {
     "test_captured_run_ups.py": "300 run-ups against a stiff integrator",
