@@ -37,19 +37,36 @@ WORST_CONDITION = 1e10
 class WindowFit:
     """Least squares over one window.
 
-    amplitude (order,), and its standard deviation (order,) of either part; missed (order,): how far it is off where
-    amplitudes change otherwise than their polynomials, by the residual, and chance (order,), what noise makes of that;
-    smooth (c,): coefficients of powers of the time from the middle over half the length; residual (sample,); freedom:
-    samples beyond the unknowns.
+    amplitude (order,), and its standard deviation (order,) of either part; smooth (c,): coefficients of powers of the
+    time from the middle over half the length; residual (sample,); freedom: samples beyond the unknowns; noise: standard
+    deviation of a sample; s, phase, orders, trend: what was fitted to.
     """
 
     amplitude: Complex
     deviation: Array
-    missed: Array
-    chance: Array
     smooth: Array
     residual: Array
     freedom: int
+    noise: float
+    s: Array
+    phase: Array
+    orders: Array
+    trend: int
+
+    @cached_property
+    def _misses(self) -> tuple[Array, Array]:
+        # Not of every fit: the rounds of a rotation and of pitch errors ask for none.
+        return missed_in_the_middle(self.residual, self.s, self.phase, self.orders, self.trend, self.noise)
+
+    @property
+    def missed(self) -> Array:
+        """How far amplitudes (order,) are off where they change otherwise than their polynomials, by the residual."""
+        return self._misses[0]
+
+    @property
+    def chance(self) -> Array:
+        """What noise makes of ``missed`` (order,)."""
+        return self._misses[1]
 
 
 def fitted(y: Array, s: Array, phase: Array, orders: Array, smooth: int, trend: int) -> WindowFit | None:
@@ -76,11 +93,11 @@ def fitted(y: Array, s: Array, phase: Array, orders: Array, smooth: int, trend: 
     residual = y - matrix @ found
     noise = float(np.sqrt(residual @ residual / freedom))
     spread = np.sqrt(np.diag(inverse)) * noise / scale
-    missed, chance = missed_in_the_middle(residual, s, phase, orders, trend, noise)
     count, each = len(orders), (trend + 1) * len(orders)
     real, imaginary = slice(smooth, smooth + count), slice(smooth + each, smooth + each + count)
     deviation = np.sqrt((spread[real] ** 2 + spread[imaginary] ** 2) / 2)
-    return WindowFit(found[real] + 1j * found[imaginary], deviation, missed, chance, found[:smooth], residual, freedom)
+    amplitude = found[real] + 1j * found[imaginary]
+    return WindowFit(amplitude, deviation, found[:smooth], residual, freedom, noise, s, phase, orders, trend)
 
 
 @dataclass(frozen=True)
