@@ -182,8 +182,9 @@ def problems_of(checks: Iterable[Callable[[], object]]) -> list[InputError]:
     return found
 
 
-class _ShownValue(str):
-    """What is left of a value that cannot leave its process: what messages show of it."""
+class ShownValue(str):
+    """A value as messages show it: of one that cannot leave its process, or as the file has it where that is not as
+    Python has it."""
 
     def __repr__(self) -> str:
         return str(self)
@@ -191,7 +192,7 @@ class _ShownValue(str):
 
 def _portable(value: object) -> object:
     plain = (str, int, float, complex, list, tuple, dict, type(None))
-    return value if isinstance(value, plain) else _ShownValue(_brief(value))
+    return value if isinstance(value, plain) else ShownValue(_brief(value))
 
 
 def _together(parts: list[tuple[str, str, str, object, str]]) -> InputError:

@@ -257,4 +257,4 @@ def test_at_the_command_line(tmp_path: Any, capsys: pytest.CaptureFixture[str]) 
     assert leave.value.code == 2
     said = capsys.readouterr()
     assert said.out == "" and len(said.err.splitlines()) == 1
-    assert "Planetary 1 (element 2).planets = True: must be a whole number" in said.err
+    assert "Planetary 1 (element 2).planets = true: must be a whole number" in said.err

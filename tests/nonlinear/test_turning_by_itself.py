@@ -215,3 +215,11 @@ def test_the_command_tells_the_turns_and_speeds_of_the_line(run, here) -> None:
     data = json.loads(run("simulate", "free.toml", "--turns", 30, "--speed", "20 rad/s", "--json").stdout)
     assert data["turns"] == pytest.approx(30) and data["first_speed"] == pytest.approx(24.6, abs=0.1)
     assert 80 < data["last_speed"] < 99 and data["end"] < 4
+
+
+def test_less_than_a_turn_is_said_with_how_fast() -> None:
+    motion = tn.simulate(runaway(), turns=0.5, speed=100.0)
+    turned = float(motion.whole.angle(motion.time[-1])[0])
+    assert 0.4 * 2 * np.pi < turned < 2 * np.pi
+    said = f"it made {turned / (2 * np.pi):.3g} of a turn, at {turned / motion.time[-1]:.4g} rad/s on average"
+    assert said in str(motion)

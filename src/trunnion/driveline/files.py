@@ -51,7 +51,7 @@ from trunnion.driveline.tolerances import Tolerance
 from trunnion.driveline.toml_file import read_text, toml_of
 from trunnion.driveline.torque_converters import read_converter
 from trunnion.driveline.torque_file import with_torque_files
-from trunnion.errors import InputError, InputRemark, all_made, problems_of, short
+from trunnion.errors import InputError, InputRemark, ShownValue, all_made, problems_of, short
 from trunnion.reading import below
 from trunnion.writing import written_whole
 
@@ -480,7 +480,8 @@ def _located(error: InputError, source: str) -> InputError:
 def _located_one(error: InputError, source: str) -> InputError:
     element = f"{source}: {error.element}" if error.element else ""
     key = error.key if error.element else f"{source}: {error.key}" if error.key else source
-    return error.but(element=element, key=key)
+    value = ShownValue(str(error.value).lower()) if isinstance(error.value, bool) else error.value
+    return error.but(element=element, key=key, value=value)
 
 
 def _element_blocks(element: Element) -> list[str]:

@@ -164,6 +164,9 @@ OFTEN_NOTHING = (ANGLE, DAMPING, QUADRATIC, MESH_DAMPING, IMPACT_DAMPING, TORQUE
 """Kinds that computations leave as good as zero, and that nothing is divided by."""
 
 
+_NAMED_TYPES = {type(None): "nothing (None)", bool: "true or false"}
+
+
 def parse(value: object, kind: QuantityKind) -> float:
     """Return `value` as a finite float in the SI unit of `kind`.
 
@@ -180,7 +183,7 @@ def parse(value: object, kind: QuantityKind) -> float:
         return _finite(_parse_text(value, kind), value, kind)
     # bool is an int in Python, and numpy's numbers are Reals without being floats
     if isinstance(value, bool) or not isinstance(value, Real):
-        given = "nothing (None)" if value is None else f"a {type(value).__name__}"
+        given = _NAMED_TYPES.get(type(value), f"a {type(value).__name__}")
         problem = f"must be a number or a string with a unit, not {given}"
         raise InputError(problem, value=value, remedy=_advice(kind))
     try:

@@ -97,7 +97,10 @@ def fitted(y: Array, s: Array, phase: Array, orders: Array, smooth: int, trend: 
     real, imaginary = slice(smooth, smooth + count), slice(smooth + each, smooth + each + count)
     deviation = np.sqrt((spread[real] ** 2 + spread[imaginary] ** 2) / 2)
     amplitude = found[real] + 1j * found[imaginary]
-    return WindowFit(amplitude, deviation, found[:smooth], residual, freedom, noise, s, phase, orders, trend)
+    return WindowFit(
+        amplitude, deviation, found[:smooth], residual, freedom, noise=noise, s=s, phase=phase, orders=orders,
+        trend=trend,
+    )  # fmt: skip
 
 
 @dataclass(frozen=True)

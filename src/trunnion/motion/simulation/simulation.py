@@ -439,7 +439,8 @@ class LineSimulation(Result, Simulation, OfShafts):
         """How fast a free–free line turned."""
         speed, last = self.whole.turns[1], self.whole.last_turn()[1]
         if not len(speed):
-            return "the line is free–free: it made no turn"
+            made = f"it made {self.whole.furthest / (2 * np.pi):.3g} of a turn"
+            return f"the line is free–free: {made}, at {self.words.rounded(last)} on average"
         back = self.whole.turned_back
         if back is not None:
             return f"the line is free–free: it turns back at t = {back:.4g} s"
