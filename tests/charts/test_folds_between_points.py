@@ -14,6 +14,10 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import trunnion as tn
+from trunnion.floquet.charts.chart_pixels import Pixels
+from trunnion.floquet.charts.steady_state_chart import SteadyStatePixels
+from trunnion.results.verdict import Verdict
+from trunnion.steady.free.periodic_steady_states import SEVERAL, Break
 
 Array = NDArray[np.float64]
 POINTS = 40
@@ -167,3 +171,63 @@ def test_folds_between_two_rows(tmp_path: Path) -> None:
     path = f"{tmp_path}/chart.nc"
     chart.save(path)
     assert tn.load_chart(path).column_folds == chart.column_folds
+
+
+WIDE = Two(damping=(0.5, 0.25))
+"""So little damped that several points of a chart lie within its folds."""
+LOADS, SPEEDS = ("Disk 2.load_torque", 650.0, 750.0, 2), ("speed", 74.0, 86.0, 4)
+
+
+@cache
+def wide_folds(load: float) -> tuple[float, float]:
+    low, high = Curve(lambda speed: Two(speed=speed, load=load, damping=WIDE.damping), 10.0).folds(74, 86)
+    return low, high
+
+
+@pytest.mark.parametrize("by_column", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_points_within_a_fold_have_several_motions_whichever_axis_it_lies_along(by_column: bool) -> None:
+    """Rows that follow the load within it find nothing that turns back: their columns tell."""
+    axes = (LOADS, SPEEDS) if by_column else (SPEEDS, LOADS)
+    chart = tn.stability_chart(WIDE.description(), *axes, about_steady_state=True)
+    loads, speeds = (chart.x, chart.y) if by_column else (chart.y, chart.x)
+    radius = chart.spectral_radius.T if by_column else chart.spectral_radius
+    found = chart.column_folds if by_column else chart.folds
+    assert [one[0] for one in found] == loads.tolist()
+    for load, fold, own in zip(loads.tolist(), found, radius, strict=True):
+        low, high = wide_folds(load)
+        assert fold[1:] == pytest.approx((low, high), abs=2e-6 * 12)
+        inside = (speeds > low) & (speeds < high)
+        assert inside.sum() == 1 and (np.isnan(own) == inside).all()
+    assert "at 2 points the periodic motion folds back: several belong to one point" in str(chart)
+    assert "none was found" not in str(chart) and "not found" not in str(chart)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("by_column", [True, False])
+def test_single_points_beside_and_within_a_fold(by_column: bool) -> None:
+    """Where the row through the point finds no motion, its column leads to one; within the fold that is not judged."""
+    axes = (LOADS, SPEEDS) if by_column else (SPEEDS, LOADS)
+    chart = tn.stability_chart(WIDE.description(), *axes, about_steady_state=True)
+    outside, within = ((700.0, 76.5), (700.0, 79.0)) if by_column else ((76.5, 700.0), (79.0, 700.0))
+    assert chart.at(*outside).spectral_radius < 1 and np.isnan(chart.at(*within).spectral_radius)
+
+
+def test_good_motions_within_the_fold_of_a_column_are_not_judged() -> None:
+    """Of rows that judge everything, with one fold of a column that holds two of its three points and one that none."""
+    points, x, y = (3, 2), np.array([1.0, 2.0]), np.array([10.0, 20.0, 30.0])
+    judged = Pixels(np.full(points, 0.5), np.full(points, 1e-9), np.full(points, 0.5j), np.zeros(points, dtype=np.int8))
+    nowhere = np.zeros(points, dtype=bool)
+    rows = SteadyStatePixels(judged, nowhere, nowhere | (y[:, None] == 20.0), (), (), np.zeros((*points, 4)))
+    found = rows.with_columns(((2.0, Break(5.0, 25.0, SEVERAL)), (1.0, Break(11.0, 12.0, SEVERAL))), y, x)
+    assert found.several.tolist() == [[False, True], [False, True], [False, False]]
+    assert found.none.tolist() == [[False, False], [True, False], [False, False]]
+    assert np.isnan(found.every.radius).tolist() == [[False, True], [False, True], [False, False]]
+    assert (found.every.verdict == Verdict.FAILED).tolist() == found.several.tolist()
+
+
+def test_one_place_is_told_without_counting() -> None:
+    line = Two(load=700.0).description()
+    axes = ("speed", 70.0, 84.0, 2), ("Shaft 1.damping", 1.0, 12.0, 2)
+    assert not Curve(lambda speed: Two(speed=speed, damping=(12.0, 0.5)), 10.0).folds(70, 84)
+    said = str(tn.stability_chart(line, *axes, about_steady_state=True))
+    assert "at one place the periodic motion folds back between two neighbouring points (Shaft 1.damping = 1, " in said

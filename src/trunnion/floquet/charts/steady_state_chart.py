@@ -30,8 +30,9 @@ from trunnion.floquet.propagation.about_steady_states import multipliers_about
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.patches.patches import Box, PatchedFunction
 from trunnion.results.chart import ChartPoint, SpotCheck
+from trunnion.results.counts import counted
 from trunnion.results.verdict import Verdict
-from trunnion.steady.free.folds_between import Stretches, folds_between, folds_of, step_of
+from trunnion.steady.free.folds_between import Stretches, folds_between, folds_of, slopes, step_of
 from trunnion.steady.free.free_balance import SteadyStates
 from trunnion.steady.free.periodic_steady_states import (
     SEVERAL,
@@ -118,7 +119,7 @@ class SteadyStateChart:
     def row(self, x: Array, y: float) -> SteadyStateRow:
         """The motions and multipliers at ``x`` (points,), rising, of one row."""
         keep_time()
-        curve, size = self.curve(y), 2 * len(self.unexcited.balance.turn)
+        curve, size = self._begun(x, y), 2 * len(self.unexcited.balance.turn)
         across, up = self._slopes(curve, x, y)
         curve.broken = folds_between(curve, x, across)
         motions = slopes_along(curve, x)
@@ -133,6 +134,20 @@ class SteadyStateChart:
             every[known] = np.concatenate([aside, values], axis=1)
         pixels = Pixels(found.radius, found.error, critical, found.verdict)
         return SteadyStateRow(pixels, every, curve.broken, curve.at_all(x), up)
+
+    def _begun(self, x: Array, y: float) -> SteadyStateCurve:
+        """The motions of one row at ``x``; where none is found, as on rows beside or within a fold that they do not
+        cross, from one that a column leads to."""
+        curve = self.curve(y)
+        for value in x[[len(x) // 2, 0, -1]].tolist():
+            motions = curve.at_all(x)
+            if (motions.found & motions.resolved).any():
+                break
+            column = self.column(value)
+            column.at_all(np.unique(np.append(self.y.values, y)))
+            if column.known[y].settled:
+                curve.known = {value: column.known[y]}
+        return curve
 
     def _slopes(self, curve: SteadyStateCurve, x: Array, y: float) -> tuple[Array, Array]:
         """d rows / dx and d rows / dy of the motions at ``x`` of one row."""
@@ -161,12 +176,13 @@ class SteadyStateChart:
         known = np.stack([row.motions.found & row.motions.resolved for row in rows], axis=1)
         for c, value in enumerate(x.tolist()):
             keep_time()
-            both = known[c, 1:] & known[c, :-1]
-            pairs = Stretches.of(y, motions[c], slope[c]).part(both)
+            # Beyond rows on which nothing was found, as within a fold, the next one that is known is the neighbour.
+            usable = np.flatnonzero(known[c])
+            pairs = Stretches.of(y[usable], motions[c, usable], slope[c, usable])
             if not pairs.bent.any():
                 continue
             curve = self.column(value)
-            curve.known = {float(y[r]): KnownSteadyState.of(rows[r].motions, c) for r in np.flatnonzero(known[c])}
+            curve.known = {float(y[r]): KnownSteadyState.of(rows[r].motions, c) for r in usable}
             yield from ((value, one) for one in folds_of(curve, pairs, float(y[0]), float(y[-1])))
 
     def check(self, found: SteadyStatePixels, x: Array, y: Array) -> SpotCheck:
@@ -215,15 +231,23 @@ class SteadyStateChart:
         return periodic_orbit(prepared.system, start=start, settle=False)
 
     def point(self, x: float, y: float) -> ChartPoint:
-        """Anywhere in the box: the row followed from the chart's own points."""
+        """Anywhere in the box: its row and its column followed from the chart's own points."""
         along = np.unique(np.append(self.x.values, x))
         row, c = self.row(along, y), int(np.searchsorted(along, x))
-        values = row.every[c]
+        pixel, values = row.pixels.at(c), row.every[c]
+        if row.motions.found[c] and self._folds_along_column(x, y, KnownSteadyState.of(row.motions, c)):
+            pixel, values = Pixels.failed(()), np.full_like(values, np.nan)
         return ChartPoint(
-            x=x, y=y, spectral_radius=float(row.pixels.radius[c]), error_estimate=float(row.pixels.error[c]),
-            verdict=Verdict(int(row.pixels.verdict[c])), multipliers=values[np.argsort(-np.abs(values))],
-            interpolated=False,
+            x=x, y=y, spectral_radius=float(pixel.radius), error_estimate=float(pixel.error),
+            verdict=Verdict(int(pixel.verdict)), multipliers=values[np.argsort(-np.abs(values))], interpolated=False,
         )  # fmt: skip
+
+    def _folds_along_column(self, x: float, y: float, motion: KnownSteadyState) -> bool:
+        """Whether a point whose row finds a ``motion`` lies where the motions of its column fold back."""
+        curve, along = self.column(x), np.unique(np.append(self.y.values, y))
+        curve.known[y] = motion
+        folds = folds_between(curve, along, slopes(curve, along))
+        return any(one.low < y < one.high and one.why == SEVERAL for one in folds)
 
     @property
     def function(self) -> PatchedFunction:
@@ -284,7 +308,10 @@ class SteadyStatePixels:
         every = Pixels.failed(several.shape)
         good = ~(several | none)
         every.put((good,), self.every.at((good,)))
-        return replace(self, every=every, several=self.several | several, none=self.none | none, column_folds=folds)
+        several |= self.several
+        # A row that lies within the fold of a column finds nothing, where that column finds several.
+        none = (none | self.none) & ~several
+        return replace(self, every=every, several=several, none=none, column_folds=folds)
 
     def remarks(self, chart: SteadyStateChart, x: Array, y: Array) -> list[str]:
         """What a reader must know of points that are not judged."""
@@ -302,10 +329,9 @@ class SteadyStatePixels:
             if one.why == SEVERAL and not ((values > one.low) & (values < one.high)).any()
         ]
         if narrow:
-            many = f"at {len(narrow)} places" if len(narrow) > 1 else "at one place"
-            said.append(
-                f"{many} the periodic motion folds back between two neighbouring points (the first: {narrow[0]})"
-            )
+            where = f"at {len(narrow)} places" if len(narrow) > 1 else "at one place"
+            first = f"the first: {narrow[0]}" if len(narrow) > 1 else narrow[0]
+            said.append(f"{where} the periodic motion folds back between two neighbouring points ({first})")
         unknown = (self.every.verdict == Verdict.FAILED) & ~self.several & ~self.none
         for flags, why in (
             (self.several, "the periodic motion folds back: several belong to one point, which are not judged"),
@@ -315,10 +341,11 @@ class SteadyStatePixels:
             if flags.any():
                 r, c = np.argwhere(flags)[0]
                 count = int(flags.sum())
-                said.append(
-                    f"at {count} point{'s' if count > 1 else ''} {why} (the first at {chart.x.label} = {x[c]:.6g}, "
-                    f"{chart.y.label} = {y[r]:.6g})"
+                first, place = (
+                    "the first " if count > 1 else "",
+                    f"{chart.x.label} = {x[c]:.6g}, {chart.y.label} = {y[r]:.6g}",
                 )
+                said.append(f"at {counted(count, 'point')} {why} ({first}at {place})")
         return said
 
 
