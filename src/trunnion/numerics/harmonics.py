@@ -84,18 +84,25 @@ def product_matrix(values: Array, h: int) -> Array:
 
 def product_matrix_of(spectrum: Complex, h: int) -> Array:
     """The same from ĝ_m, m = 0 … 2h, shape (…, 2h + 1)."""
-    k = np.arange(h + 1)
-    apart = k[:, None] - k[None, :]
-    toeplitz = np.where(apart >= 0, spectrum[..., np.abs(apart)], spectrum[..., np.abs(apart)].conj())
-    hankel = spectrum[..., k[:, None] + k[None, :]]
+    # ĝ_m, m = −h … 2h: views of it with steps of one number are both matrices, and nothing is gathered.
+    wide = np.concatenate([spectrum[..., h:0:-1].conj(), spectrum], axis=-1)
+    real, imag = (np.ascontiguousarray(part) for part in (wide.real, wide.imag))
     out = np.empty((*spectrum.shape[:-1], 2 * h + 1, 2 * h + 1))
-    both, difference = toeplitz + hankel, toeplitz - hankel
-    out[..., : h + 1, : h + 1] = both.real
-    out[..., : h + 1, h + 1 :] = difference.imag[..., :, 1:]
-    out[..., h + 1 :, : h + 1] = -both.imag[..., 1:, :]
-    out[..., h + 1 :, h + 1 :] = difference.real[..., 1:, 1:]
+    toeplitz, hankel = _windows(real, h)
+    np.add(toeplitz, hankel, out=out[..., : h + 1, : h + 1])
+    np.subtract(toeplitz[..., 1:, 1:], hankel[..., 1:, 1:], out=out[..., h + 1 :, h + 1 :])
+    toeplitz, hankel = _windows(imag, h)
+    np.subtract(toeplitz[..., :, 1:], hankel[..., :, 1:], out=out[..., : h + 1, h + 1 :])
+    np.add(toeplitz[..., 1:, :], hankel[..., 1:, :], out=out[..., h + 1 :, : h + 1])
+    np.negative(out[..., h + 1 :, : h + 1], out=out[..., h + 1 :, : h + 1])
     out[..., 0, :] /= 2  # a mean is its coefficient, an amplitude twice that
     return out
+
+
+def _windows(wide: Array, h: int) -> tuple[Array, Array]:
+    """Of numbers of m = −h … 2h (…, 3h + 1) those of k − l and of k + l, for k, l = 0 … h."""
+    windows = np.lib.stride_tricks.sliding_window_view(wide, h + 1, axis=-1)
+    return windows[..., : h + 1, ::-1], windows[..., h:, :]
 
 
 def product_blocks(values: Array, h: int) -> Array:

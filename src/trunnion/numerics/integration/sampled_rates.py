@@ -1,4 +1,4 @@
-"""Rates and Jacobians of a system along samples of a motion."""
+"""Rates and Jacobians of a system along samples of a motion, or of many."""
 
 from __future__ import annotations
 
@@ -36,3 +36,17 @@ def sampled_rates(
     if refused or not (np.isfinite(rates).all() and np.isfinite(jacobians).all()):
         return None
     return rates, jacobians, regimes
+
+
+def sampled_rates_of_cases(rate: int, times: Array, states: Array, numbers: Array) -> tuple[Array, Array]:
+    """Rates (case, sample, n) and Jacobians (case, sample, n, n) of one system without guards, ``rate`` the address of
+    its function, with many ``numbers`` (case, k), at times (case, sample) and states (case, sample, n); NaN throughout
+    a case that it refuses or that is not finite."""
+    unguarded = np.zeros((1, 0), dtype=np.int64)
+    rates, jacobians = np.empty(states.shape), np.empty((*states.shape, states.shape[-1]))
+    _kernel().sampled_rates_of_cases(
+        rate, unguarded, unguarded, times, np.ascontiguousarray(states), numbers.copy(), rates, jacobians
+    )
+    lost = ~(np.isfinite(rates).all(axis=(1, 2)) & np.isfinite(jacobians).all(axis=(1, 2, 3)))
+    rates[lost], jacobians[lost] = np.nan, np.nan
+    return rates, jacobians

@@ -54,3 +54,18 @@ def sampled_rates(rate, guard, transitions, directions, times, states, p, regime
                 jacobians[i, k, j] = out[(1 + j) * n + k]
         regimes[i] = regime
     return 0
+
+
+@njit(cache=True, nogil=True)
+def sampled_rates_of_cases(rate, transitions, directions, times, states, numbers, rates, jacobians):
+    """The same of many systems of one shape without guards: times (cases, samples), states (cases, samples, n),
+    numbers (cases, k). What one cannot be evaluated at is NaN.
+    """
+    regimes = np.zeros(times.shape[1], dtype=np.int64)
+    for case in range(times.shape[0]):
+        refused = sampled_rates(
+            rate, 0, transitions, directions, times[case], states[case], numbers[case], 0, rates[case],
+            jacobians[case], regimes,
+        )  # fmt: skip
+        if refused != 0:
+            rates[case], jacobians[case] = np.nan, np.nan

@@ -28,8 +28,7 @@ from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.harmonics import solved
-from trunnion.numerics.integration.integration import Equations
-from trunnion.numerics.integration.sampled_rates import sampled_rates
+from trunnion.numerics.integration.sampled_rates import sampled_rates_of_cases
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.threads import on_one_thread
 from trunnion.results.counts import counted
@@ -116,15 +115,8 @@ class SteadyStates:
     def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
         """Rates (case, time, 2n) and their slopes (case, time, 2n, 2n) by the states, under ``more`` torque; NaN if
         none."""
-        states, numbers = self.states, self.driven(more)
-        cases, times, size = states.shape
-        rates, slopes = np.full(states.shape, np.nan), np.full((cases, times, size, size), np.nan)
-        for i, speed in enumerate(self.speed):
-            equations = Equations(self.balance.address, size, numbers[i], self.balance.weight)
-            known = sampled_rates(equations, self.tau / speed, states[i], 0)
-            if known is not None:
-                rates[i], slopes[i] = known[:2]
-        return rates, slopes
+        times = self.tau / self.speed[:, None]
+        return sampled_rates_of_cases(self.balance.address, times, self.states, self.driven(more))
 
     def observed(self) -> LineMotion:
         """Twist, torque (case, time, spring) and rotation (case, time, station) along the motions."""
