@@ -267,7 +267,7 @@ class FreeBalance:
         other = self.along(lambda value: table)
         numbers = self.numbers(table, self.line.untwisted(table))
         moved = SteadyStates(other, motions.value, motions.found, motions.rows, motions.torque, numbers)
-        return self._equations(moved, unit)[0]
+        return self._missing(moved, unit, moved.sampled()[0])
 
     def torque_unit(self, co: LineCoefficients) -> Array:
         """The torque of the drives (case,) [N m] that counts as one."""
@@ -289,7 +289,6 @@ class FreeBalance:
         n, h, rate = len(self.turn), motions.h, motions.rate
         cases, wide = len(rate), 2 * h + 1
         rates, slopes = motions.sampled()
-        around = rates[..., n:].transpose(0, 2, 1)
         speed = motions.speed
         d = fourier.rate_matrix(h, 1.0)
         by_angle, by_speed = (fourier.product_blocks(part, h) for part in np.split(slopes[..., n:, :], 2, axis=-1))
@@ -299,20 +298,27 @@ class FreeBalance:
         size = n * wide
         whole = np.zeros((cases, size + 1, size + 1))
         whole[:, :size, :size] = matrix.reshape(cases, size, size) / (speed**2)[:, None, None]
-        inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
-        left = inertial - fourier.rows_of(around, h)
-        missing = np.zeros((cases, size + 1))
-        missing[:, :size] = left.reshape(cases, size) / (ANGLE_SCALE * speed**2)[:, None]
+        missing = self._missing(motions, unit, rates)
         if not self.free:  # no torque is missing
-            whole[:, size, size], missing[:, size] = 1.0, motions.torque / unit
+            whole[:, size, size] = 1.0
             return missing, whole
         along = (motions.sampled(1.0)[0] - rates)[..., n:].transpose(0, 2, 1)
         whole[:, :size, size] = -fourier.rows_of(along, h).reshape(cases, size) * (
             unit / (ANGLE_SCALE * speed**2)
         )[:, None]  # fmt: skip
         whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
-        missing[:, size] = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
         return missing, whole
+
+    def _missing(self, motions: SteadyStates, unit: Array, rates: Array) -> Array:
+        """The first of these, of motions with ``rates`` (case, time, 2n)."""
+        n, h, rate = len(self.turn), motions.h, motions.rate
+        inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
+        left = inertial - fourier.rows_of(rates[..., n:].transpose(0, 2, 1), h)
+        balance = left.reshape(len(rate), -1) / (ANGLE_SCALE * motions.speed**2)[:, None]
+        if not self.free:
+            return np.column_stack([balance, motions.torque / unit])
+        phase = motions.rows[..., 0] @ self.phase / np.linalg.norm(self.phase) / ANGLE_SCALE
+        return np.column_stack([balance, phase])
 
     def rigid(self, table: Array, h: int, co: LineCoefficients) -> Array:
         """Rigid shafts, each twisted by the torque that it carries on average, as series (case, n, 2h + 1)."""
