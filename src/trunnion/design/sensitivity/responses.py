@@ -61,14 +61,15 @@ class SpectrumSlope:
     change: dict[str, NDArray[Any]]
     noise: float
 
-    def moved(self, share: float) -> OrderSpectrum:
-        """The response after a step of so many shares, to first order."""
-        parts = {key: getattr(self.here, key) + share * self.change[key] for key in PARTS}
-        return replace(self.here, **parts)
+    def moved(self, shares: Array | Sequence[float]) -> OrderSpectrum:
+        """The response after steps of so many ``shares`` (step,), to first order: a row for each, as of a speed."""
+        steps, one = np.asarray(shares), np.zeros(len(shares), dtype=np.intp)
+        parts = {key: getattr(self.here, key) + np.multiply.outer(steps, self.change[key][0]) for key in PARTS}
+        return replace(self.here.take(one), **parts)
 
     def response(self, assembly: Assembly, share: float) -> OrderResponse:
         """The same as the response of ``assembly``, the line there."""
-        return response_of_spectrum(assembly, self.moved(share), remarked=False)
+        return response_of_spectrum(assembly, self.moved([share]), remarked=False)
 
     @cached_property
     def pace(self) -> float:
@@ -79,6 +80,11 @@ class SpectrumSlope:
     def step(self) -> float:
         """Share of the direction's size that changes the response by ``LINEAR``."""
         return min(STEP, LINEAR / self.pace) if self.pace else STEP
+
+    @property
+    def shares(self) -> Array:
+        """The shares at which ``slope`` looks, unless these turn out to be too far apart."""
+        return self.step * np.array([0.0, *CENTRAL])
 
     def slope(self, values: Values, pace: float) -> tuple[Array, Array] | None:
         """Derivatives and errors of ``values(share)``, read from what is ``moved`` by the share.

@@ -12,9 +12,9 @@ from functools import partial
 import numpy as np
 
 from trunnion.arrays import Array
-from trunnion.design.sensitivity.differences import slope
+from trunnion.design.sensitivity.differences import STEP, Values, slope
 from trunnion.design.sensitivity.directions import Direction, Neighbourhood, Neighbours, along_each
-from trunnion.design.sensitivity.responses import spectrum_slopes
+from trunnion.design.sensitivity.responses import SpectrumSlope, spectrum_slopes
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
@@ -22,7 +22,7 @@ from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.response.orders.response import order_response
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 
-Values = Callable[[Driveline], Array]
+LineValues = Callable[[Driveline], Array]
 
 
 def exact_torque_slopes(
@@ -45,20 +45,27 @@ def exact_torque_slopes(
 
         def look(one: Direction, v=v, values=values, every=every, pace=pace) -> tuple[Array, Array] | None:  # type: ignore[no-untyped-def]
             around = every[one.label]
-            if around is None or all(lines.line(one, side * around.step) is None for side in (1, -1)):
+            if around is None or all(lines.line(one, side * STEP) is None for side in (1, -1)):
                 both = slope(partial(_beside, values, lines, here[:, [v]], one))
                 return both and (both[0][:, 0], both[1][:, 0])
-            return around.slope(lambda share: _extremes(around.moved(share)), pace)
+            return around.slope(_torques_beside(around), pace)
 
         report_progress = progress and (lambda share, v=v: progress((v + share) / len(speeds)))  # type: ignore[misc]
         found[:, v], errors[:, v] = along_each(directions, look, (2, here.shape[2]), report_progress)
     return here, found, errors
 
 
+def _torques_beside(around: SpectrumSlope) -> Values:
+    """Peak and vibratory torque (2, spring) [N m] by the share of a step, those that a slope needs found together."""
+    shares = around.shares
+    known = dict(zip(shares.tolist(), _extremes(around.moved(shares)), strict=True))
+    return lambda share: known[share] if share in known else _extremes(around.moved([share]))[0]
+
+
 def _extremes(spectrum: OrderSpectrum) -> Array:
-    """Peak and vibratory torque (2, spring) [N m] at the one speed of a spectrum."""
+    """Peak and vibratory torque (row, 2, spring) [N m] of every row of a spectrum."""
     found = spectrum.extremes_at(spectrum.channels.torque)
-    return np.stack([found.largest[0], found.swing[0]])
+    return np.stack([found.largest, found.swing], axis=1)
 
 
 def torques(speeds: Array, line: Driveline | Assembly) -> Array:
@@ -74,14 +81,17 @@ def free_line_growth(speeds: Array, line: Driveline) -> Array:
 
 
 def slopes(
-    values: Values, near: Neighbours, directions: Sequence[Direction], progress: Callable[[float], None] | None = None
+    values: LineValues,
+    near: Neighbours,
+    directions: Sequence[Direction],
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Array, Array]:
     """Derivatives (…, direction) of ``values(line)`` and their errors; NaN where lines beside it are refused."""
     here = values(near.assembly.line)
     return along_each(directions, lambda one: slope(partial(_beside, values, near, here, one)), here.shape, progress)
 
 
-def _beside(values: Values, near: Neighbours, here: Array, one: Direction, share: float) -> Array | None:
+def _beside(values: LineValues, near: Neighbours, here: Array, one: Direction, share: float) -> Array | None:
     if not share:
         return here
     line = near.line(one, share)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -122,7 +122,7 @@ class OrderSpectrum:
     @cached_property
     def families(self) -> list[tuple[list[int], list[int]]]:
         """Columns that are whole multiples of one harmonic at every speed, and which."""
-        return families(self.keys)
+        return _families(tuple(self.keys))
 
     @property
     def common_turns(self) -> Fraction | None:
@@ -182,6 +182,12 @@ class OrderSpectrum:
         """
         turned = np.exp(1j * np.multiply.outer(time, self.angular_frequency[at]))
         return np.asarray(mean + (turned @ amplitude).real)
+
+
+@lru_cache(maxsize=16)
+def _families(keys: tuple[Key, ...]) -> list[tuple[list[int], list[int]]]:
+    """Of spectra with the same orders, once."""
+    return families(keys)
 
 
 def stacked(parts: list[OrderSpectrum]) -> OrderSpectrum:

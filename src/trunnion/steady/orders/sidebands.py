@@ -16,8 +16,9 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
 
 LEAST_SPREAD, LARGEST_SPREAD = 1e-12, 0.95
-DECADES = 14.0
-"""Side orders are taken until their shares fall below 10^−14, to begin with."""
+DECADES = 16.0
+"""Side orders are taken until their shares fall below 10^−16, to begin with: resonances raise them by decades, and to
+solve once with some more is cheaper than to solve twice."""
 MOST_DECADES = 40.0
 MOST = 2000
 """Side orders of one excitation, at most."""
