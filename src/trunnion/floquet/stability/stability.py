@@ -22,6 +22,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import periodic_linear_system, rigid_motions
 from trunnion.equations.steady_base import (
     carried_at_input,
@@ -29,13 +30,14 @@ from trunnion.equations.steady_base import (
     require_no_steady_state,
     require_own_motion,
 )
-from trunnion.equations.topology import require_period
+from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.propagation.cost_model import by_shooting, require_time
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
+from trunnion.floquet.stability.own_speed import RUNS_AWAY, is_of_speed
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.modes.mode_content import FARTHEST, ModeMotion, mode_content, named_resonance
 from trunnion.modes.natural_frequencies import natural_frequencies
@@ -64,12 +66,11 @@ OWN = 0.1
 EXTRA = "what the drives of a free–free line with joint angles give beyond the balance of the loads; None elsewhere"
 NO_EXTRA = 1e-6
 """Share of the torques that a line carries below which what its drives give beyond their balance is not said."""
-SPEED_ALONE = 0.05
-"""A real multiplier nearer to 1 than this is that of the line's speed, which no resonance names."""
 SET_ASIDE = {
     1: "the multiplier at 1 of a turn of the whole line is set aside",
     2: "the rigid-body pair of multipliers at 1 is set aside",
 }
+PHASE_HELD = "a mesh that varies holds the phase of the motion: the multiplier of a turn of the whole line counts"
 
 
 @labelled
@@ -103,7 +104,7 @@ class Stability(Result):
     about_steady_state: bool = attribute("whether about the line's own periodic motion", default=False)
     dragged: int = internal("how many of those set aside belong to dampers without a spring", default=0)
     speed_sentence: str = internal(
-        "of a free–free line with joint angles none of whose torques depends on the speed", default=""
+        "of a free–free line, what becomes of a change of its speed where that is told", default=""
     )
 
     @property
@@ -135,6 +136,11 @@ class Stability(Result):
     def growth_rate(self) -> float:
         """Growth of the fastest disturbance [1/s]; negative when it decays."""
         return float(np.log(self.spectral_radius) * self.speed / self.period)
+
+    @property
+    def phase_is_held(self) -> bool:
+        """Whether the motion of a free–free line has no free phase, as a mesh varies with its gears' mean rotation."""
+        return self.about_steady_state and self.extra_torque is not None and not self.set_aside
 
     @property
     def growth_rate_error(self) -> float:
@@ -189,6 +195,8 @@ class Stability(Result):
         if self.set_aside > self.dragged:
             many = self.set_aside - self.dragged
             yield f"  {SET_ASIDE.get(many, f'the {many} multipliers at 1 of rigid rotations are set aside')}"
+        elif self.phase_is_held:
+            yield f"  {PHASE_HELD}"
         if self.about_steady_state:
             extra, beyond = self.extra_torque, ""
             if extra is not None and abs(extra) > NO_EXTRA * self.carried:
@@ -256,10 +264,23 @@ def stability(
         found = _about_steady_state(assembly, float(table[0, 0]), tolerance)
     else:
         found = _about_rigid_shafts(assembly, table, tolerance, statically_twisted)
+    if found.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
+        found = _speed_told(found, assembly.topology, assembly.coefficients(table))
     return replace(
         found, left_out=(*left_out("stability", assembly.line), *shaken_stages(assembly)),
         unit=speed_unit(assembly.line), dragged=len(assembly.topology.dragged),
     )  # fmt: skip
+
+
+def _speed_told(found: Stability, topo: Topology, coefficients: LineCoefficients) -> Stability:
+    """In place of a resonance, where the critical multiplier is that of a free line's speed or held phase."""
+    counted = np.argsort(np.abs(found.multipliers - 1))[found.set_aside :]
+    if not len(counted):
+        return found
+    one = counted[np.abs(found.multipliers[counted]).argmax()]
+    if not is_of_speed(topo, coefficients, complex(found.multipliers[one]), found.floquet_modes[: topo.size, one]):
+        return found
+    return replace(found, resonance=None, speed_sentence="" if found.phase_is_held else RUNS_AWAY)
 
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
@@ -315,7 +336,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
     by_modulus = np.argsort(-np.abs(values))
     critical = np.argmin(np.abs(np.abs(values) - orbit.spectral_radius))
     named = None
-    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and abs(values[critical].real - 1) > SPEED_ALONE:
+    if orbit.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         moving = motion.mode_motion(complex(values[critical]))
         frequency = natural_frequencies(assembly).undamped_frequency / speed
         named = _named(moving, orbit.verdict, speed, frequency, sources(assembly), turns)
@@ -333,7 +354,7 @@ def _about_steady_state(assembly: Assembly, speed: float, tolerance: float) -> S
         forced=partial(linear_response, assembly, speed),
         liouville_defect=orbit.liouville_defect,
         names=topo.names,
-        set_aside=int(topo.free),
+        set_aside=orbit.set_aside,
         about_steady_state=True,
         extra_torque=orbit.values[-1] if topo.free else None,
         carried=carried_at_input(assembly, assembly.table(1, speed)[0]),
@@ -354,8 +375,7 @@ def _about_long_motion(assembly: Assembly, speed: float, tolerance: float) -> St
     if motion is None or found is None:
         return None
     turns, modes, named = require_period(assembly.line, topo), found.modes, None
-    speed_alone = abs(modes.multiplier[found.critical] - 1) <= SPEED_ALONE
-    if found.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED) and not speed_alone:
+    if found.verdict in (Verdict.UNSTABLE, Verdict.UNDECIDED):
         frequency = natural_frequencies(assembly).undamped_frequency / speed
         named = _named(found.critical_motion(), found.verdict, speed, frequency, sources(assembly), turns)
     shift = motion.given.shift(rigid_rotation(topo)).T[:, : int(topo.free)]

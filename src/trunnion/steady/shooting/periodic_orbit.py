@@ -100,6 +100,7 @@ class IntegratedOrbit(Orbit):
         "what was unknown besides the start, as the period of an autonomous system or the torque of a free–free line"
     )
     speed_multiplier: float = internal("NaN of all but such a free–free line")
+    set_aside: int = internal("how many multipliers of 1 the spectral radius leaves out, as none of a disturbance")
     stuck: tuple[str, ...] = internal("names of the sliders that never slip")
 
     @classmethod
@@ -328,6 +329,7 @@ def judged(free: IntegratedShooting, root: Root) -> PeriodicOrbit:
         trajectory=run,
         values=tuple(root.x[n:].tolist()),
         speed_multiplier=found.speed,
+        set_aside=len(found.values) - len(found.counted) - int(np.isfinite(found.speed)),
         stuck=tuple(system.sliders[one] for one in stuck),
     )
 
@@ -398,5 +400,6 @@ def _failed(problem: IntegratedShooting, root: Root, outcome: Outcome | None = N
         trajectory=run,
         values=tuple(root.x[n:].tolist()),
         speed_multiplier=nan,
+        set_aside=0,
         stuck=(),
     )
