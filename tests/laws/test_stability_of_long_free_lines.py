@@ -13,7 +13,7 @@ from oracles.multipliers import matched
 
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
-from trunnion.errors import InputError
+from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.propagation.periodic_motion_modes import periodic_motion_modes
 from trunnion.floquet.stability import stability as judged
 from trunnion.floquet.stability.stability_over_speed import stability_along
@@ -205,3 +205,15 @@ def test_200_inertias_are_judged() -> None:
     """More inertias than matrices of the period are kept for."""
     found = tn.stability(chain(200, 0.4), SPEED)
     assert len(found.multipliers) == 400 and found.error_estimate < 1e-8 and found.liouville_defect < 1e-8
+
+
+def test_a_motion_that_steps_do_not_reach_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one step of Newton's the motion is not found: that is said, with what to do, and no verdict is made of it."""
+    line = chain(20, 0.5, angle=0.5)
+    monkeypatch.setattr(free_balance, "CORRECTIONS", 1)
+    monkeypatch.setattr(free_balance, "MATRICES", 1)
+    told = "no periodic motion of the line was found to judge in 6 harmonics; ask for another speed, or give it more"
+    with pytest.raises(ComputationError, match=told):
+        tn.stability(line, SPEED)
+    along = stability_along(assemble(chain(44, 0.5, angle=0.5)), [SPEED])
+    assert along.verdict.tolist() == [Verdict.FAILED] and np.isnan(along.radius).all()

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Complex
 from trunnion.equations.aligned import on_rotations, rigid_rotation
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.topology import Topology
@@ -21,7 +21,7 @@ RUNS_AWAY = (
 )
 
 
-def is_of_speed(topo: Topology, coefficients: LineCoefficients, multiplier: complex, rotation: Array) -> bool:
+def is_of_speed(topo: Topology, coefficients: LineCoefficients, multiplier: complex, rotation: Complex) -> bool:
     """Whether the ``multiplier`` of a disturbance with this ``rotation`` (n,) is that of the line's speed."""
     if not topo.free or not real_positive(np.array([multiplier]))[0]:
         return False
