@@ -208,7 +208,7 @@ def test_200_inertias_are_judged() -> None:
 
 
 def test_a_motion_that_steps_do_not_reach_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With one step of Newton's the motion is not found: that is said, with what to do, and no verdict is made of it."""
+    """With one step of Newton's it is not found: that is said, with what to do, and no verdict is made of it."""
     line = chain(20, 0.5, angle=0.5)
     monkeypatch.setattr(free_balance, "CORRECTIONS", 1)
     monkeypatch.setattr(free_balance, "MATRICES", 1)
