@@ -248,6 +248,52 @@ def test_stages_that_are_not_linear_within_are_refused_by_name() -> None:
             )
 
 
+RING = {"ring_inertia": 0.05, "stiffness": 500.0, "damping": 3.0}
+SPRUNG = [tn.Shaft(stiffness=500.0, damping=3.0), tn.Disk(inertia=0.05)]
+ALIKE = [  # what stands between a disk and the load, and what it is in shafts, disks and ratios
+    pytest.param([], [tn.TunedDamper(**RING)], [], SPRUNG, id="tuned damper"),
+    pytest.param([], [tn.ViscousDamper(**RING)], [], SPRUNG, id="viscous damper"),
+    pytest.param(
+        [tn.Belt(radius_in=0.06, radius_out=0.15, span_stiffness=4e5, damping=3.0)], [],
+        [tn.Shaft(stiffness=2 * 4e5 * 0.06**2, damping=3.0), tn.Ratio(ratio=2.5)], [], id="belt",
+    ),
+    pytest.param(
+        [], [tn.Tyre(stiffness=4e3, damping=9.0), tn.Vehicle(mass=200.0, wheel_radius=0.05)],
+        [], [tn.Shaft(stiffness=4e3, damping=9.0), tn.Disk(inertia=200 * 0.05**2)], id="tyre",
+    ),
+    pytest.param(
+        [tn.Shaft(stiffness=4e3, damping=9.0), tn.Planetary(teeth_sun=20, teeth_ring=60, input="sun", held="ring")], [],
+        [tn.Shaft(stiffness=4e3, damping=9.0), tn.Ratio(ratio=4.0)], [], id="planetary set",
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("before", "behind", "written_before", "written_behind"), ALIKE)
+def test_compound_elements_are_proved_as_what_they_are_made_of(before, behind, written_before, written_behind) -> None:
+    """To the rate that the multipliers of shooting have."""
+    engine, joint, shaft, load = BentPair(95.0, angle=0.1).line.elements
+    first, speeds = [engine, joint, shaft, tn.Disk(inertia=0.3)], (94.999, 95.001)
+    line, written = (
+        tn.Driveline([*first, *one, load, *other])
+        for one, other in ((before, behind), (written_before, written_behind))
+    )
+    found, alike = tn.certify_stability(line, {}, speeds), tn.certify_stability(written, {}, speeds)
+    assert found.verdict == alike.verdict == "proved stable"
+    assert found.decay == pytest.approx(alike.decay, rel=1e-7)
+    own = tn.stability(written, 95.0)
+    rates = np.sort(-np.log(np.abs(own.multipliers)) * 95.0 / own.period)
+    assert abs(rates[0]) < 1e-6 and 0.5 * rates[1] < found.decay <= rates[1] * (1 + 1e-4)
+
+
+def test_an_oil_over_the_frequency_is_refused_by_name() -> None:
+    points = ((10.0, 300.0, 200.0), (90.0, 900.0, 700.0))
+    oil = [{"frequency": f, "stiffness": k, "loss_stiffness": d} for f, k, d in points]
+    damper = tn.ViscousDamper(ring_inertia=0.05, oil=oil, oil_frequency=40.0, name="damper")
+    line = tn.Driveline([*BentPair(95.0).line.elements, damper])
+    with pytest.raises(tn.InputError, match="damper: about the line's own motion an oil whose stiffness goes with"):
+        tn.certify_stability(line, {}, (94.99, 95.01))
+
+
 # From a user's side
 
 

@@ -6,12 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from trunnion.driveline.belts import Belt
 from trunnion.driveline.couplings import Coupling
+from trunnion.driveline.dampers import TunedDamper, ViscousDamper
 from trunnion.driveline.elements import ConstantSpeed, Element, Ratio, Rotor
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import Joint
+from trunnion.driveline.planetary import Planetary
 from trunnion.driveline.shafts import Shaft
 from trunnion.driveline.stages import PiecewiseShaft
+from trunnion.driveline.vehicle import Tyre
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.loads import drive_places
 from trunnion.equations.steady_base import has_joint_angles
@@ -20,7 +24,10 @@ from trunnion.floquet.certificate.box_coefficients import ANGLE, NumberRange, st
 from trunnion.floquet.certificate.own_stages import stage_obstacle
 from trunnion.floquet.tolerance.spread import Spread
 
-ENCLOSED = (ConstantSpeed, Coupling, GearPair, Joint, PiecewiseShaft, Ratio, Rotor, Shaft)
+ENCLOSED = (
+    Belt, ConstantSpeed, Coupling, GearPair, Joint, PiecewiseShaft, Planetary, Ratio, Rotor, Shaft, TunedDamper, Tyre,
+    ViscousDamper,
+)  # fmt: skip
 """Elements whose equations of motion are written out."""
 SAME_SHARE = 1e-12
 """By how much shares of the torque that drives may differ."""
@@ -72,6 +79,8 @@ def _obstacle(element: Element) -> str:
         return "a torque along a curve is not enclosed; state its tangent, a viscous_load or quadratic_load"
     if isinstance(element, Coupling) and element.torques:
         return "a stiffness over the torque is not enclosed"
+    if isinstance(element, ViscousDamper) and element.oil:
+        return "an oil whose stiffness goes with the frequency is not enclosed"
     return ""
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.joints import HookeJoint
+from trunnion.driveline.pendulums import CentrifugalPendulum
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
 from trunnion.errors import InputError
@@ -175,10 +176,13 @@ def _require_even(assembly: Assembly, speeds: Array) -> None:
         beyond = np.ptp(part, axis=0) - 10 * STATED * size.max(axis=0)
         worst = int(beyond.argmax()) if beyond.size else 0
         if beyond.size and beyond[worst] > 0:
+            at = element(worst)
+            pendulum = isinstance(assembly.line.elements[at], CentrifugalPendulum)
+            remedy = "leave it out" if pendulum else "state its tangent, a viscous_load or quadratic_load"
             raise InputError(
                 "goes with the speed along a curve of its own, which a certificate over a range of speeds does not "
-                "enclose", element=assembly.line.names[element(worst)], value=float(part[0, worst]),
-                remedy="state its tangent, a viscous_load or quadratic_load",
+                "enclose", element=assembly.line.names[at], value=float(part[0, worst]),
+                remedy=f"{remedy}, or ask stability() at single speeds",
             )  # fmt: skip
 
 
