@@ -57,3 +57,11 @@ def test_of_many_peaks_that_are_all_but_equal_the_highest_is_found() -> None:
         x = x + np.pi / 48
         slow = (amplitude[:, None, :2] * np.exp(1j * index[:2] * x[..., None])).real.sum(axis=2)
         assert low == pytest.approx(-1 + slow.min(axis=1), abs=size**2)
+
+
+def test_flat_tops_are_climbed_to_the_end() -> None:
+    """cos x − a cos 2x, whose top is all but flat near a = 1/4, reaches a + 1/(8a) from there on."""
+    flat = 0.25 * (1 + 10.0 ** -np.arange(0, 12, 0.25))
+    turned = np.exp(1j * np.outer(np.linspace(0, 1, len(flat)), [1, 2]))
+    high = cycle_extremes(np.array([1, 2]), np.stack([np.ones_like(flat), -flat], axis=1) * turned)[1]
+    assert high == pytest.approx(flat + 1 / (8 * flat), abs=1e-12)

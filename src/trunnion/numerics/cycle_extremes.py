@@ -8,16 +8,19 @@ harmonics' amplitudes, ranks them, and the STARTS best are followed to their pea
 
 from __future__ import annotations
 
+from math import ceil, log2
+
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Integers, Places
 
 SAMPLES = 16
-NEWTON_STEPS = 2
+NEWTON_STEPS, SETTLED = 12, 1e-6
+"""Steps at most, as a flat top takes many, and the share of the samples' distance by which a settled one moves."""
 PARABOLA = 4e-4
 """More than twice the error of a parabola's top, over the sum of amplitudes."""
-MOST_SAMPLES = 2_000_000
-"""Held at a time."""
+MOST_SAMPLES = 1 << 16
+"""Held at a time, as many as a processor keeps near."""
 SHARE = 1e-14
 """Harmonics of less than this share of a row's sum of amplitudes are rounding and set no sampling rate."""
 
@@ -47,13 +50,19 @@ def _both(index: Integers, amplitude: Complex) -> tuple[Array, Array]:
     if top == 0:
         level = amplitude.real.sum(axis=1)
         return level, level
-    count = 1 << int(np.ceil(np.log2(SAMPLES * top)))
+    count = _fast_length(SAMPLES * top)
     spectrum = np.zeros((len(amplitude), count // 2 + 1), dtype=complex)
     spectrum[:, index] = amplitude
     spectrum[:, 1:] /= 2
     spectrum[:, 0] = spectrum[:, 0].real
     f = np.fft.irfft(spectrum, count, norm="forward")
     return -_highest(index, -amplitude, -f), _highest(index, amplitude, f)
+
+
+def _fast_length(least: int) -> int:
+    """The smallest even number with no other factors than 2, 3 and 5 that is not below ``least``."""
+    powers = (2 * 3**b * 5**c for b in range(7) for c in range(5))
+    return min(odd << max(0, ceil(log2(least / odd))) for odd in powers)
 
 
 def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
@@ -74,12 +83,17 @@ def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
     chosen = _best(row, here + rise, PARABOLA * sizes.sum(axis=1))
     row, x = row[chosen], (place + shift)[chosen] * step
     a = amplitude[row]
+    moving = np.arange(len(x))
     for _ in range(NEWTON_STEPS):
-        wave = a * np.exp(1j * index * x[:, None])
+        wave = a[moving] * np.exp(1j * index * x[moving, None])
         rate = -(index * wave.imag).sum(axis=1)
         curve = -(index**2 * wave.real).sum(axis=1)
-        move = np.divide(-rate, curve, out=np.zeros_like(x), where=curve < 0)
-        x = x + np.clip(move, -step, step)
+        # Between two tops that stand closer than samples: up to one of them first.
+        move = np.divide(-rate, curve, out=np.copysign(step / 4, rate), where=curve < 0)
+        x[moving] += np.clip(move, -step, step)
+        moving = moving[np.abs(move) > SETTLED * step]
+        if not len(moving):
+            break
     np.maximum.at(highest, row, (a * np.exp(1j * index * x[:, None])).real.sum(axis=1))
     return np.asarray(highest)
 
