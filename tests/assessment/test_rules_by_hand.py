@@ -217,7 +217,7 @@ def test_alloyed_steel_counts_to_800_in_intermediate_shafts_only():
     assert one.limit == pytest.approx(960 / 760 * at[0], rel=1e-4)
     assert plain.limit == pytest.approx(at[1], rel=1e-4)
     propeller = tn.assess(ship(1e3, "propeller shaft", **steel)).check("IACS UR M68 of shaft")
-    assert "σ_B = 600 N/mm²" in propeller.inputs
+    assert "σ_B = 600 MPa" in propeller.inputs
 
 
 def test_no_range_is_barred_near_the_rated_speed():
@@ -228,6 +228,18 @@ def test_no_range_is_barred_near_the_rated_speed():
     assert passing.status is Status.EXCEEDED and "no barred range at λ ≥ 0.8" in passing.because
     ratio = passing.speed / tn.rpm(150)
     assert ratio >= 0.8 and passing.limit == pytest.approx(760 / 18 * 0.67231 * (3 - 2 * ratio**2) * 1e6, rel=1e-4)
+
+
+def test_a_limit_that_jumps_leaves_no_doubt_of_the_value_there():
+    """The stress just at λ = 0.8, where the limit of passing falls to that of steady operation, is known closely."""
+    line = ship(24e3, "propeller shaft")
+    operation = tn.Operation(speed=tn.rpm(170), speed_range=[tn.rpm(40), tn.rpm(173)])
+    passing = tn.assess(line.model_copy(update={"operation": operation})).check("IACS UR M68 of shaft, passing")
+    at = 0.8 * tn.rpm(170)
+    assert passing.speed == pytest.approx(at, rel=1e-9)
+    assert passing.value / 1e6 == pytest.approx(float(stress_by_hand(24e3, at)), rel=1e-6)
+    assert passing.limit / 1e6 == pytest.approx(760 / 18 * 0.55 * 0.67231 * (3 - 2 * 0.64), rel=1e-4)
+    assert passing.error < 1e-5 * passing.value and "may be" not in passing.because
 
 
 def test_numbers_stand_beside_each_other_in_one_unit():

@@ -32,6 +32,9 @@ OF_LIMITS = (
 OF_DISKS = ("max_speed_fluctuation", "max_acceleration")
 HIGHEST, NO_BAR, STEADY = 1.05, 0.8, 0.9
 """λ up to which the rule for ship shafts goes, from which no range may be barred, from which its limit is constant."""
+ROUNDING, EDGE = 1e-9, 1e-12
+"""By how much λ may lie above the highest and count as it, and how far beside a jump of a limit its two sides are
+taken, as a share."""
 ALLOYED = ("42CrMo4", "34CrNiMo6")
 
 Values = Callable[[OrderResponse], Array]
@@ -73,7 +76,16 @@ class Measure:
             with np.errstate(divide="ignore", invalid="ignore"):
                 return np.asarray(self.parts(response) / (np.sqrt(limit) if self.squared else limit))
 
-        return SearchedQuantity(self.shares, parts, self.squared, 1 - self.margin if self.bars else inf)
+        level = 1 - self.margin if self.bars else inf
+        return SearchedQuantity(self.shares, parts, self.squared, level, self._alike)
+
+    @property
+    def _alike(self) -> tuple[int, float] | None:
+        """The spring whose torque by order makes up the shares, and the factor; None where more goes into them."""
+        of, limit = self.parts, self.limit
+        if self.squared or not isinstance(of, _TorqueParts) or not isinstance(limit, _Constant):
+            return None
+        return (of.spring, of.scale / limit.value) if 0 < limit.value < inf and of.scale > 0 else None
 
 
 def measures(assembly: Assembly) -> Iterator[Measure]:
@@ -103,12 +115,25 @@ def name_of(limit: OneLimit) -> str:
     return f"{limit.key.replace('_', ' ')} of {limit.element}"
 
 
-def _constant(limit: float) -> Values:
-    return lambda response: np.full(len(response.speed), limit)
+@dataclass(frozen=True)
+class _Constant:
+    """The same limit at all speeds."""
+
+    value: float
+
+    def __call__(self, response: OrderResponse) -> Array:
+        return np.full(len(response.speed), self.value)
 
 
-def _of_spring(c: int, scale: float = 1.0) -> Parts:
-    return lambda response: response.torque[:, :, c] * scale
+@dataclass(frozen=True)
+class _TorqueParts:
+    """Amplitudes by order of the torque of a ``spring``, or of what is in proportion to it."""
+
+    spring: int
+    scale: float = 1.0
+
+    def __call__(self, response: OrderResponse) -> Complex:
+        return np.asarray(response.torque[:, :, self.spring] * self.scale)
 
 
 def of_limit(assembly: Assembly, limit: OneLimit, table: Array | None = None) -> Measure | None:
@@ -119,7 +144,7 @@ def of_limit(assembly: Assembly, limit: OneLimit, table: Array | None = None) ->
         return None
     bars = limit.key == "vibratory_torque"
     return Measure(
-        name_of(limit), limit.element, values, _constant(limit.value), parts, margin=limit.margin, bars=bars
+        name_of(limit), limit.element, values, _Constant(limit.value), parts, margin=limit.margin, bars=bars
     )  # fmt: skip
 
 
@@ -130,7 +155,7 @@ def limited(assembly: Assembly, limit: OneLimit, table: Array) -> tuple[Values, 
     c, *others = springs_of(assembly, limit.element)
     if limit.key in ("vibratory_torque", "transient_vibratory_torque", "max_torque"):
         of = _peak if limit.key == "max_torque" else _vibratory
-        return _of_either((c, *others), of) if others else (partial(of, c=c), _of_spring(c))
+        return _of_either((c, *others), of) if others else (partial(of, c=c), _TorqueParts(c))
     if limit.key == "max_stress":
         factor = _stress_factors(assembly, table, limit.element)
         return (
@@ -203,7 +228,7 @@ def of_rating(assembly: Assembly, name: str, key: str, rating: float) -> Measure
         "nominal_torque": (lambda r: np.abs(r.mean_torque[:, c]) * temperature, lambda r: 0 * r.torque[:, :, c]),
         "maximum_torque": (
             lambda r: r.peak_torque[:, c] * (temperature * starting),
-            _of_spring(c, temperature * starting),
+            _TorqueParts(c, temperature * starting),
         ),
         "vibratory_torque": (
             lambda r: r.rated_torque[:, c],
@@ -236,7 +261,7 @@ def rating_words(key: str) -> str:
 
 
 def _with_limit(read: tuple[Values, Parts], limit: float) -> tuple[Values, Values, Parts]:
-    return read[0], _constant(limit), read[1]
+    return read[0], _Constant(limit), read[1]
 
 
 def of_hammer(assembly: Assembly, name: str) -> Measure:
@@ -245,7 +270,7 @@ def of_hammer(assembly: Assembly, name: str) -> Measure:
     return Measure(
         f"gear hammer in {name}", name,
         partial(_vibratory, c=c), lambda response: np.abs(response.mean_torque[:, c]),
-        _of_spring(c), margin=required_of(assembly, name), bars=True,
+        _TorqueParts(c), margin=required_of(assembly, name), bars=True,
     )  # fmt: skip
 
 
@@ -255,12 +280,12 @@ def of_slip_clutch(assembly: Assembly, name: str) -> Measure | None:
     if found is None:
         return None
     margin = required_of(assembly, name)
-    return Measure(f"capacity of {name}", name, found.peak, _constant(found.holds), found.parts, margin=margin)
+    return Measure(f"capacity of {name}", name, found.peak, _Constant(found.holds), found.parts, margin=margin)
 
 
 @dataclass(frozen=True)
 class ShipShaft:
-    """The numbers that the rule for ship shafts takes of one shaft: σ_B as it counts [N/mm²], d [mm], C_K, τ/T [1/m³],
+    """The numbers that the rule for ship shafts takes of one shaft: σ_B as it counts [MPa], d [mm], C_K, τ/T [1/m³],
     and the rated speed [rad/s]."""
 
     strength: float
@@ -273,7 +298,7 @@ class ShipShaft:
         """±τ_C (speed,) [Pa]; no limit beyond the rule's scope."""
         ratio = speed / self.rated
         allowed = [permissible_stress(self.strength, self.diameter, self.factor, float(one)) for one in ratio]
-        return np.where(ratio <= HIGHEST + 1e-9, 1e6 * np.array(allowed), inf)
+        return np.where(ratio <= HIGHEST + ROUNDING, 1e6 * np.array(allowed), inf)
 
     def transient(self, speed: Array) -> Array:
         """±τ_T (speed,) [Pa], where no bar is allowed ±τ_C."""
@@ -298,7 +323,7 @@ def ship_shaft(assembly: Assembly, name: str, feature: str) -> ShipShaft | None:
 
 
 def permissible_stress(strength: float, diameter: float, feature: float, ratio: float) -> float:
-    """±τ_C [N/mm²] of σ_B [N/mm²] (as it counts), diameter [mm], C_K and λ."""
+    """±τ_C [MPa] of σ_B [MPa] (as it counts), diameter [mm], C_K and λ."""
     size = 0.35 + 0.93 * diameter**-0.2
     return (strength + 160) / 18 * feature * size * (3 - 2 * ratio**2 if ratio < STEADY else 1.38)
 
@@ -308,11 +333,12 @@ def of_ship_shaft(assembly: Assembly, name: str, feature: str) -> Iterator[Measu
     numbers = ship_shaft(assembly, name, feature)
     if numbers is None:
         return
-    c, cuts = spring_of(assembly, name), tuple(share * numbers.rated for share in (NO_BAR, STEADY, HIGHEST))
+    jumps = (NO_BAR, STEADY, HIGHEST + ROUNDING)
+    c, cuts = spring_of(assembly, name), tuple(n * numbers.rated * (1 + s * EDGE) for n in jumps for s in (-1, 1))
     title, stress = ship_name(name), partial(_vibratory, c=c, scale=numbers.per_torque)
     for end, limit, bars in (("", numbers.continuous, True), (", passing", numbers.transient, False)):
         yield Measure(
-            title + end, name, stress, partial(_by_speed, limit), _of_spring(c, numbers.per_torque),
+            title + end, name, stress, partial(_by_speed, limit), _TorqueParts(c, numbers.per_torque),
             margin=required_of(assembly, name), bars=bars, cuts=cuts,
         )  # fmt: skip
 
@@ -338,7 +364,7 @@ def torque_measures(assembly: Assembly, asked: tuple[tuple[str, int], ...]) -> I
     """The "peak" or "vibratory" torque of springs by their numbers, without a limit."""
     for word, c in asked:
         values = partial(_peak if word == "peak" else _vibratory, c=c)
-        yield Measure(torque_name(word, c), "", values, _constant(1.0), _of_spring(c))
+        yield Measure(torque_name(word, c), "", values, _Constant(1.0), _TorqueParts(c))
 
 
 def torque_name(word: str, spring: int) -> str:

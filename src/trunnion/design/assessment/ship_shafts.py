@@ -1,13 +1,13 @@
 """Ship shafting by IACS UR M68, in form: for shafts whose limit names a design feature (``ship_shaft = "flange"``).
 
     λ = n/n₀            n₀ the operating speed of the description
-    ±τ_C = (σ_B + 160)/18 · C_K C_D (3 − 2λ²)   for λ < 0.9     [N/mm²]
+    ±τ_C = (σ_B + 160)/18 · C_K C_D (3 − 2λ²)   for λ < 0.9     [MPa]
     ±τ_C = (σ_B + 160)/18 · C_K C_D · 1.38      for 0.9 ≤ λ ≤ 1.05
     ±τ_T = 1.7 τ_C/√C_K         in a barred range that is passed quickly
     C_D = 0.35 + 0.93 d^(−0.2), d in mm
     barred about n_c: from 16 n_c/(18 − λ_c) to (18 − λ_c) n_c/16; none at λ ≥ 0.8
 
-σ_B counts up to 600 N/mm², 800 for alloyed steel of intermediate shafts. Out of scope: shafts inside gearboxes, of
+σ_B counts up to 600 MPa, 800 for alloyed steel of intermediate shafts. Out of scope: shafts inside gearboxes, of
 motors and generators, crankshafts, ice.
 """
 
@@ -75,7 +75,7 @@ def _one(subject: AssessmentInput, case: LoadCaseResponse, name: str, feature: s
         by_order[inside], inside,
     )  # fmt: skip
     inputs = (
-        f"σ_B = {numbers.strength:g} N/mm², d = {numbers.diameter:g} mm, C_K = {numbers.factor:g} ({feature}), "
+        f"σ_B = {numbers.strength:g} MPa, d = {numbers.diameter:g} mm, C_K = {numbers.factor:g} ({feature}), "
         f"n₀ = {subject.shown(numbers.rated)}"
     )
     barred = tuple(_range(speeds, stress / found.limits[inside], ends, numbers.rated) for ends in exceeded)
@@ -96,7 +96,7 @@ def _one(subject: AssessmentInput, case: LoadCaseResponse, name: str, feature: s
 def _words(found: LargestShare) -> str:
     if not np.isfinite(found.value):
         return ""
-    return f"±{found.value / 1e6:.4g} N/mm² against ±{found.limit / 1e6:.4g} N/mm²"
+    return f"±{found.value / 1e6:.4g} MPa against ±{found.limit / 1e6:.4g} MPa"
 
 
 def _range(speeds: Array, share: Array, ends: tuple[float, float], rated: float) -> tuple[float, float]:

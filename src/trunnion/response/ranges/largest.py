@@ -15,14 +15,14 @@ where one takes over from another: it bends upwards there, so tops are smooth.
 from __future__ import annotations
 
 from bisect import bisect
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass, fields, replace
 from itertools import pairwise
 from math import inf
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Flags, Integers
+from trunnion.arrays import Array, Complex, Flags, Integers, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.ranges.resonances import Resonances
 from trunnion.floquet.ranges.span import SmoothRange
@@ -60,6 +60,8 @@ SHARPENING, SHARP = 12, 1e-8
 """Rounds in which the speed of a top is located, and how closely, as a share."""
 PASSED = 1e-6
 """How closely the speeds are located at which a level is passed, as a share."""
+BRACKET = 0.05
+"""Share of the distance of two speeds within which their chord is trusted to pass a level."""
 NEXT, ROUNDING = 0.1, 1e-12
 """Shares of the width of a top, and of a speed, nearer than which two speeds count as one."""
 
@@ -69,13 +71,15 @@ class SearchedQuantity:
     """What is largest somewhere: ``values`` (speed,), and amplitudes by order (speed, order) that make them up.
 
     ``squared``: values are the sum of squares of the amplitudes, as of heat; else of no more than their sum. ``level``:
-    where values rise above it counts as well, everywhere.
+    where values rise above it counts as well, everywhere. ``alike``: a name for the amplitudes and a factor; those of
+    quantities with the same name are the same but for their factors.
     """
 
     values: Callable[[OrderResponse], Array]
     parts: Callable[[OrderResponse], Complex]
     squared: bool = False
     level: float = inf
+    alike: tuple[Hashable, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -110,26 +114,70 @@ class PossiblePeaks:
 
 @dataclass(frozen=True)
 class Poles:
-    """Resonances that stand between three neighbours, worth a look or not: ``peaks`` (place,), the ``middle`` of the
-    three (place,) [rad/s], and the larger of the values beside (place,)."""
+    """Resonances of some amplitudes that stand between three neighbours, and how high each order is there and beside,
+    the speeds known by then: ``at`` (pole,) [rad/s], the ``middle`` of the three (pole,) [rad/s], the ``order`` (pole,)
+    by its column, its amplitude ``there`` (pole,), and the half-``width`` (pole,) [rad/s]."""
 
-    peaks: PossiblePeaks
+    at: Array
     middle: Array
-    beside: Array
+    order: Integers
+    there: Array
+    width: Array
 
     def of(self, which: Flags | Integers) -> Poles:
         """Some of them."""
-        return Poles(self.peaks.of(which), self.middle[which], self.beside[which])
+        return Poles(*(getattr(self, one.name)[which] for one in fields(self)))
 
-    def beyond(self, wanted: SearchAim) -> PossiblePeaks:
-        """Those that are worth a look."""
-        return self.peaks.of(wanted.by(self.peaks.height, self.beside))
+    def with_others(self, others: Poles) -> Poles:
+        """All of both, in the order of their neighbours."""
+        every = Poles(*(np.concatenate([getattr(o, one.name) for o in (self, others)]) for one in fields(self)))
+        return every.of(np.argsort(every.middle, kind="stable"))
+
+    def seen_from(self, x: Array, f: Complex) -> SeenPoles:
+        """Beside the amplitudes ``f`` (speed, order) at speeds ``x`` (speed,); without those that were looked at."""
+        place = np.clip(np.searchsorted(x, self.at), 1, len(x) - 1)
+        low, high = x[place - 1], x[place]
+        share = (self.at - low) / (high - low)
+        unseen = np.flatnonzero(np.minimum(np.abs(self.at - low), np.abs(high - self.at)) > SEEN * self.width)
+        here = (1 - share) * np.abs(f[place - 1, self.order]) + share * np.abs(f[place, self.order])
+        scale = np.minimum(self.width, high - low)
+        return SeenPoles(self.at, place, share, self.there, here, scale).of(unseen)
+
+
+@dataclass(frozen=True)
+class SeenPoles:
+    """Resonances ``at`` (pole,) [rad/s], each between the speeds at ``place`` - 1 and ``place``, at this ``share`` of
+    the way; the amplitude ``there`` and what the speeds beside it show ``here``; ``scale`` (pole,) [rad/s]: how wide
+    the top is."""
+
+    at: Array
+    place: Places
+    share: Array
+    there: Array
+    here: Array
+    scale: Array
+
+    def of(self, which: Flags | Integers) -> SeenPoles:
+        """Some of them."""
+        return SeenPoles(*(getattr(self, one.name)[which] for one in fields(self)))
+
+    def worth_a_look(self, v: Array, wanted: SearchAim, factor: float, *, squared: bool) -> PossiblePeaks:
+        """Of a quantity with values ``v`` (speed,), whose amplitudes are those of the resonances times a factor."""
+        there, here = self.there, self.here
+        gain = factor * np.maximum(there**2 - here**2 if squared else there - here, 0.0)
+        before, behind = v[self.place - 1], v[self.place]
+        height = (1 - self.share) * before + self.share * behind + CAUTION * gain
+        good = wanted.by(height, np.maximum(before, behind))
+        return PossiblePeaks(self.at[good], height[good], self.scale[good])
 
 
 def _together(parts: Sequence[PossiblePeaks]) -> PossiblePeaks:
+    some = [part for part in parts if len(part.speed)]
+    if len(some) == 1:
+        return some[0]
     none = np.zeros(0)
     return PossiblePeaks(
-        *(np.concatenate([none, *(getattr(part, key) for part in parts)]) for key in ("speed", "height", "scale"))
+        *(np.concatenate([none, *(getattr(part, key) for part in some)]) for key in ("speed", "height", "scale"))
     )
 
 
@@ -211,8 +259,10 @@ class _SearchedRanges:
         self.piece = np.zeros(0, dtype=np.intp)
         self.looks = 0
         self.look_of = np.zeros(0, dtype=np.intp)  # the look (speed,) in which each was new
-        self.poles: dict[tuple[int, int], tuple[int, Poles]] = {}  # by quantity and piece, as after a look
+        # By amplitudes and piece, as after a look.
+        self.poles: dict[tuple[Hashable, int], tuple[int, Poles, SeenPoles]] = {}
         self.parabolas: dict[int, tuple[int, Parabolas]] = {}  # by piece, as after a look
+        self.parts: tuple[int, int, Complex] = (0, -1, np.zeros((0, 0), dtype=complex))  # after a look, of a quantity
 
     def look(self, wanted: Sequence[Array], known: OrderResponse | None = None) -> None:
         """Take in the speeds ``wanted`` of each piece, where they are ``known`` as they are."""
@@ -264,12 +314,23 @@ class _SearchedRanges:
         return [q for q, quantity in enumerate(self.quantities) if np.isfinite(quantity.level)]
 
     def _passes(self, q: int, run: slice, passed: float) -> PossiblePeaks:
-        """Middles between neighbours of which one lies above the level and the other does not."""
+        """On either side of where a chord passes the level between neighbours that it lies between, and in their middle
+        where that is elsewhere."""
         assert self.response is not None
         x, v = self.response.speed[run], self.values[run, q]
         above = ~(v <= self.quantities[q].level)
         here = np.flatnonzero((above[1:] != above[:-1]) & (x[1:] - x[:-1] > passed * x[1:]))
-        return PossiblePeaks((x[here] + x[here + 1]) / 2, np.ones(len(here)), x[here + 1] - x[here])
+        wide, low, high = x[here + 1] - x[here], v[here], v[here + 1]
+        with np.errstate(invalid="ignore"):
+            share = (self.quantities[q].level - low) / (high - low)
+        known = np.isfinite(low) & np.isfinite(high)  # else the middle
+        reach = np.maximum(BRACKET * wide, passed * x[here] / 3)
+        middle, chord = x[here] + wide / 2, x[here] + wide * np.where(known, share, 0.5)
+        apart = np.abs(middle - chord) > reach
+        wanted = np.concatenate([chord - reach, chord + reach, middle])
+        inside = (wanted > np.tile(x[here], 3)) & (wanted < np.tile(x[here + 1], 3))
+        inside[2 * len(here) :] &= apart
+        return PossiblePeaks(wanted, np.ones(len(wanted)), np.tile(reach, 3)).of(inside)
 
     def _top(self, q: int) -> float:
         column = self.values[:, q]
@@ -279,8 +340,6 @@ class _SearchedRanges:
         """Where quantity ``q`` may rise above its ``top``, by piece."""
         assert self.response is not None
         aim = SearchAim(top * (1 + tolerance / 4), self.quantities[q].level)
-        parts = self.quantities[q].parts(self.response)
-        parts = parts if np.all(np.isfinite(parts)) else np.nan_to_num(parts)
         found = []
         for k, run in enumerate(self._runs):
             x, v = self.response.speed[run], self.values[run, q]
@@ -288,7 +347,7 @@ class _SearchedRanges:
                 found.append(_together([]))
                 continue
             tops = self._parabolas(k, run).tops(x, v, q, aim)
-            found.append(_together([tops, *_ends(x, v, aim), self._resonances(q, k, run, parts).beyond(aim)]))
+            found.append(_together([tops, *_ends(x, v, aim), self._resonances(q, k, run, v, aim)]))
         return found
 
     def _parabolas(self, k: int, run: slice) -> Parabolas:
@@ -300,23 +359,36 @@ class _SearchedRanges:
             self.parabolas[k] = self.looks, kept
         return kept
 
-    def _resonances(self, q: int, k: int, run: slice, parts: Complex) -> Poles:
-        """Of quantity ``q`` in piece ``k``; those are kept about which no speed is new."""
+    def _resonances(self, q: int, k: int, run: slice, v: Array, aim: SearchAim) -> PossiblePeaks:
+        """Of quantity ``q``, ``v`` (speed,) in piece ``k``."""
+        quantity = self.quantities[q]
+        name, factor = quantity.alike or ((q,), 1.0)
+        look, known, seen = self.poles.get((name, k), (0, None, None))
+        if seen is None or look < self.looks and (self.look_of[run] > look).any():
+            known, seen = self._poles(q, run, look, known, factor)
+        assert known is not None
+        self.poles[name, k] = self.looks, known, seen
+        return seen.worth_a_look(v, aim, factor, squared=quantity.squared)
+
+    def _poles(self, q: int, run: slice, look: int, kept: Poles | None, factor: float) -> tuple[Poles, SeenPoles]:
+        """Of the amplitudes of quantity ``q`` in a piece; those are kept about which no speed is new since a look."""
         assert self.response is not None
-        look, kept = self.poles.get((q, k), (0, None))
-        x, v = self.response.speed[run], self.values[run, q]
-        new = self.look_of[run] > look
-        if kept is not None and not new.any():
-            return kept
-        about = _beside(new)
-        found = _poles(x, v, parts[run], np.flatnonzero(about) + 1, self.quantities[q].squared)
+        x, f = self.response.speed[run], self._parts(q)[run] / factor
+        about = _beside(self.look_of[run] > look)
+        found = _poles(x, f, np.flatnonzero(about) + 1)
         if kept is not None:
-            same = kept.of(~about[np.searchsorted(x, kept.middle) - 1])
-            peaks = _together([same.peaks, found.peaks])
-            middle, beside = (np.concatenate([getattr(o, key) for o in (same, found)]) for key in ("middle", "beside"))
-            found = Poles(peaks, middle, beside).of(np.argsort(middle, kind="stable"))
-        self.poles[q, k] = self.looks, found
-        return found
+            found = kept.of(~about[np.searchsorted(x, kept.middle) - 1]).with_others(found)
+        return found, found.seen_from(x, f)
+
+    def _parts(self, q: int) -> Complex:
+        """Amplitudes (speed, order) of quantity ``q``, those of the last that was asked for kept."""
+        look, of, parts = self.parts
+        if look != self.looks or of != q:
+            assert self.response is not None
+            parts = self.quantities[q].parts(self.response)
+            parts = parts if np.all(np.isfinite(parts)) else np.nan_to_num(parts)
+            self.parts = self.looks, q, parts
+        return parts
 
     def _apart(self, wanted: PossiblePeaks, run: slice) -> Array:
         """Speeds that are not next to each other, nor to known ones: of several at one top the highest."""
@@ -383,11 +455,12 @@ def _beside(new: Flags) -> Flags:
 @dataclass(frozen=True)
 class Parabolas:
     """Through every three neighbours, of every quantity (inner place, quantity): where their tops are, how high these
-    may be, NaN without one, and the largest of the three values."""
+    may be, NaN without one, and the largest of the three values; ``highest`` (quantity,) of all that they may be."""
 
     where: Array
     above: Array
     known: Array
+    highest: Array
 
     @classmethod
     def of(cls, x: Array, v: Array) -> Parabolas:
@@ -397,11 +470,14 @@ class Parabolas:
             where, height, fall = parabola(x[:, None], v, np.arange(1, len(x) - 1))
             above = height + np.where(fall > FLAT * height, BEND * fall, 0.0)
         above[~(finite[:-2] & finite[1:-1] & finite[2:])] = np.nan
-        return cls(where, above, np.maximum(np.maximum(v[:-2], v[1:-1]), v[2:]))
+        highest = np.where(np.isnan(above), -inf, above).max(axis=0, initial=-inf)
+        return cls(where, above, np.maximum(np.maximum(v[:-2], v[1:-1]), v[2:]), highest)
 
     def tops(self, x: Array, v: Array, q: int, wanted: SearchAim) -> PossiblePeaks:
         """Places to look at for tops of quantity ``q`` that may be the largest: those of parabolas, and between them
         and their neighbours where these lie too far below."""
+        if not self.highest[q] > min(wanted.more, wanted.level):
+            return _together([])
         inner = np.flatnonzero(wanted.by(self.above[:, q], self.known[:, q])) + 1
         if not len(inner):
             return _together([])
@@ -429,14 +505,12 @@ def _ends(x: Array, v: Array, wanted: SearchAim) -> list[PossiblePeaks]:
     return found
 
 
-def _poles(x: Array, v: Array, f: Complex, middles: Integers, squared: bool) -> Poles:
-    """Resonances that stand between the neighbours of ``middles`` (index into speeds), and how high the sum may be
-    there; ``f`` (speed, order)."""
+def _poles(x: Array, f: Complex, middles: Integers) -> Poles:
+    """Resonances of amplitudes ``f`` (speed, order) between the neighbours of ``middles`` (index into speeds)."""
     i = middles
     x0, x1, x2 = x[i - 1, None], x[i, None], x[i + 1, None]
     f0, f1, f2 = f[i - 1], f[i], f[i + 1]
     first = (f1 - f0) / (x1 - x0)
-
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         bend = ((f2 - f1) / (x2 - x1) - first) / (x2 - x0)
         g0, g1, g2 = x0 * f0, x1 * f1, x2 * f2
@@ -448,15 +522,7 @@ def _poles(x: Array, v: Array, f: Complex, middles: Integers, squared: bool) -> 
     with np.errstate(invalid="ignore"):
         near: Flags = np.isfinite(there) & (at > low) & (at < high)
     m, k = np.nonzero(near)
-    at, there, width = at[m, k], there[m, k], np.abs(pole.imag[m, k])
-    place = np.clip(np.searchsorted(x, at), 1, len(x) - 1)
-    unseen: Flags = np.minimum(np.abs(at - x[place - 1]), np.abs(x[place] - at)) > SEEN * width
-    share = (at - x[place - 1]) / (x[place] - x[place - 1])
-    here = (1 - share) * np.abs(f[place - 1, k]) + share * np.abs(f[place, k])
-    gain = np.maximum(there**2 - here**2 if squared else there - here, 0.0)
-    rises = (1 - share) * v[place - 1] + share * v[place] + CAUTION * gain
-    scale = np.minimum(width, x[place] - x[place - 1])
-    return Poles(PossiblePeaks(at, rises, scale), x[i][m], np.maximum(v[place - 1], v[place])).of(unseen)
+    return Poles(at[m, k], x[i][m], k, there[m, k], np.abs(pole.imag[m, k]))
 
 
 def sharpened(
