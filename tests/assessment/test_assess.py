@@ -96,6 +96,7 @@ def test_without_limits_nothing_is_satisfied():
     assert found.verdict is Status.NOT_JUDGED
     assert found.check("torque without limit").status is Status.NOT_JUDGED
     assert found.check("separation of mode 2").status is Status.EXCEEDED  # which decides nothing here
+    assert found.check("separation of mode 2").margin_word == "met in the range"
     assert found.sentence.startswith("not judged")
 
 

@@ -145,6 +145,7 @@ def _page(contents: SubmissionContents, shown: Mapping[str, ReportPicture], sour
         "rules": tables.rules(contents),
         "left_out": contents.left_out,
         "unsearched": contents.unsearched,
+        "cylinder_cases": len(contents.misfiring) + len(contents.unsearched),
         "complete": contents.complete,
         "all_searched": contents.complete and not any(one.ended for one in contents.misfiring),
         "met": contents.campbell is not None,

@@ -16,6 +16,7 @@ from trunnion.design.assessment.assessment_input import LoadCaseResponse, with_t
 from trunnion.design.assessment.check import Check, worst
 from trunnion.design.assessment.deciding import weighed
 from trunnion.design.assessment.measures import torque_measures
+from trunnion.design.assessment.other_excitations import with_other_excitations
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.silent_cylinders import SILENT, Cylinder, cylinders
@@ -24,6 +25,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.modes.mass_elastic import HolzerTable, holzer
 from trunnion.reporting.overview_assessment import OverviewAssessment
 from trunnion.response.campbell_diagram import CampbellDiagram, campbell_diagram
+from trunnion.results.counts import listed
 from trunnion.waiting import OutOfTime, keep_time
 
 Found = TypeVar("Found")
@@ -31,6 +33,8 @@ MOST_MODES = 8
 """Modes of which a Holzer table is printed."""
 POWERS = 9
 """Speeds at which torque and power are stated."""
+ALIKE = 1e-9
+"""Share by which the largest values of two load cases may differ and count as the same."""
 WORDS = ("vibratory", "peak")
 """Torques that are searched of every spring."""
 
@@ -241,13 +245,14 @@ def _shaft(cases: tuple[LoadCaseResponse, ...], spring: int, name: str) -> Shaft
 
 
 def _largest(cases: Iterable[LoadCaseResponse], word: str, spring: int) -> LargestTorque:
-    """Of all cases; infinite where a steady state is missing."""
+    """Of all cases, the first of those that are alike; infinite where a steady state is missing."""
     tops = []
     for case in cases:
         (measure,) = torque_measures(case.assembly, ((word, spring),))
         found = case.largest(measure)
         tops.append(LargestTorque(found.value, float(case.speeds[found.at]), case.name, found.error))
-    return max(tops, key=lambda top: top.value)
+    most = max(top.value for top in tops)
+    return next(top for top in tops if top.value >= most * (1 - ALIKE))
 
 
 def _all_firing(seen: OverviewAssessment, cases: tuple[LoadCaseResponse, ...]) -> tuple[LoadCaseResponse, ...]:
@@ -285,7 +290,8 @@ def _malfunctions(
 ) -> tuple[tuple[Malfunction, ...], tuple[str, ...]]:
     """Every cylinder out of work in turn, each searched by itself: other orders lead then, at other speeds. Also those
     of which nothing is known, as where a time limit ended it before."""
-    found, unsearched = [], []
+    found: list[Malfunction] = []
+    unsearched: dict[str, list[str]] = {}  # by reason
     for key, one in _out_of_work(seen):
         called = one.owner if one.alone else f"cylinder {one.number} of {one.owner}"
         try:
@@ -295,13 +301,12 @@ def _malfunctions(
             done.begin(f"{called}, {SILENT[key]}")
             found.append(_malfunction(seen, firing, key, one, called))
         except (InputError, ComputationError) as error:
-            unsearched.append(f"{called}, {SILENT[key]}")
-            left_out.append(f"Malfunction, {unsearched[-1]}: {error}")
+            unsearched.setdefault(str(error), []).append(f"{called}, {SILENT[key]}")
         except OutOfTime as error:
-            unsearched.append(f"{called}, {SILENT[key]}")
-            left_out.append(f"Malfunction, {unsearched[-1]}: not computed, {error.why}")
+            unsearched.setdefault(error.why, []).append(f"{called}, {SILENT[key]}")
         done.step()
-    return tuple(found), tuple(unsearched)
+    left_out += [f"Malfunction, not computed, {why}: {listed(names)}" for why, names in unsearched.items()]
+    return tuple(found), tuple(name for names in unsearched.values() for name in names)
 
 
 def _malfunction(
@@ -324,4 +329,5 @@ def _malfunction(
 def _without(case: LoadCaseResponse, name: str, key: str, number: int) -> LoadCaseResponse:
     # Which mode leads is not printed of them, and takes the modes of every speed.
     effort = replace(case.effort, named=False)
-    return replace(case, assembly=assemble(case.assembly.line.replace(name, **{key: number})), effort=effort)
+    failing = assemble(case.assembly.line.replace(name, **{key: number}))
+    return replace(with_other_excitations(case, failing), effort=effort)

@@ -12,13 +12,25 @@ from trunnion.design.assessment.check import Check, Status
 from trunnion.driveline.elements import Disk
 from trunnion.driveline.engine import Engine
 from trunnion.driveline.excitation import Excitation
-from trunnion.driveline.quantities import ACCELERATION, ANGLE, POWER, PRESSURE, RATIO, SPEED, TORQUE, shown, signs
+from trunnion.driveline.quantities import (
+    ACCELERATION,
+    ANGLE,
+    POWER,
+    PRESSURE,
+    RATIO,
+    SPEED,
+    TORQUE,
+    against,
+    shown,
+    signs,
+)
 from trunnion.driveline.title_block import TitleBlock
 from trunnion.equations.harmonics import disk_torques
 from trunnion.errors import InputError
 from trunnion.modes.mass_elastic import HolzerTable, SpringRow, masses, springs
 from trunnion.reporting.submission_contents import SubmissionContents
 from trunnion.reporting.tables import Table, four
+from trunnion.results.counts import listed
 from trunnion.results.speeds import order_name
 from trunnion.results.words import HERTZ, Words
 
@@ -132,7 +144,7 @@ def _quantity(value: float, unit: str, words: Words) -> str:
     if unit == SPEED.unit:
         return f"{four(value * words.factor)} {words.unit}"
     kind = KIND_OF.get(unit)
-    return signs(shown(value, kind, digits=4)).replace(" deg", "°") if kind else f"{four(value)} {signs(unit)}"
+    return _typeset(shown(value, kind, digits=4)) if kind else f"{four(value)} {signs(unit)}"
 
 
 def _speed(speed: float, words: Words) -> str:
@@ -218,11 +230,12 @@ def _without_rounding(values: Array) -> Array:
 
 def excitations(contents: SubmissionContents) -> Table:
     """Everything that excites: harmonics of disks, joints, meshes; at the operating speed too, where there is one."""
-    rows, heads = list(_excitations(contents)), ["element", "excitation", "amplitude", "phase [°]"]
-    speed = contents.seen.speed
+    sizes, speed = _at_speed(contents), contents.seen.speed
+    prefix, unit = _prefix(abs(one) for one in sizes.values())
+    rows, heads = list(_excitations(contents, sizes, unit)), ["element", "excitation", "amplitude", "phase [°]"]
     if speed:
         there = Words(contents.seen.unit).speed(speed)
-        heads += [f"at {there} [N m]", f"phase at {there} [°]"]
+        heads += [f"at {there} [{prefix}N m]", f"phase at {there} [°]"]
     if len(rows) > MOST_EXCITATIONS:
         left = len(rows) - MOST_EXCITATIONS
         rows = [*rows[:MOST_EXCITATIONS], ("", f"and {left} more, in the description", "", "", "", "")]
@@ -243,9 +256,11 @@ def _at_speed(contents: SubmissionContents) -> dict[tuple[str, int], complex]:
     return found
 
 
-def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, str, str, str]]:
-    """Of every element as it is stated: of an engine what one cylinder does, in its own phase."""
-    sizes = _at_speed(contents)
+def _excitations(
+    contents: SubmissionContents, sizes: dict[tuple[str, int], complex], unit: float
+) -> Iterator[tuple[str, str, str, str, str, str]]:
+    """Of every element as it is stated: of an engine what one cylinder does, in its own phase. ``sizes`` at the
+    operating speed are in ``unit`` N m."""
     for name, element in contents.seen.line.as_stated.parts:
         several = isinstance(element, Engine) and len(element.firing_order) > 1
         called = f"{name}, each cylinder" if several else name
@@ -254,7 +269,7 @@ def _excitations(contents: SubmissionContents) -> Iterator[tuple[str, str, str, 
         for i, one in enumerate(shakes, start=1):
             phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
             known = sizes.get((disk, i))
-            there = ("", "") if known is None else (four(abs(known)), four(float(np.rad2deg(np.angle(known)))))
+            there = ("", "") if known is None else (four(abs(known) / unit), four(float(np.rad2deg(np.angle(known)))))
             yield called, order_name(one.order or 0.0, one.frequency or 0.0), _size(one), phase, *there
         if isinstance(element, Disk) and element.firing_angles:
             angles = ", ".join(four(float(np.rad2deg(angle))) for angle in element.firing_angles)
@@ -283,12 +298,17 @@ def _firing_throw(name: str, engine: Engine) -> str:
 def _size(one: Excitation) -> str:
     """The amplitude of an excitation in words."""
     if one.amplitude is not None:
-        return f"{four(one.amplitude)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m"
+        return _torque(one.amplitude)
     if one.quadratic_amplitude is not None:
         return f"{four(one.quadratic_amplitude)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m\N{NO-BREAK SPACE}s² times ω²"
     if one.share is not None:
         return f"{four(100 * one.share)} % of the mean torque"
-    return f"table of {len(one.amplitudes)} points up to {four(one.largest)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m"
+    return f"table of {len(one.amplitudes)} points up to {_torque(one.largest)}"
+
+
+def _torque(value: float) -> str:
+    """In one piece."""
+    return signs(shown(value, TORQUE, digits=4)).replace(" ", "\N{NO-BREAK SPACE}")
 
 
 def engines(contents: SubmissionContents) -> Table | None:
@@ -441,8 +461,16 @@ def _severity(check: Check) -> tuple[bool, float]:
 
 
 def _sides(check: Check, words: Words) -> tuple[str, str]:
-    """Value and limit."""
+    """Value and limit, in one unit."""
+    kind = KIND_OF.get(check.unit)
+    if kind and np.isfinite(check.value) and np.isfinite(check.limit):
+        value, limit = (_typeset(one) for one in against(check.value, check.limit, kind).split(" against "))
+        return value, limit
     return _quantity(check.value, check.unit, words), _quantity(check.limit, check.unit, words)
+
+
+def _typeset(quantity: str) -> str:
+    return signs(quantity).replace(" deg", "°")
 
 
 def crossings(contents: SubmissionContents) -> Table:
@@ -483,13 +511,13 @@ def heats(contents: SubmissionContents) -> Table:
 
 
 def barred(contents: SubmissionContents) -> Table:
-    """Ranges that may only be passed, and the check that bars them."""
-    words = Words(contents.seen.unit)
+    """Ranges that may only be passed, and the checks that bar them."""
+    words, because = Words(contents.seen.unit), dict[str, list[str]]()
+    for check in contents.seen.assessment.checks:
+        for ends in check.barred if check.decides else ():
+            because.setdefault(words.barred([ends]), []).append(check.name)
     return Table.of(
-        {f"barred range [{words.unit}]": words.barred([ends]), "because of": check.name}
-        for check in contents.seen.assessment.checks
-        if check.decides
-        for ends in check.barred
+        {f"barred range [{words.unit}]": ends, "because of": listed(names)} for ends, names in because.items()
     )
 
 
@@ -504,13 +532,14 @@ def rules(contents: SubmissionContents) -> Table:
 
 def _rule(check: Check, words: Words) -> dict[str, object]:
     searched: Iterable[tuple[float, float]] = check.covered
+    value, limit = _sides(check, words)
     return {
         "check": check.name,
         "result": f"{check.words}{f', {check.margin_word}' if check.margin_word else ''}",
         "rule": check.rule.formula,
         "source": f"{check.rule.source} ({check.rule.certainty})",
-        "value": _quantity(check.value, check.unit, words),
-        "limit": _quantity(check.limit, check.unit, words),
+        "value": value,
+        "limit": limit,
         f"searched [{words.unit}]": " and ".join(words.ends(*ends) for ends in searched) or EMPTY,
         "may be low by": _error(check, words),
     }

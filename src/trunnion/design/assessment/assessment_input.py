@@ -136,7 +136,7 @@ class LoadCaseResponse:
     ``rough``: to look around, see ``order_spectrum``; ``partly``: where a time limit ends a search, go on with what
     there is, ``ended_by`` saying so, instead of passing it on; ``torques``: springs of which torques are looked for
     beside what the checks look at, as of ``torque_measures``; ``follows``: what changes with the speed besides, see
-    ``Span``.
+    ``Span``; ``alike``: the same with other excitations, see ``other_excitations``.
     """
 
     name: str
@@ -150,10 +150,13 @@ class LoadCaseResponse:
     partly: bool = False
     torques: tuple[tuple[str, int], ...] = ()
     follows: Span | None = field(default=None, repr=False)
+    alike: LoadCaseResponse | None = field(default=None, repr=False)
 
     @cached_property
     def span(self) -> Span:
         """The range, and where the line itself changes within it."""
+        if self.alike is not None:
+            return replace(self.alike.span, assembly=self.assembly)
         cuts = {cut for one in self.measures for cut in one.cuts}
         if self.follows is not None:
             points = tuple(sorted({*self.follows.points, *cuts}))
@@ -241,15 +244,18 @@ class LoadCaseResponse:
         quantities = [one.quantity for one in self.measures]
         first = self._first_speeds
         if self.costly and not self.rough:
-            around = search(self.assembly, replace(self, rough=True).respond, first, quantities, tolerance=0.01)
+            rough = replace(self, rough=True)
+            around = search(self.assembly, rough.respond, first, quantities, tolerance=0.01, passed=np.inf)
             first = thinned(around, pieces, quantities, self.effort.costly)
         return search(
             self.assembly, self.respond, first, quantities,
             tolerance=self.effort.tolerance, passed=self.effort.passed, known=self.__dict__.get("first_look"),
         )  # fmt: skip
 
-    @property
+    @cached_property
     def _first_speeds(self) -> list[Array]:
+        if self.alike is not None:
+            return self.alike._first_speeds
         return first_speeds(self.stable_pieces, resonances(self.span), self.effort.points)
 
     @cached_property
@@ -368,7 +374,7 @@ class LoadCaseResponse:
     def motions(self) -> SteadyStatesBySpeed | None:
         """The periodic steady states that response and stability are taken about, of a free–free line with joint
         angles."""
-        return steady_states_of(self.assembly)
+        return steady_states_of(self.assembly) if self.alike is None else self.alike.motions
 
     @cached_property
     def unstable(self) -> UnstableRanges:
@@ -378,6 +384,8 @@ class LoadCaseResponse:
         ------
         InputError : there are no equations in time, or no motion that all speeds share (NoSharedMotion).
         """
+        if self.alike is not None:
+            return self.alike.unstable
         if not self.parametric:
             return straight_ranges(self.span)
         points = self.effort.costly if self.costly else self.effort.points
@@ -397,6 +405,8 @@ class LoadCaseResponse:
     @cached_property
     def stable_pieces(self) -> tuple[SmoothRange, ...]:
         """Pieces of the range in which torques mean something."""
+        if self.alike is not None:
+            return self.alike.stable_pieces
         if self.rough:  # to look around, the motion counts whether it is reached or not
             return self.span.pieces
         try:
@@ -412,6 +422,8 @@ class LoadCaseResponse:
         """Speeds at which no torque is judged, and why."""
         if self.given or self.known is not None:
             return ()
+        if self.alike is not None:
+            return self.alike.gaps
         ranges: tuple[tuple[float, float], ...] = ()
         try:
             ranges = () if self.rough else self.unstable.ranges

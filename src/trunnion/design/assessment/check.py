@@ -86,6 +86,7 @@ class Check:
     )
     bound: float = variable(words="proved not to be exceeded at any speed, in the unit of its check", default=nan)
     ended: str = internal("what ended its search before it was done, as a clause", default="")
+    margin_said: str = internal("the margin in print, where a share of the limit says little", default="")
 
     @property
     @computed(variable(words="input speeds [rad/s] that it was judged over", name="covered"))
@@ -131,7 +132,9 @@ class Check:
     @property
     def margin_word(self) -> str:
         """The margin in print, "" where nothing is judged."""
-        return percent(self.margin, binding=self.decides) if self.judged else ""
+        if not self.judged:
+            return ""
+        return self.margin_said or percent(self.margin, binding=self.decides)
 
     @property
     def spare(self) -> float:

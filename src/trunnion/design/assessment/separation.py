@@ -12,6 +12,7 @@ straight.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -67,7 +68,9 @@ def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Che
             without = few(unlimited(case.assembly))
         needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
         said = f"{order_name(*order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
-        yield _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))
+        beside = "met in the range" if met else f"{100 * near:.2g} % apart"
+        found = _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))
+        yield replace(found, margin_said=beside)
     if clear:
         nearest, said, speed = min(clear)
         yield _near(case, ALL, Status.SATISFIED, said, nearest, speed, counted(len(orders), "order"))
