@@ -554,6 +554,16 @@ PYTHON = [
         ": does not close: 2 bar at its beginning and 3 bar a cycle later; give one cycle",
     ),
     (
+        lambda: engine(pressures=[65.0] * 720),
+        "Engine.pressure = [{",
+        ": reaches 65 Pa, less than the pressure of the air; check its unit: bar read as Pa, say",
+    ),
+    (
+        lambda: engine(pressures=[6.5e11] * 720),
+        "Engine.pressure = [{",
+        ": reaches 6.5e+06 bar, more than any engine; check its unit: Pa read as bar, say",
+    ),
+    (
         lambda: engine(pressures=[2e5, 3e5]),
         "Engine.pressure 1 pressures = [200000.0, 300000.0]: must be 720 quantities",
         "every angle",
@@ -2104,6 +2114,12 @@ PYTHON = [
     (lambda: Tyre(stiffness=0), "Tyre.stiffness = 0: must be positive", "write for example"),
     (lambda: Tyre(stiffness=1, radius=0.3), "Tyre.slip_stiffness: is needed with radius", "needs slip_stiffness"),
     (lambda: line(Vehicle(mass=9, wheel_radius=1, name="car")), "car: has no wheels", "behind a Tyre"),
+    (
+        lambda: line(motor(curve=CURVE), propeller()),
+        "propeller.type = 'Propeller': is tied rigidly to motor: no shaft leads out to it",
+        "put a Shaft in front of it",
+    ),
+    (lambda: line(propeller()), "propeller.type = 'Propeller': stands alone: no shaft leads out to it", "put a Shaft"),
     (
         lambda: line(Disk(inertia=1), Tyre(stiffness=1, name="tyre"), Disk(inertia=1)),
         "tyre: carries no vehicle",

@@ -219,7 +219,7 @@ def test_between_two_loads_harmonics_are_linear_in_the_mean_torque():
 
 
 def test_pressures_from_a_file(tmp_path):
-    """CSV beside the description; written again it needs no second file. Bar read as Pa is noticed."""
+    """CSV beside the description; written again it needs no second file. Bar read as Pa is refused."""
     rows = ["load,angle [deg],pressure [bar]"]
     for load, peak in ((0.5, 30e5), (1.0, 60e5)):
         one = curve(peak, points=181)
@@ -234,7 +234,8 @@ def test_pressures_from_a_file(tmp_path):
     assert tn.loads(tn.dumps(line)) == line
     wrong = "\n".join(rows).replace("[bar]", "[Pa]")
     (tmp_path / "pressure.csv").write_text(wrong, encoding="utf-8")
-    with pytest.warns(InputRemark, match=r"engine \(element 1\)\.pressure.*reaches .* Pa, less than.*bar read as Pa"):
+    refused = r"engine \(element 1\)\.pressure = 'pressure.csv': reaches .* Pa at load .*, less than.*bar read as Pa"
+    with pytest.raises(tn.InputError, match=refused):
         tn.load(tmp_path / "ship.toml")
     (tmp_path / "pressure.csv").write_text("\n".join(rows[:20]), encoding="utf-8")
     with pytest.raises(tn.InputError, match=r"pressure: pressure\.csv: load 0\.5.*has 19 points"):

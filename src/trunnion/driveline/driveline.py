@@ -16,10 +16,10 @@ from trunnion.driveline.elements import ConstantSpeed, Element, Loaded
 from trunnion.driveline.gears import GearPair
 from trunnion.driveline.joints import HookeJoint
 from trunnion.driveline.limits import Limit, Limits, OneLimit, limits_of
-from trunnion.driveline.machines import Machine
+from trunnion.driveline.machines import Machine, Motor, Propeller
 from trunnion.driveline.operation import LoadCase, Operation
 from trunnion.driveline.refusals import about, nearest
-from trunnion.driveline.remarks import remarks
+from trunnion.driveline.remarks import remarks, rigid_groups
 from trunnion.driveline.scenarios import Scenario, Scenarios, wrong_scenarios
 from trunnion.driveline.shafts import SpringElement
 from trunnion.driveline.silent_cylinders import Cylinder, silent_cases
@@ -122,7 +122,7 @@ class Driveline(ElementChain):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
-        wrong += _wrong_wheels(self)
+        wrong += [*_wrong_wheels(self), *_wrong_propellers(self)]
         wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.sn_curves, *self.tolerances), self.parts)]
         wrong += wrong_scenarios(self.scenarios, self.parts)
         if wrong:
@@ -313,6 +313,21 @@ def _wrong_wheels(line: Driveline) -> Iterator[InputError]:
             vehicles = [n for n, e in line.parts if isinstance(e, Vehicle)]
             remedy = f'write to = "{vehicles[0]}"' if vehicles else "put a Vehicle behind it"
             yield InputError("carries no vehicle", element=name, remedy=remedy)
+
+
+def _wrong_propellers(line: Driveline) -> Iterator[InputError]:
+    """A propeller turns in the water, and what drives it does not: a shaft leads out to it."""
+    group = rigid_groups(line)
+    drives = {g: name for g, (name, one) in zip(group, line.parts, strict=True) if _drives(one)}
+    for g, (name, element) in zip(group, line.parts, strict=True):
+        if isinstance(element, Propeller) and (g in drives or len(line.elements) == 1):
+            tied = f"is tied rigidly to {drives[g]}" if g in drives else "stands alone"
+            problem = f"{tied}: no shaft leads out to it"
+            yield InputError(problem, element=name, key="type", value=element.kind, remedy="put a Shaft in front of it")
+
+
+def _drives(element: Element) -> bool:
+    return isinstance(element, ConstantSpeed | Motor) or bool(getattr(element, "drive_share", 0.0))
 
 
 def _wrong_loads(line: Driveline) -> Iterator[InputError]:

@@ -52,7 +52,7 @@ SAME_ANGLE = 0.01 * DEGREE
 CLOSED = 0.02
 """Share of its highest pressure by which the two ends of a curve may differ."""
 LOWEST_PEAK, HIGHEST_PEAK = 1e5, 1e8
-"""Pressures [Pa] between which that of a running cylinder reaches; beyond them the unit is doubted."""
+"""Pressures [Pa] between which that of a running cylinder reaches; beyond them its unit is wrong."""
 LOWEST_MEAN, HIGHEST_MEAN = 2e4, 8e6
 """Mean indicated pressures [Pa] beyond which the unit is doubted."""
 DAMPING_RULES = {"mendes": 0.035}
@@ -395,6 +395,13 @@ class Engine(Composite):
 
     def _check_curve(self, key: str, curve: PressureCurve) -> None:
         at = "" if curve.load is None else f" at load {curve.load:g}"
+        peak = max(curve.pressures)
+        if peak < LOWEST_PEAK:
+            problem = f"reaches {peak:.4g} Pa{at}, less than the pressure of the air"
+            raise InputError(problem, key=key, remedy="check its unit: bar read as Pa, say")
+        if peak > HIGHEST_PEAK:
+            problem = f"reaches {peak / 1e5:.4g} bar{at}, more than any engine"
+            raise InputError(problem, key=key, remedy="check its unit: Pa read as bar, say")
         angles, pressures = curve.angles, curve.pressures
         span, step = angles[-1] - angles[0], max(b - a for a, b in pairwise(angles))
         cycle = f"{self.cycle / DEGREE:g} deg"
@@ -487,12 +494,6 @@ class Engine(Composite):
             raise InputError(f"is needed with {key}", key=missing, remedy=f"write {', '.join(needed)}")
 
     def doubts(self) -> Iterator[Doubt]:
-        peaks = [max(curve.pressures) for key in ("pressure", "compression") for curve in getattr(self, key)]
-        if peaks and max(peaks) < LOWEST_PEAK:
-            problem = f"reaches {max(peaks):.4g} Pa, less than the pressure of the air"
-            yield ("pressure", problem, "check its unit: bar read as Pa, say")
-        if peaks and max(peaks) > HIGHEST_PEAK:
-            yield ("pressure", f"reaches {max(peaks) / 1e5:.4g} bar", "check its unit: Pa read as bar, say")
         means = self.mean_indicated_pressure
         if means and not LOWEST_MEAN <= min(means) <= max(means) <= HIGHEST_MEAN:
             odd = min(means) if min(means) < LOWEST_MEAN else max(means)

@@ -349,6 +349,7 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, around: Su
         raise InputError("unknown element type", element=label, key="type", value=kind, remedy=remedy)
     seen[kind] += 1
     label = f"{own or f'{kind} {seen[kind]}'} (element {place})"
+    stated = dict(data)
     try:
         with warnings.catch_warnings():
             # said again below, with the place in the file
@@ -358,9 +359,9 @@ def _element(table: Any, place: int, seen: Counter[str], source: str, around: Su
                     data[key] = _table_of(key, named, around)
             element = KINDS[kind](**data)
     except InputError as error:
-        raise about(error, label).each(lambda one: _limit_elsewhere(one, own)) from None
+        raise about(error, label).each(lambda one: _limit_elsewhere(_as_stated(one, data, stated), own)) from None
     for key, problem, remedy in (*element.doubts(), *element.file_doubts()):
-        remark = InputError(problem, element=label, key=key, value=data.get(key), remedy=remedy)
+        remark = InputError(problem, element=label, key=key, value=stated.get(key), remedy=remedy)
         warnings.warn(InputRemark(str(_located(remark, source))), stacklevel=2)
     return element
 
@@ -410,6 +411,12 @@ def _table_of(key: str, named: str, around: Surroundings) -> tuple[Record, ...]:
         where = ".".join(part for part in (error.element, error.key) if part)
         problem = f"{short(where)} {error.problem}"
         raise error.but(element="", key=key, value=None, problem=problem) from None
+
+
+def _as_stated(error: InputError, read: dict[str, Any], stated: dict[str, Any]) -> InputError:
+    """With the name of a table instead of what was read of it."""
+    table = error.key in TABLES and isinstance(stated.get(error.key), str) and error.value is read[error.key]
+    return error.but(value=stated[error.key]) if table else error
 
 
 def _limit_elsewhere(error: InputError, name: str | None) -> InputError:

@@ -28,7 +28,7 @@ ALIKE = 1e-9
 
 def prescribed_excitations(line: ElementChain) -> tuple[str, ...]:
     """Disks with an excitation whose rotation a ConstantSpeed holds: no shaft stands between."""
-    group = _groups(line)
+    group = rigid_groups(line)
     fixed = {g for g, element in zip(group, line.elements, strict=True) if isinstance(element, ConstantSpeed)}
     return tuple(
         name
@@ -46,7 +46,7 @@ def unlike_in_series(line: ElementChain) -> tuple[tuple[tuple[str, ...], float],
     """
     if line.damping_ratio is not None:
         return ()
-    group = _groups(line)
+    group = rigid_groups(line)
     springs = [i for i, element in enumerate(line.elements) if isinstance(element, SpringElement)]
     heavy = {g for g, element in zip(group, line.elements, strict=True) if not isinstance(element, SpringElement)}
     for i in springs:
@@ -138,7 +138,7 @@ def _slip_clutch_before(line: ElementChain, name: str) -> str:
     return ""
 
 
-def _groups(line: ElementChain) -> list[int]:
+def rigid_groups(line: ElementChain) -> list[int]:
     """Per element the rigid group that it belongs to, a spring or a mesh to the group at its far end."""
     group: list[int] = []
     for i, (element, parent) in enumerate(zip(line.elements, line.parents, strict=True)):
