@@ -121,8 +121,9 @@ class Driveline(ElementChain):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        wrong = [*wrong_places(self), *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
-        wrong += [*_wrong_wheels(self), *_wrong_propellers(self)]
+        places = [*wrong_places(self)]
+        wrong = [*places, *_wrong_damping(self), *_wrong_loads(self), *_wrong_schedules(self)]
+        wrong += [*_wrong_wheels(self), *(() if places else _wrong_propellers(self))]
         wrong += [*_wrong_drives(self), *wrong_addresses((*self.limits, *self.sn_curves, *self.tolerances), self.parts)]
         wrong += wrong_scenarios(self.scenarios, self.parts)
         if wrong:
