@@ -157,3 +157,18 @@ def test_wave_of_a_line_without_excitation_is_that_of_the_propagator() -> None:
     run = propagate(arrays, system.period, 2, 1e-13, len(response.tau) - 1)  # type: ignore[arg-type]
     x = periodic_states(run)[:: run.steps // (len(response.tau) - 1), :2]
     assert np.abs(response.rotation - x).max() < 1e-9 * np.abs(x).max()
+
+
+def test_speeds_without_a_steady_state_are_named() -> None:
+    """An undamped line at half its natural frequency, where order 2 of its joint meets it: said, and where; beside it
+    the amplitude falls as the inverse of the distance."""
+    half = float(np.sqrt(1e4 / 0.8)) / 2
+    elements = [tn.ConstantSpeed(), tn.HookeJoint(angle=0.05), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.8)]
+    line, away = tn.Driveline(elements), np.array([-2e-4, -1e-4, 1e-4, 2e-4])
+    found = tn.speed_sweep(line, [half, *half * (1 + away)], statically_twisted=False)
+    torque = found.torque_amplitude[:, 0]
+    assert np.isnan(torque[0]) and torque[2] / torque[1] == pytest.approx(2.0, rel=0.05)
+    said = [str(one) for one in found.findings if one.sentence.startswith("No steady state exists")]
+    assert said == [line for line in map(str.strip, str(found).splitlines()) if "No steady state" in line]
+    assert len(said) == 1 and f"at {half:.6g} rad/s:" in said[0]
+    assert "No steady state" not in str(tn.speed_sweep(line, half * (1 + away)))

@@ -29,9 +29,9 @@ from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, sea
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
-from trunnion.results.finding import Finding, by_gravity
+from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.result import Result
-from trunnion.results.stretches import largest_over
+from trunnion.results.stretches import largest_over, stretches_above
 from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
 
@@ -87,8 +87,20 @@ class SpeedSweep(Result):
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What to read first, gravest first: where the motion is unstable, what of the line is left out."""
-        return by_gravity([*where_unstable(self.speed, self.verdict, self.words, lossy=self.lossy), *self.remarks])
+        """What to read first, gravest first: where there is no motion or an unstable one, what is left out."""
+        unstable = where_unstable(self.speed, self.verdict, self.words, lossy=self.lossy)
+        return by_gravity([*self._without_motion(), *unstable, *self.remarks])
+
+    def _without_motion(self) -> Iterator[Finding]:
+        order = np.argsort(self.speed)
+        lost = ~np.all(np.isfinite(self.torque_amplitude[order]), axis=1)
+        if lost.any():
+            where = self.words.ranges(stretches_above(self.speed[order], lost.astype(float), 0.5, between=False))
+            yield Finding(
+                Gravity.DANGER,
+                f"No steady state exists at {where}: an excitation meets a free motion that nothing damps, as without "
+                "damping or on the edge of an instability; amplitudes there are NaN, next to it without bound.",
+            )
 
     def _lines(self) -> Iterator[str]:
         yield f"linear forced response at {counted(len(self.speed), 'speed')}"
