@@ -6,7 +6,8 @@ Straight free chains stand beside openTorsion where that is installed, side by s
 and 3 orders, and whether short lines take the cheaper of its two ways; ``stability`` at one speed,
 and whether it takes the cheaper of its two ways; ``stability_chart`` over speed and joint angles, once, as chosen and
 without grids of whole matrices where that takes no more than a minute; once each, with the largest memory, what looks
-over the whole range: its unstable speeds, the response with the largest torques, ``assess`` and ``sensitivity``.
+over the whole range: modes and Campbell diagram, uneven turns, unstable speeds, the response with the largest torques,
+``assess`` and ``sensitivity``.
 Medians on one thread.
 """
 
@@ -171,8 +172,22 @@ def differentiated(line: tn.Driveline) -> None:
     tn.sensitivity(line, ENDS, of=["frequencies", "growth", "torques"])
 
 
+def modes(line: tn.Driveline) -> None:
+    """Natural frequencies, shapes and the Campbell diagram over the range."""
+    tn.natural_frequencies(line)
+    tn.campbell_diagram(line, ENDS)
+
+
+def turns_of_joints(line: tn.Driveline) -> None:
+    """Uneven rotation and torques that joints make."""
+    tn.kinetostatics(line, ENDS[1])
+
+
 ENDS = (float(tn.rpm(600.0)), float(tn.rpm(3000.0)))
-RANGES = {work.__name__: work for work in (unstable_speeds, response_over_range, assessed, differentiated)}
+RANGES = {
+    work.__name__: work
+    for work in (modes, turns_of_joints, unstable_speeds, response_over_range, assessed, differentiated)
+}
 """Each in a process of its own, whose largest memory is that of one."""
 
 
