@@ -18,7 +18,7 @@ def tree_pays(topo: Topology, harmonics: Sequence[int], cases: int) -> bool:
     """Whether elimination along the tree is cheaper than whole matrices, of groups with so many ``harmonics`` each."""
     n, left = topo.size, places_left(topo)
     tree = sum(0.6 + 0.02 * n + cases * (8e-5 * left * h**2 * (1 + h / 100) + 1e-4 * n * h) for h in harmonics)
-    whole = sum(1.2 + cases * 2.3e-5 * (n * h) ** 2 * (1 + n * h / 400) for h in harmonics)
+    whole = sum(1.2 + cases * 3.5e-5 * (n * h) ** 2 * (1 + n * h / 400) for h in harmonics)
     return CHECKED + tree < whole
 
 
