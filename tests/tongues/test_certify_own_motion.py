@@ -137,6 +137,7 @@ def test_an_unstable_motion_is_never_proved_and_is_the_counterexample() -> None:
     found = tn.certify_stability(pair.line, {}, speeds)
     assert found.verdict == "counterexample" and found.counterexample is not None
     assert tn.stability(pair.line, found.counterexample["speed"]).verdict is Verdict.UNSTABLE
+    assert str(found).endswith("about the line's own periodic motion")
 
 
 # Rounding

@@ -335,7 +335,8 @@ BAD = [
     ),
     (
         lambda: tn.certify_stability(with_ratio(), {"Ratio 1.ratio": 0.1}, (1.0, 2.0)),
-        "Ratio 1.ratio: ",
+        "Ratio 1.ratio: sets the period of the line's equations and does not vary within one study; "
+        'line.replace("Ratio 1", ratio=...) makes a line of each of its values',
     ),
     (lambda: tn.certify_stability(LINE, {"HookeJoint 1.angle": ("range", 0, 1.2)}, (1.0, 2.0)), "HookeJoint 1.angle"),
     (

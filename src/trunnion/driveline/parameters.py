@@ -40,6 +40,9 @@ from trunnion.driveline.patterns import names
 from trunnion.driveline.quantities import signs
 from trunnion.errors import InputError, InputRemark
 
+RATIOS = ("ratio", "teeth_in", "teeth_out", "teeth_sun", "teeth_ring", "radius_in", "radius_out")
+"""Numbers of gears that say by how much shafts differ in speed."""
+
 
 @dataclass(frozen=True)
 class Term:
@@ -249,6 +252,12 @@ class PackedLine:
             return InputError(
                 "is a schedule, which moves several numbers along straight pieces, not a parameter", key=path,
                 remedy=f'ask line.at_schedule("{name}", value) at each of its points, or envelope(line) for all',
+            )  # fmt: skip
+        owner, _, key = path.rpartition(".")
+        if key in RATIOS and any(owner == name and hasattr(one, key) for name, one in self.line.parts):
+            return InputError(
+                "sets the period of the line's equations and does not vary within one study", key=path,
+                remedy=f'line.replace("{owner}", {key}=...) makes a line of each of its values',
             )  # fmt: skip
         known = list(self.labels)
         kinds = [element.kind for element in self.line.elements]

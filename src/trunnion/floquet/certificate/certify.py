@@ -118,7 +118,8 @@ class StabilityCertificate(Result):
         known = np.isfinite(self.decay)
         yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
         if self.about_own_motion:
-            yield "  about the line's own periodic motion, proved to exist"
+            proved = ", proved to exist" if len(self.proved_low) and self.counterexample is None else ""
+            yield f"  about the line's own periodic motion{proved}"
 
 
 @keeps_time
