@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
 import pytest
 
 import trunnion as tn
@@ -64,6 +65,15 @@ def test_its_values_are_those_of_the_line_looked_at_by_itself(key: str) -> None:
     assert len(found.stable_pieces) > 1  # a point of the tables lies within the range
     assert values(found, line) == pytest.approx(values(alone, line), rel=1e-9)
     assert values(found, line) != pytest.approx(values(firing(), engine_set()), rel=1e-2)
+
+
+def test_all_cylinders_are_the_sum_of_each() -> None:
+    """Of N cylinders each is missing once in the N lines that have one cut out: together they make N − 1 times all."""
+    orders, speeds = [0.5, 1.5, 2.0], [LOW, tn.rpm(911), HIGH]
+    every = tn.order_response(engine_set(), speeds, orders).torque
+    cut = [tn.order_response(engine_set(cut_out=number), speeds, orders).torque for number in (1, 2, 3, 4)]
+    assert np.abs(every).max() > 10.0
+    np.testing.assert_allclose(sum(cut), 3 * every, rtol=1e-10, atol=1e-10 * np.abs(cut).max())
 
 
 @pytest.mark.slow
