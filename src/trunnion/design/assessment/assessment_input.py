@@ -307,9 +307,16 @@ class LoadCaseResponse:
                 beside = end * (1 + away)
                 if abs(speed / end - 1) > AT_END or not any(p.low <= beside <= p.high for p in self.stable_pieces):
                     continue
-                if not share <= RISE * measure.shares(self.respond(np.array([beside])))[0]:
+                if beside not in self._beside:
+                    self._beside[beside] = self.respond(np.array([beside]))
+                if not share <= RISE * measure.shares(self._beside[beside])[0]:
                     return "stable speeds" if gap.why == UNSTABLE else "the speeds of one periodic steady state"
         return ""
+
+    @cached_property
+    def _beside(self) -> dict[float, OrderResponse]:
+        """The response next to ends of gaps, by speed, which many measures ask for."""
+        return {}
 
     def _error(self, measure: Measure) -> float:
         place = next((i for i, one in enumerate(self.measures) if one.name == measure.name), -1)
