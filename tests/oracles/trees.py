@@ -1,7 +1,8 @@
 """Any line of the package by virtual work, with exact derivatives.
 
 For any virtual rotation of one unknown, Σ J_s α_s ∂a_s + Σ f_e ∂q_e + Σ M_s sgn ∂a_s = 0 over all points s of
-the line and shafts e. The functions take complex numbers, so that derivatives are exact by the complex step.
+the line and shafts e. The functions take complex numbers, so that derivatives are exact by the complex step, and many
+states at once, (unknown, many).
 """
 
 from __future__ import annotations
@@ -147,21 +148,22 @@ class Tree:
                     waiting[i] = waiting[parent]
         return points, springs
 
-    def _weights(self, points: list[_Point]) -> list[tuple[_Point, float, float]]:
-        """Point, inertia, load torque."""
-        out = []
+    def _weights(self, points: list[_Point]) -> list[tuple[_Point, float, tuple[float, float, float]]]:
+        """Point, inertia, and load torque: constant, by the speed and by its square."""
+        out, none = [], (0.0, 0.0, 0.0)
         for i, element in enumerate(self.line.elements):
             parent = self.line.parents[i]
             if element.kind == "Disk":
-                out.append((points[i], element.moment_of_inertia, element.load_torque))
+                load = element.load_torque, element.viscous_load, element.quadratic_load
+                out.append((points[i], element.moment_of_inertia, load))
             elif element.kind == "Shaft" and element.density:
                 half = element.moment_of_inertia / 2
-                out += [(points[i], half, 0.0), (points[parent if parent is not None else 0], half, 0.0)]
+                out += [(points[i], half, none), (points[parent if parent is not None else 0], half, none)]
         return out
 
     def mass(self, time: float, angle: Any) -> Any:
         """Inertia of each unknown at these angles."""
-        out = np.zeros(self.size, dtype=np.asarray(angle).dtype)
+        out = np.zeros(np.shape(angle), dtype=np.asarray(angle).dtype)
         for point, inertia, _ in self._weights(self._points(time, angle)[0]):
             if point.owner >= 0:
                 out[point.owner] += inertia * point.r**2
@@ -170,16 +172,18 @@ class Tree:
     def residual(self, time: float, angle: Any, rate: Any, acceleration: Any) -> Any:
         """Virtual work of all forces, inertia included, per unknown [N m]; zero on a motion."""
         points, springs = self._points(time, angle)
-        out = np.zeros(self.size, dtype=np.result_type(angle, rate, acceleration))
+        out = np.zeros(np.shape(angle), dtype=np.result_type(angle, rate, acceleration))
 
         def speed_of(point: _Point) -> Any:
             return point.r * rate[point.owner] if point.owner >= 0 else point.r * self.speed
 
-        for point, inertia, load in self._weights(points):
+        for point, inertia, (constant, viscous, quadratic) in self._weights(points):
             i = point.owner
             if i >= 0:
                 alpha = point.r * acceleration[i] + point.r1 * rate[i] ** 2
-                out[i] -= (inertia * alpha + load * np.sign(point.mean)) * point.r
+                speed = speed_of(point)
+                torque = (constant + quadratic * speed**2) * np.sign(point.mean) + viscous * speed
+                out[i] -= (inertia * alpha + torque) * point.r
         for near, far, elongation, k, c in springs:
             torque = k * elongation + c * (speed_of(far) - speed_of(near))
             out[far.owner] -= torque
