@@ -15,6 +15,7 @@ from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.measured.peaks import PredictedPeaks, predicted_peaks
 from trunnion.measured.predicted import best_angle, predicted_channels, turned, usable
+from trunnion.measured.sweep_rate import share_of_lag, swept_too_fast
 from trunnion.measured.tracking.result import MeasuredOrders, unit_of
 from trunnion.numerics.curves import parabola
 from trunnion.results.drawing import Axes, drawing
@@ -57,6 +58,7 @@ class MeasuredComparison(Result):
     acceleration: float = attribute("of the input", "rad/s^2")
     places: tuple[str, ...] = internal("of the line that channels show")
     assembly: Assembly = internal("the line")
+    doubts: tuple[Finding, ...] = internal("what speaks against the comparison itself", default=())
 
     def plot(self, axes: Axes | None = None, *, channel: str = "") -> Axes:
         """Measured marks over predicted curves; see ``pictures.measured.comparison``."""
@@ -212,14 +214,17 @@ def compare_measured(line: Driveline | Assembly, data: MeasuredOrders) -> Measur
         speed=data.speed, order=data.order, channels=tuple(data.channels[c] for c in columns),
         kinds=tuple(data.kinds[c] for c in columns), measured=measured, predicted=predicted, half_width=half,
         peak=peaks.value, peak_speed=peaks.at, peak_error=peaks.error, begin=angle, off=off, outside=outside,
-        findings=(), unit=data.unit or speed_unit(assembly.line), curve=peaks, extreme=data.extreme[:, columns],
-        acceleration=data.acceleration, places=tuple(data.places[c] for c in columns), assembly=assembly,
+        findings=(), unit=data.unit or speed_unit(assembly.line), curve=peaks,
+        extreme=data.extreme[:, columns], acceleration=data.acceleration,
+        places=tuple(data.places[c] for c in columns), assembly=assembly,
     )  # fmt: skip
     moves = [k for k, even in enumerate(channels.even) if not even]
     unsearched = f"Predicted peaks are read at the tracked speeds alone: {peaks.why}"
     read = [Finding(Gravity.NOTE, f"{unsearched.rstrip('.')}.")] if peaks.why else []
-    own = (*data.findings, *read, *wrong_way(made, bare, weight, moves), *left_out("compare_measured", assembly.line))
-    return replace(made, findings=by_gravity(own))
+    fast = swept_too_fast(channels, share_of_lag(channels, bare, table))
+    own = (*wrong_way(made, bare, weight, moves), *fast)
+    said = (*data.findings, *read, *own, *left_out("compare_measured", assembly.line))
+    return replace(made, doubts=own, findings=by_gravity(said))
 
 
 def wrong_way(found: MeasuredComparison, bare: Complex, weight: Array, moves: list[int]) -> Iterator[Finding]:

@@ -325,5 +325,6 @@ def _findings(found: Identification, misfit: Misfit) -> Iterator[Finding]:
             f"{len(found.twins)} other set{'s' if len(found.twins) > 1 else ''} of values fit as well as the best, by "
             "sign, symmetry or chance: the data do not tell them apart.",
         )
-    yield from (one for one in compare_measured(found.line, found.measured).findings if one.sentence.endswith("?"))
+    yield from (one for one in found.measured.findings if one.gravity <= Gravity.CAUTION)
+    yield from compare_measured(found.line, found.measured).doubts
     yield from left_out("identify", found.line)
