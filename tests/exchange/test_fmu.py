@@ -98,6 +98,10 @@ LINES: dict[str, tuple[Callable[[], tn.Driveline], float]] = {
 }  # fmt: skip
 """Lines, and how long [s] each moves: longer than impacts take to show, shorter than errors of 1e-10 grow to 1e-6."""
 QUICK = ("backlash", "free with everything")
+PARTING = (
+    "backlash", "backlash and a transmission error", "teeth that never pull", "damping by depth", "a clutch in stages",
+)  # fmt: skip
+"""Lines that must pass from stage to stage within their time, so that event indicators are tried."""
 
 
 def exported(line: tn.Driveline, folder: Path, fmi: int) -> Path:
@@ -143,19 +147,21 @@ def test_the_motion_of_an_fmu_is_the_native_one(name: str, fmi: int, tmp_path: P
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("name", LINES)
 def test_eight_lines(name: str, fmi: int, tmp_path: Path) -> None:
-    """Valid, the same motion; and so when FMPy has built it from its sources."""
+    """Valid, the same motion in both kinds; and so when FMPy has built it from its sources."""
     from fmpy.build import build_platform_binary
     from fmpy.validation import validate_fmu
 
     make, duration = LINES[name]
     path = exported(make(), tmp_path, fmi)
     assert validate_fmu(path) == []
-    agrees(make(), path, duration)
+    met = agrees(make(), path, duration)
+    assert met > 1 or name not in PARTING
     bare = tmp_path / "bare"
     with zipfile.ZipFile(path) as archive:
         archive.extractall(bare)
     shutil.rmtree(bare / "binaries")
     build_platform_binary(bare)
+    assert validate_fmu(bare) == []
     agrees(make(), bare, duration)
 
 
