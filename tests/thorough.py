@@ -1,6 +1,7 @@
 """Tests that ``make test`` leaves out and ``make thorough`` runs: those of ``thorough.txt``, a test a line.
 
-They take more than about a second each. Others of their file stay among the quick ones, so that none is left out whole.
+They take more than about a quarter of a second each. Others of their file stay among the quick ones, so that none is
+left out whole.
 """
 
 from __future__ import annotations
