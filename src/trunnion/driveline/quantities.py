@@ -329,12 +329,17 @@ def signs(unit: str) -> str:
 
 def against(value: float, limit: float, kind: QuantityKind, digits: int = 4) -> str:
     """``value`` beside its limit in one unit: "8.12 kN m against 12 kN m"."""
+    return " against ".join(in_one_unit(value, limit, kind, digits))
+
+
+def in_one_unit(value: float, limit: float, kind: QuantityKind, digits: int = 4) -> tuple[str, str]:
+    """``value`` and its limit, each with the unit of the smaller."""
     if kind is TEMPERATURE:
-        return f"{shown(value, kind, digits=digits)} against {shown(limit, kind, digits=digits)}"
+        return shown(value, kind, digits=digits), shown(limit, kind, digits=digits)
     small = min(abs(value), abs(limit))
     symbol, size = eye_unit(small if small > SAME_UNIT * abs(limit) else limit, kind)
     left, right = (_plain(x / size, digits) + ("" if kind is RATIO else f" {signs(symbol)}") for x in (value, limit))
-    return f"{left} against {right}"
+    return left, right
 
 
 def _plain(value: float, digits: int) -> str:

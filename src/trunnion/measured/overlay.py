@@ -221,7 +221,7 @@ def compare_measured(line: Driveline | Assembly, data: MeasuredOrders) -> Measur
     moves = [k for k, even in enumerate(channels.even) if not even]
     unsearched = f"Predicted peaks are read at the tracked speeds alone: {peaks.why}"
     read = [Finding(Gravity.NOTE, f"{unsearched.rstrip('.')}.")] if peaks.why else []
-    fast = swept_too_fast(channels, share_of_lag(channels, bare, table))
+    fast = swept_too_fast(channels, share_of_lag(channels, peaks.at, table[0]))
     own = (*wrong_way(made, bare, weight, moves), *fast)
     said = (*data.findings, *read, *own, *left_out("compare_measured", assembly.line))
     return replace(made, doubts=own, findings=by_gravity(said))

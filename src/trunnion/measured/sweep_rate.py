@@ -15,7 +15,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array
 from trunnion.measured.predicted import PredictedChannels
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.units import figures
@@ -26,30 +26,28 @@ TELLS = 0.02
 """Share of an amplitude from which the difference is said."""
 
 
-def share_of_lag(channels: PredictedChannels, steady: Complex, table: Array) -> Array:
-    """|Y − G| over |G| of an order (order, channel) where G is largest of ``steady`` (window, order, channel), by rows
-    of ``table`` (window, column)."""
-    data, speed = channels.data, table[:, 0]
-    top = np.abs(steady).argmax(axis=0)
-    if data.acceleration == 0 or np.ptp(speed) == 0:
-        return np.zeros(top.shape)
-    rows, place = np.unique(top, return_inverse=True)
-    step = np.minimum(STEP * speed[rows], np.ptp(speed) / 4)
+def share_of_lag(channels: PredictedChannels, peak_speed: Array, row: Array) -> Array:
+    """|Y − G| over |G| (order, channel) of a line by its packed numbers ``row`` (column,), where G is largest between
+    the lowest and the highest speed: at ``peak_speed`` (order, channel) [rad/s]."""
+    data, low, high = channels.data, float(channels.data.speed.min()), float(channels.data.speed.max())
+    if data.acceleration == 0 or low == high:
+        return np.zeros(peak_speed.shape)
+    speed, place = np.unique(peak_speed, return_inverse=True)
+    step = np.minimum(STEP * speed, (high - low) / 4)
     # Not beyond the speeds of the run: what is stated over the speed may end there.
-    middle = np.clip(speed[rows], speed.min() + step, speed.max() - step)
-    beside = np.concatenate([table[rows]] * 3)
-    beside[:, 0] = np.concatenate([middle - step, middle, middle + step])
-    low, here, high = np.split(channels.at(beside), 3)
-    bend = (high - 2 * here + low) / (step**2)[:, None, None]
-    o, c = np.indices(top.shape)
-    at = place.reshape(top.shape), o, c
+    middle = np.clip(speed, low + step, high - step)
+    table = np.tile(row, (3 * len(speed), 1))
+    table[:, 0] = np.concatenate([middle - step, middle, middle + step])
+    before, here, behind = np.split(channels.at(table), 3)
+    bend = (behind - 2 * here + before) / (step**2)[:, None, None]
+    at = (place.reshape(peak_speed.shape), *np.indices(peak_speed.shape))
     turns = data.order != 0
     half = np.where(turns, 0.5 / np.where(turns, np.abs(data.order), 1.0), 0.0)[:, None]
     size = np.abs(here[at])
     # Where nothing is damped its top has no height, and nothing to be off.
     known = (size > 0) & np.isfinite(size) & np.isfinite(bend[at])
     off = np.abs(data.acceleration * np.where(known, bend[at], 0.0)) * half
-    return np.asarray(np.divide(off, size, out=np.zeros(top.shape), where=known))
+    return np.asarray(np.divide(off, size, out=np.zeros(peak_speed.shape), where=known))
 
 
 def swept_too_fast(channels: PredictedChannels, share: Array) -> Iterator[Finding]:
@@ -60,7 +58,7 @@ def swept_too_fast(channels: PredictedChannels, share: Array) -> Iterator[Findin
     worst, name = float(share[o, c]), channels.data.channels[channels.columns[c]]
     yield Finding(
         Gravity.CAUTION,
-        f"At this acceleration order {channels.data.order[o]:g} of {name} is off the steady response, which is what is "
-        f"compared, by about {figures(100 * worst, 2)} % at its largest, and what is found by as much of a resonance's "
-        f"width; run up {figures(worst / TELLS, 2)} times as slowly for {100 * TELLS:g} %.",
+        f"At this acceleration a line does not settle: order {channels.data.order[o]:g} of {name} is off the steady "
+        f"response, which is what is compared, by about {figures(100 * worst, 2)} % at its peak, and resonances seem "
+        f"to come later; run up {figures(worst / TELLS, 2)} times as slowly for {100 * TELLS:g} %.",
     )

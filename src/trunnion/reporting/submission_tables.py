@@ -20,7 +20,7 @@ from trunnion.driveline.quantities import (
     RATIO,
     SPEED,
     TORQUE,
-    against,
+    in_one_unit,
     shown,
     signs,
 )
@@ -464,8 +464,8 @@ def _sides(check: Check, words: Words) -> tuple[str, str]:
     """Value and limit, in one unit."""
     kind = KIND_OF.get(check.unit)
     if kind and np.isfinite(check.value) and np.isfinite(check.limit):
-        value, limit = (_typeset(one) for one in against(check.value, check.limit, kind).split(" against "))
-        return value, limit
+        value, limit = in_one_unit(check.value, check.limit, kind)
+        return _typeset(value), _typeset(limit)
     return _quantity(check.value, check.unit, words), _quantity(check.limit, check.unit, words)
 
 

@@ -341,11 +341,9 @@ class SteadyStatePixels:
             if flags.any():
                 r, c = np.argwhere(flags)[0]
                 count = int(flags.sum())
-                first, place = (
-                    "the first " if count > 1 else "",
-                    f"{chart.x.label} = {x[c]:.6g}, {chart.y.label} = {y[r]:.6g}",
-                )
-                said.append(f"at {counted(count, 'point')} {why} ({first}at {place})")
+                place = f"at {chart.x.label} = {x[c]:.6g}, {chart.y.label} = {y[r]:.6g}"
+                first = f"the first {place}" if count > 1 else place
+                said.append(f"at {counted(count, 'point')} {why} ({first})")
         return said
 
 
