@@ -98,7 +98,7 @@ def test_two_modes_that_are_one_leave_states_to_be_carried(monkeypatch: pytest.M
     right = modes(line, SPEED)
     monkeypatch.setattr(tree_modes, "HillLine", Twice)
     found = modes(line, SPEED)
-    assert right.carried == 0 and found.carried == 4  # neither of the two is taken
+    assert right.carried == 0 and found.carried in (2, 4)  # one of the two is taken, or neither
     apart = np.abs(found.multiplier[:, None] - right.multiplier)
     assert (apart.min(axis=1) <= found.error).all() and (apart.min(axis=0) <= right.error).all()
 
@@ -181,25 +181,30 @@ def test_what_side_orders_leave_out_is_in_the_error(monkeypatch: pytest.MonkeyPa
     """With a third of them, wrong by more than rounding and known to be."""
     line = uniform(20, 0.05, 0.6)
     right = np.abs(modes(line, 80.0).multiplier[0])
-    monkeypatch.setattr(hill_line, "DECADES", 1.0)
-    monkeypatch.setattr(hill_line, "WIDER", 0.0)
+    monkeypatch.setattr(hill_line, "DECADES", (6.0,))
+    monkeypatch.setattr(hill_line, "POOR", np.inf)
     monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: True)
-    monkeypatch.setattr(hill_line.HillLine, "_settled", _narrow(hill_line.HillLine._settled))
     found = modes(line, 80.0)
     assert 1e-12 < abs(np.abs(found.multiplier[0]) - right) < found.error[0]
 
 
-def _narrow(settled: Any) -> Any:
-    """``_settled`` with the outermost harmonics left out of the solution."""
-
-    def solved(self: Any, value: Any, x: Any, h: Any) -> Any:
-        inner = np.abs(h) < np.abs(h).max()
-        found, y = settled(self, value, x[..., inner], h[inner])
-        out = np.zeros_like(x)
-        out[..., inner] = y
-        return found, out
-
-    return solved
+def test_harmonics_that_meet_other_modes_fall_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At a slow speed many do: modes by Hill's blocks against all states carried in time, within both errors."""
+    rng, elements = np.random.default_rng(50), list[Any]([tn.ConstantSpeed()])
+    for i in range(50):
+        k = float(rng.uniform(1e5, 1e6))
+        elements += [tn.Shaft(stiffness=k, damping=2e-5 * k), tn.Disk(inertia=float(rng.uniform(0.05, 0.3)))]
+        if i in (15, 31):
+            elements.append(tn.HookeJoint(angle=np.deg2rad(45.0)))
+    line = tn.Driveline(elements)
+    monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: True)
+    found = modes(line, 80.0)
+    monkeypatch.setattr(tree_modes, "_blocks_pay", lambda line: False)
+    carried = modes(line, 80.0)
+    assert found.carried < 40 and carried.carried == 100 and found.off < 1e-8
+    apart = np.abs(found.multiplier[:, None] - carried.multiplier)
+    bound = found.error[:, None] + carried.error
+    assert (apart <= bound).any(axis=1).all() and (apart <= bound).any(axis=0).all()
 
 
 def test_along_a_range_as_at_single_speeds() -> None:

@@ -21,7 +21,7 @@ SHORT = 150
 
 def by_modes(size: int, harmonics: int, left: int) -> float:
     """All modes of ``size`` unknowns by Hill's blocks of so many harmonics, ``left`` places eliminated as matrices."""
-    return 0.01 + 8e-7 * size**2 * harmonics + 5.5e-9 * size * left * harmonics**3
+    return 0.005 + 5e-7 * size**2 * harmonics + 1.6e-8 * size * left * harmonics**3
 
 
 def in_time(size: int, steps: int) -> float:

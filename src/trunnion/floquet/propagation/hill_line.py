@@ -5,7 +5,9 @@ the line's mean matrices by inverse iteration,
 
     A(λ) u = A′(λ) x,    λ − x*x/x*u,
 
-all of them together, in as many harmonics as the joints' spread asks for. Some may not settle, or be found twice.
+all of them together: roughly in a few harmonics, then in as many as the joints' spread asks for. A mode whose harmonics
+fall more slowly, as those that meet other modes do, is followed on in more of them. What a mode leaves unbalanced is
+seen in harmonics beyond its own. Some may not settle, be found twice, or not be known well in the most harmonics.
 """
 
 from __future__ import annotations
@@ -28,11 +30,14 @@ from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.steady.orders.sidebands import LARGEST_SPREAD, LEAST_SPREAD, side_orders, spreads
 from trunnion.waiting import keep_time
 
-DECADES, WIDER = 9.0, 4.0
-"""Side orders are taken until their shares fall below 10^−9; what is left out shows in those of four decades more."""
+ROUGH, DECADES, BEYOND = 4.0, (13.0, 18.0, 25.0), 3.0
+"""Side orders are taken until their shares fall below 10^−4 for a start, then below 10^−13; below less for modes that
+leave more beside these, which shows in those of three decades more."""
 STEPS = 8
-SETTLED = 1e-10
-"""Share of |λ| by which the last step may move it: the next would move it by the square of that."""
+SETTLED, ROUGHLY = 1e-10, 1e-4
+"""Share of |λ| by which the last step may move it, the next would by the square of that; and for a start."""
+BALANCED, POOR = 1e-11, 1e-8
+"""What a mode may leave over a period, as a share of its state, and from where on it is not known."""
 MOST_NUMBERS = 1_500_000
 """Complex numbers of a batch of modes."""
 LEAST = 1e-12
@@ -88,7 +93,7 @@ class PeriodicMotionGiven:
 
 
 class HillLine:
-    """Its equations over a period, in a narrow and a wide set of harmonics."""
+    """Its equations over a period, in a few harmonics and in all that matter."""
 
     def __init__(
         self, topo: Topology, co: LineCoefficients, turns: Fraction, about: PeriodicMotionGiven | None = None
@@ -97,9 +102,9 @@ class HillLine:
         fall = spreads(topo, co, turns)
         if about:
             fall = about.spreads(fall)
-        self.narrow, self.wide = (_harmonics(fall, decades) for decades in (DECADES, DECADES + WIDER))
+        self._few, *self._more = (_harmonics(fall, d) for d in (ROUGH, *DECADES, DECADES[-1] + BEYOND))
         # Of a straight line nothing varies.
-        times = 1 << int(np.ceil(np.log2(max(64 if fall else 1, 4 * int(np.ptp(self.wide)) + 4))))
+        times = 1 << int(np.ceil(np.log2(max(64 if fall else 1, 4 * int(np.ptp(self._more[-1])) + 4))))
         period = 2 * np.pi * float(turns)
         tau = period * np.arange(times) / times
         matrices = tree_matrices(topo, co, tau, about.given if about else None)
@@ -138,6 +143,11 @@ class HillLine:
         square = np.abs(self._modes[0])
         vibrates = square > LEAST * square.max()
         return np.asarray(np.sqrt(np.where(vibrates, square, square[vibrates].min(initial=square.max()))))
+
+    @property
+    def wide(self) -> Integers:
+        """The harmonics that most modes are followed in."""
+        return self._more[0]
 
     @property
     def mean_stiffness(self) -> Array:
@@ -181,34 +191,44 @@ class HillLine:
 
     def followed(self, value: Complex, shape: Complex) -> FollowedModes:
         """From exponents (mode,) and shapes (mode, n) on; NaN where one does not settle."""
-        inside, parts = np.searchsorted(self.wide, self.narrow), []
+        parts = []
         batch_size = max(1, MOST_NUMBERS // (self.n * len(self.wide)))
         for begin in range(0, len(value), batch_size):
             keep_time()
             some = slice(begin, begin + batch_size)
-            near = np.zeros((self.n, len(value[some]), len(self.narrow)), dtype=complex)
-            near[..., int(np.searchsorted(self.narrow, 0))] = shape[some].T
-            found, near = self._settled(value[some], near, self.narrow)
-            x = np.zeros((*near.shape[:2], len(self.wide)), dtype=complex)
-            x[..., inside] = near
-            if len(self.wide) > len(self.narrow):
-                found, x = self._settled(found, x, self.wide)
-            parts.append(self._seen(found, x, self.wide))
+            x = np.zeros((self.n, len(value[some]), len(self._few)), dtype=complex)
+            x[..., int(np.searchsorted(self._few, 0))] = shape[some].T
+            found = value[some]
+            if len(self._few) < len(self.wide):
+                found, x = self._settled(found, x, self._few, ROUGHLY)
+            parts.append(self._closely(found, _within(x, self._few, self.wide)))
         return FollowedModes.together(parts)
 
-    def _seen(self, value: Complex, x: Complex, h: Integers) -> FollowedModes:
+    def _closely(self, value: Complex, x: Complex, stage: int = 0) -> FollowedModes:
+        """In the harmonics of a ``stage``, and in those of the next what they leave too much in."""
+        h, beyond = self._more[stage : stage + 2]
+        value, x = self._settled(value, x, h)
+        found, share = self._seen(value, _within(x, h, beyond), beyond)
+        if stage == len(self._more) - 2 or not (more := share > BALANCED).any():
+            return found.of(share <= POOR)
+        rest = self._closely(value[more], _within(x[:, more], h, beyond), stage + 1)
+        return FollowedModes.together([found.of(share <= BALANCED), rest])
+
+    def _seen(self, value: Complex, x: Complex, h: Integers) -> tuple[FollowedModes, Array]:
+        """Modes x (n, mode, h), and what they leave over a period, as a share of their states (mode,)."""
         s = value[:, None] + 1j * h * self.rate
         felt = self.blocks.at(s, h).times(x)
-        total = self._total(felt)
+        left, rate = self._total(felt), (x * s).sum(axis=2)
+        share = self.time * left / np.linalg.norm(rate * self.root[:, None], axis=0)
         if self._rough:
-            total = total + self._total(self._rough.at(s, h).times(x) - felt)
-        return FollowedModes(value, x.sum(axis=2), (x * s).sum(axis=2), total)
+            left = left + self._total(self._rough.at(s, h).times(x) - felt)
+        return FollowedModes(value, x.sum(axis=2), rate, left), share
 
     def _total(self, left: Complex) -> Array:
         """Σ_h ‖r_h‖ (mode,) of torques r (n, mode, h), in units of √mass."""
         return np.asarray(np.sqrt((np.abs(left / self.root[:, None, None]) ** 2).sum(axis=0)).sum(axis=1))
 
-    def _settled(self, value: Complex, x: Complex, h: Integers) -> tuple[Complex, Complex]:
+    def _settled(self, value: Complex, x: Complex, h: Integers, closely: float = SETTLED) -> tuple[Complex, Complex]:
         value, x = value.copy(), x.copy()
         left = np.arange(len(value))
         for _ in range(STEPS):
@@ -223,7 +243,7 @@ class HillLine:
             value[left] = np.where(good, value[left] - change, np.nan)
             x[:, left[good]] = u[:, good]
             with np.errstate(invalid="ignore"):
-                left = left[good & (np.abs(change) > SETTLED * np.abs(value[left]))]
+                left = left[good & (np.abs(change) > closely * np.abs(value[left]))]
             if not len(left):
                 break
         value[left] = np.nan
@@ -261,6 +281,13 @@ class HillLine:
         again = self.energies(*carry.carried(*self.states(energies @ mixed), int(np.ceil(SHORTER * steps))))
         off = sure * float(np.linalg.norm(again - later @ mixed))
         return later, off + rounding(steps) * float(np.linalg.norm(later))
+
+
+def _within(x: Complex, h: Integers, more: Integers) -> Complex:
+    """x (n, mode, h) of harmonics ``h`` among ``more``."""
+    found = np.zeros((*x.shape[:2], len(more)), dtype=complex)
+    found[..., np.searchsorted(more, h)] = x
+    return found
 
 
 def _harmonics(fall: dict[int, float], decades: float) -> Integers:
