@@ -17,7 +17,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Rotor
 from trunnion.driveline.features import CONVERTER, CURVE, FEATURES, LOSSES, OVER_TORQUE, UNEVEN, feature
 from trunnion.driveline.operating_speed import speed_unit
-from trunnion.driveline.remarks import DRAGGED, HELD, LAG, OIL, SERIES, remarks
+from trunnion.driveline.remarks import DRAGGED, HELD, LAG, OIL, SERIES
 from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
@@ -52,9 +52,9 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
     """One finding for every feature of ``line`` that ``analysis`` leaves out, naming the places; the line's own remarks
     where they concern it."""
     said = {key for key, cell in TABLE[analysis].items() if cell.treatment is Treatment.SAID}
-    own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in remarks(line) if key in said)
+    own = tuple(Finding(Gravity.CAUTION, sentence) for key, sentence in line.own_remarks if key in said)
     if TABLE[analysis][OIL].treatment is Treatment.COUNTED:
-        own += tuple(Finding(Gravity.NOTE, sentence) for key, sentence in remarks(line) if key == OIL)
+        own += tuple(Finding(Gravity.NOTE, sentence) for key, sentence in line.own_remarks if key == OIL)
     if TABLE[analysis]["dry friction"].treatment in (Treatment.REFUSED, Treatment.NOT_JUDGED):
         own += tuple(Finding(Gravity.CAUTION, sentence) for sentence in stand_ins(line))
     if TABLE[analysis][DRAGGED].reason == SET_ASIDE:

@@ -102,7 +102,7 @@ class Driveline(ElementChain):
         if self.damping_ratio is not None and self.damping_ratio < 0:
             remark = "is negative and feeds energy into the line; write it positive unless that is meant"
             warnings.warn(InputRemark(f"driveline.damping_ratio = {self.damping_ratio:g}: {remark}"), stacklevel=2)
-        for _, sentence in remarks(self):
+        for _, sentence in self.own_remarks:
             warnings.warn(InputRemark(sentence), stacklevel=2)
 
     @field_validator("operation", mode="before")
@@ -129,6 +129,11 @@ class Driveline(ElementChain):
         if wrong:
             raise InputError.together(wrong)
         return self
+
+    @cached_property
+    def own_remarks(self) -> tuple[tuple[str, str], ...]:
+        """What of it does nothing, or holds in part only: each the feature and a sentence."""
+        return tuple(remarks(self))
 
     @cached_property
     def limits_by_element(self) -> tuple[OneLimit, ...]:

@@ -47,6 +47,8 @@ def bounds_of(values: Complex, condition: Array, error: Array | float) -> Array:
     bound = moved.copy()
     product = moved.copy()
     for k in range(2, values.shape[-1] + 1):
+        if not (distance[..., k - 2] < bound).any():  # a mean that grows with every distance from here on
+            break
         product = product * distance[..., k - 2]
         bound = np.minimum(bound, product ** (1 / k))
     return np.asarray(2 * bound)

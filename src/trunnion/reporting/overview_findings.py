@@ -10,7 +10,6 @@ import numpy as np
 from trunnion.arrays import Codes
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.joints import LARGE_ANGLE, HookeJoint, Joint
-from trunnion.driveline.remarks import remarks
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import unexcited
 from trunnion.equations.steady_base import has_joint_angles
@@ -178,7 +177,7 @@ def free_findings(assembly: Assembly, along: StabilityOverSpeed | None, words: W
 
 def remark_findings(line: Driveline) -> Iterator[Finding]:
     """What of the line does nothing, or holds in part only, by where it stands."""
-    for _, sentence in remarks(line):
+    for _, sentence in line.own_remarks:
         yield Finding(Gravity.CAUTION, sentence)
 
 

@@ -71,8 +71,8 @@ def floquet_modes(
 
 
 def _blocks_pay(line: HillLine) -> bool:
-    """Whether modes cost less than carrying all states."""
-    return by_modes(line.n, len(line.wide), line.places_left) < in_time(line.n, line.steps)
+    """Whether modes cost less than carrying all states, as of a straight line always."""
+    return len(line.wide) == 1 or by_modes(line.n, len(line.wide), line.places_left) < in_time(line.n, line.steps)
 
 
 @dataclass(frozen=True)

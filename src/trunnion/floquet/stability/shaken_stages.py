@@ -13,13 +13,15 @@ from trunnion.results.finding import Finding, Gravity
 def shaken_stages(assembly: Assembly) -> tuple[Finding, ...]:
     """What is said of a line that is judged about its own periodic motion, without its excitations, where these may
     move it across the stages of a spring: then they move its multipliers."""
+    if not has_periodic_base(assembly):
+        return ()
     backlash = set(feature("backlash").places(assembly.line))
     staged = [
         name for name, one in assembly.line.parts
         if (isinstance(one, PiecewiseShaft) and one.breakpoints) or any(at.startswith(f"{name}.") for at in backlash)
     ]  # fmt: skip
     acting = [one.name for one in line_harmonics(assembly) if one.acts]
-    if not (has_periodic_base(assembly) and staged and acting):
+    if not (staged and acting):
         return ()
     sentence = (
         f"{', '.join(dict.fromkeys(acting))} may move {', '.join(dict.fromkeys(staged))} across its stages, which the "

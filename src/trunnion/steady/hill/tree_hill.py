@@ -73,7 +73,8 @@ class TreeHill:
         for one in matrices.beside:
             kept[[one.row, one.column]] = True
             self._vary(one.row, one.column, one.parts)
-        self.ratio = [self._ratio(matrices.ratio[..., e]) for e in range(matrices.ratio.shape[2])]
+        steady = (np.ptp(matrices.ratio, axis=1) <= CONSTANT * np.abs(matrices.ratio).max(axis=1)).all(axis=0)
+        self.ratio = [self._ratio(matrices.ratio[..., e], one) for e, one in enumerate(steady.tolist())]
         for e, (far, near) in enumerate(topo.ends):
             if loss[:, e].any() and near >= 0 and self.ratio[e].shape[1] > 1:
                 kept[[max(far, near), near]] = True
@@ -88,9 +89,9 @@ class TreeHill:
         k, c, m = (part[:, strong] for part in series)
         self.varying.append(Varying(row, column, apart[strong], (k, c, m)))
 
-    def _ratio(self, ratio: Array) -> Complex:
-        """Fourier coefficients (node, time) of a spring's ratio, (node, 1) of one that does not vary."""
-        if np.all(np.ptp(ratio, axis=1) <= CONSTANT * np.abs(ratio).max(axis=1)):
+    def _ratio(self, ratio: Array, steady: bool) -> Complex:
+        """Fourier coefficients (node, time) of a spring's ratio, (node, 1) of one that is ``steady``."""
+        if steady:
             return ratio[:, :1].astype(complex)
         return np.asarray(np.fft.fft(ratio, axis=1) / self.times)
 
