@@ -64,6 +64,17 @@ def test_stability_names_the_speeds_between_which_a_line_has_several_motions():
     assert low < 64.0850750594069 < high < 1.01 * low
 
 
+@pytest.mark.parametrize("beside", [(), (60.0, 70.0)], ids=["alone", "between others"])
+def test_responses_are_refused_where_stability_refuses(beside: tuple[float, ...]):
+    line, speed = scanned_line("free", 190).driveline, 64.0850750594069
+    low, high = refused_between(190, speed)
+    with pytest.raises(tn.ComputationError, match="several periodic motions at 64.0851 rad/s") as refused:
+        tn.order_response(line, [speed, *beside])
+    assert [float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:]] == pytest.approx(
+        [high, low], rel=1e-5
+    )
+
+
 @pytest.mark.slow
 def test_at_the_speeds_that_stability_refuses_motions_from_either_side_do_not_meet():
     low, high = refused_between(190, 64.0850750594069)

@@ -20,6 +20,7 @@ from trunnion.numerics.memory import require_memory
 from trunnion.response.orders.response import (
     completed_response,
     has_rating,
+    one_motion_each,
     order_response,
     response_about,
     steady_states_of,
@@ -133,6 +134,7 @@ def speed_sweep(
     Raises
     ------
     InputError : speeds that are not positive; a line without steady base motion or with too long a period.
+    ComputationError : a free–free line with joint angles has no periodic motion at a speed, or several.
 
     Examples
     --------
@@ -203,6 +205,7 @@ def response_over(
         return order_response(assembly, even, orders, progress=progress)
     speeds, known = _with(even, found.speed), found.spectrum
     del found
+    one_motion_each(assembly, speeds, motions)
     return completed_response(assembly, known, speeds, orders, motions=motions, progress=progress)
 
 

@@ -75,6 +75,7 @@ def order_response(
     Raises
     ------
     InputError : speeds or orders that are not positive; a line without steady base motion or with too long a period.
+    ComputationError : a free–free line with joint angles has no periodic motion at a speed, or several.
 
     Examples
     --------
@@ -89,7 +90,7 @@ def order_response(
     remedy = "np.linspace(tn.rpm(300), tn.rpm(3000), 301)"
     speed = settled_speeds(assembly.line, _positive(speeds_of(speeds, remedy), "speeds", remedy))
     wanted = _listed(orders)
-    twisted, motions = statically_twisted, steady_states_of(assembly)
+    twisted, motions = statically_twisted, one_motion_each(assembly, speed, steady_states_of(assembly))
     spectrum = order_spectrum(assembly, speed, statically_twisted=twisted, motions=motions, progress=progress)
     judged = partial(verdicts_at, assembly, speed, statically_twisted=twisted, motions=motions)
     return _result(assembly, spectrum, judged, wanted)
@@ -124,6 +125,23 @@ def steady_states_of(assembly: Assembly) -> SteadyStatesBySpeed | None:
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
     return SteadyStatesBySpeed(assembly.line)
+
+
+def one_motion_each(
+    assembly: Assembly, speeds: Array, motions: SteadyStatesBySpeed | None
+) -> SteadyStatesBySpeed | None:
+    """``motions``, of which no speed (speed,) [rad/s] has several; see ``steady.free.several_motions``.
+
+    Raises
+    ------
+    ComputationError : the motions fold back, and several have one of the speeds.
+    """
+    lossy = bool(assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())  # about rigid shafts then
+    if motions is not None and not lossy and not motions.obstacle:
+        from trunnion.steady.free.several_motions import require_one_motion_each
+
+        require_one_motion_each(motions, assembly.line, speeds)
+    return motions
 
 
 def response_about(

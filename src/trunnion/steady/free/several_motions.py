@@ -1,16 +1,19 @@
-"""Whether the motion found at one mean speed is the one that the line makes there, or one of several."""
+"""Whether the motion found at a mean speed is the one that the line makes there, or one of several."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
+from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.line_system import ANGLE_SCALE
 from trunnion.errors import ComputationError
 from trunnion.results.speeds import show_speed
 from trunnion.steady.free.free_balance import FreeBalance, SteadyStates
-from trunnion.steady.free.periodic_steady_states import SEVERAL, SteadyStatesBySpeed, breaks
+from trunnion.steady.free.periodic_steady_states import SEVERAL, Break, SteadyStatesBySpeed, breaks, merged
 from trunnion.steady.free.tree_newton import TreeMotions
 
 FAR, BENT = 0.05, 0.25
@@ -41,14 +44,49 @@ def require_one_motion(curve: SteadyStatesBySpeed, line: Driveline, speed: float
     ------
     ComputationError : the motions fold back, and several have this speed.
     """
+    curve.broken = _breaks_about(curve, np.array([speed]))
+    _refuse_folds(curve, line, [speed])
+
+
+def require_one_motion_each(curve: SteadyStatesBySpeed, line: Driveline, speeds: Array) -> None:
+    """The same of every one of ``speeds`` (speed,) [rad/s] at which others may have the same speed, those that lie
+    beside each other together.
+
+    Raises
+    ------
+    ComputationError : the motions fold back, and several have one of these speeds.
+    """
+    asked = np.unique(speeds)
+    motions = curve.at_all(asked)
+    doubtful = asked[[_doubtful(curve.balance, motions.part(slice(i, i + 1))) for i in range(len(asked))]]
+    if len(doubtful):
+        runs = np.split(doubtful, np.flatnonzero(doubtful[1:] > (1 + ASIDE) * doubtful[:-1]) + 1)
+        curve.broken = tuple(merged(one for run in runs for one in _breaks_about(curve, run)))
+        _refuse_folds(curve, line, doubtful.tolist())
+
+
+def _doubtful(balance: FreeBalance, motion: SteadyStates) -> bool:
+    """``leads_elsewhere``, of a line that is no tree: whether the motion is far from rigid shafts."""
+    if balance.of_tree or not motion.found[0]:
+        return leads_elsewhere(balance, motion)
+    return bool(np.abs(motion.rows - balance.rigid(motion.table, motion.h, motion.coefficients)).max() > FAR)
+
+
+def _breaks_about(curve: SteadyStatesBySpeed, speeds: Array) -> tuple[Break, ...]:
+    """Where motions break off among ``speeds`` (speed,), rising, and a little beside."""
     dear = len(curve.balance.turn) >= LONG and not curve.balance.along_tree
     aside = ASIDE_OF_LONG if dear else ASIDE
-    curve.broken = breaks(curve, speed * np.array([1 - aside, 1.0, 1 + aside]), between=not dear)
-    for one in curve.broken:
-        if one.low < speed < one.high and one.why == SEVERAL:
-            low, at, high = (show_speed(each, speed_unit(line)) for each in (one.low, speed, one.high))
-            raise ComputationError(
-                f"the line has several periodic motions at {at}, none of which can be told to be the one it makes: the "
-                f"one that goes on from slower speeds ends at {high}, the one that goes on from faster speeds at "
-                f"{low}; judge it outside these, or give it more damping"
-            )
+    ends = speeds[0] * (1 - aside), speeds[-1] * (1 + aside)
+    return breaks(curve, np.array([ends[0], *speeds, ends[1]]), between=not dear)
+
+
+def _refuse_folds(curve: SteadyStatesBySpeed, line: Driveline, speeds: Iterable[float]) -> None:
+    for speed in speeds:
+        for one in curve.broken:
+            if one.low < speed < one.high and one.why == SEVERAL:
+                low, at, high = (show_speed(each, speed_unit(line)) for each in (one.low, speed, one.high))
+                raise ComputationError(
+                    f"the line has several periodic motions at {at}, none of which can be told to be the one it makes: "
+                    f"the one that goes on from slower speeds ends at {high}, the one that goes on from faster speeds "
+                    f"at {low}; judge it outside these, or give it more damping"
+                )
