@@ -22,9 +22,15 @@ BALANCED = 1e-9
 def require_steady_base(assembly: Assembly, table: Array) -> None:
     """Refuse lines that do not turn steadily at the rows of packed numbers ``table`` (cases, columns).
 
-    A far end held at constant speed fights the joints in front of it, and a free line whose torques do not
-    balance speeds up or slows down.
+    A free line whose torques do not balance speeds up or slows down.
     """
+    require_turning(assembly, table)
+    require_balance(assembly, table)
+
+
+def require_turning(assembly: Assembly, table: Array) -> None:
+    """Refuse lines that cannot turn steadily whatever their torques, at the rows of packed numbers ``table`` (cases,
+    columns): a far end held at constant speed fights the joints in front of it."""
     topo = assembly.topology
     if sum(topo.prescribed) > 1:
         end = [g for g, fixed in enumerate(topo.prescribed) if fixed][-1]
@@ -36,7 +42,6 @@ def require_steady_base(assembly: Assembly, table: Array) -> None:
         )
     if topo.graph and has_joint_angles(assembly, table):
         require_fixed_speeds(topo, joint_laws(assembly, table), assembly.line.names)
-    require_balance(assembly, table)
 
 
 def refuse_periodic_base(assembly: Assembly, remedy: str, *, bends: bool = False) -> None:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.design.assessment.assess import assessment_of, by_case, subject_of
+from trunnion.design.assessment.assess import assessment_of, by_case, require_steady_case, subject_of
 from trunnion.design.assessment.assessment_input import NO_RESPONSE, QUICK, AssessmentInput, LoadCaseResponse, lossy
 from trunnion.design.assessment.check import Check, worst
 from trunnion.design.assessment.deciding import weighed
@@ -24,7 +24,7 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operating_speed import known_speed, operating_speed, speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import require_steady_base
+from trunnion.equations.steady_base import require_turning
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, StabilityOverSpeed
@@ -100,9 +100,11 @@ def asked(line: Driveline, *, speed: float | str | None = None, unit: str | None
     assembly = assemble(line)
     if speed is not None or known_speed(line) is not None:
         speed = operating_speed(line, speed)
-        require_steady_base(assembly, assembly.table(1, speed))
+        require_turning(assembly, assembly.table(1, speed))
     low, high = speed_range(line)
     subject = replace(subject_of(line, (low, high), None, unit, partly=True), speed=speed)
+    if speed is not None:
+        require_steady_case(subject)
     return AssessableLine(line, assembly, unit, speed, (low, high), subject)
 
 

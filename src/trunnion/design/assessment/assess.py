@@ -30,6 +30,8 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit, stated_range
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import assemble
+from trunnion.equations.steady_base import require_balance
+from trunnion.errors import InputError
 from trunnion.floquet.stability.shaken_stages import shaken_stages
 from trunnion.numerics.threads import on_threads
 from trunnion.results.finding import Finding, by_gravity
@@ -64,7 +66,8 @@ def assess(
 
     Raises
     ------
-    InputError : no speed and no range, a range that is reversed, no such load case.
+    InputError : no speed and no range, a range that is reversed, no such load case; torques that balance neither as
+        stated nor in any load case.
 
     Examples
     --------
@@ -76,7 +79,28 @@ def assess(
     >>> print(judged.verdict, judged.binding.name, round(judged.binding.margin, 3))
     satisfied max torque of shaft 0.129
     """
-    return assessment_of(subject_of(line, speeds, load_case, unit, partly=True))
+    subject = subject_of(line, speeds, load_case, unit, partly=True)
+    require_steady_case(subject)
+    return assessment_of(subject)
+
+
+def require_steady_case(subject: AssessmentInput) -> None:
+    """Refuse a line whose torques balance in none of its cases, so that there is no motion to judge.
+
+    Raises
+    ------
+    InputError : as ``require_balance`` says it of the line as stated.
+    """
+    speed = subject.high if subject.speed is None else min(max(subject.speed, subject.low), subject.high)
+    refusals = []
+    for case in subject.cases:
+        try:
+            require_balance(case.assembly, case.assembly.table(1, speed))
+        except InputError as error:
+            refusals.append(error)
+        else:
+            return
+    raise refusals[0]
 
 
 def assessment_of(subject: AssessmentInput) -> Assessment:
