@@ -40,9 +40,10 @@ if TYPE_CHECKING:
 
 DRAWN = 3.0
 """Seconds that the pictures of a report take: with less left than that none is made."""
-LIBRARIES = ("matplotlib.figure", "numba", "scipy.integrate", "scipy.optimize", "scipy.stats", "h5netcdf", "jinja2")
-"""What report and chart stand on. Python compiles it when it is loaded for the first time, which costs as much as the
-report itself and is as little of its time as compiling is."""
+LIBRARIES = ("matplotlib.figure", "numba", "scipy.optimize", "jinja2")
+OF_CHARTS = ("scipy.integrate", "h5netcdf")
+"""What a report stands on, and what the chart of a line with Hooke's joints does besides. Python compiles it when it is
+loaded for the first time, which costs as much as the report itself and is as little of its time as compiling is."""
 REST, HANDED_IN, LEAST = 10.0, 60.0, 0.05
 """Seconds of processor time, compiling and loading not counted, that report and chart may take where no time is given,
 and the report to hand in, which is to be complete; seconds at least where it is."""
@@ -96,6 +97,7 @@ def analyze(
     seconds = None if within is None else read_time(within, "--within")
     from trunnion.cli.files import check_report
     from trunnion.cli.report import overview_json, print_begin, print_findings, print_judged, print_overview
+    from trunnion.driveline.driveline import hooke_joints
     from trunnion.reporting.overview import at_speed
     from trunnion.reporting.overview_assessment import answer as answer_of
     from trunnion.reporting.overview_assessment import asked, judged
@@ -123,7 +125,7 @@ def analyze(
         output.written(written)
         return
     if seconds is None:
-        for name in LIBRARIES:
+        for name in (*LIBRARIES, *(OF_CHARTS if hooke_joints(given.line) else ())):
             import_module(name)
     left = REST if seconds is None else max(seconds - (time.monotonic() - begun), LEAST)
     with output.stoppable(left, of_processor=seconds is None, stated=seconds) as limit:

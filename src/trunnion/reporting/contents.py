@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from math import inf
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -15,10 +15,9 @@ from trunnion.design.limits.stable_limit import limit_of_chart
 from trunnion.design.remedies.remedies import remedies_of
 from trunnion.design.remedies.result import Remedies
 from trunnion.driveline.driveline import hooke_joints
+from trunnion.equations.coefficients import Assembly
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
-from trunnion.measured.overlay import MeasuredComparison, compare_measured
-from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.modes.bending import BendingSpeed, bending_speeds
 from trunnion.modes.resonance_speeds import ResonanceSpeeds, resonance_speeds
 from trunnion.reporting.overview import Overview
@@ -31,6 +30,10 @@ from trunnion.response.speed_sweep import SpeedSweep, response_over, sweep_of
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.words import Words
 from trunnion.waiting import OutOfTime, time_kept
+
+if TYPE_CHECKING:
+    from trunnion.measured.overlay import MeasuredComparison
+    from trunnion.measured.tracking.result import MeasuredOrders
 
 Found = TypeVar("Found")
 HELPED = inf, 0.4
@@ -102,11 +105,17 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
         life=_life(seen, left_out),
         measured=None
         if measured is None
-        else unless_refused("Measured orders", lambda: compare_measured(assembly, measured)),
+        else unless_refused("Measured orders", lambda: _compared(assembly, measured)),
         findings=by_gravity([*seen.findings, *more]),
         left_out=tuple(left_out),
     )
     return with_chart(whole, seen)
+
+
+def _compared(assembly: Assembly, measured: MeasuredOrders) -> MeasuredComparison:
+    from trunnion.measured.overlay import compare_measured  # which loads what reads and tracks signals
+
+    return compare_measured(assembly, measured)
 
 
 def with_chart(contents: Contents, seen: Overview) -> Contents:

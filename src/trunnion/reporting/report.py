@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,8 +16,6 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.elements import ConstantSpeed
 from trunnion.driveline.features import feature
 from trunnion.errors import ComputationError, InputError
-from trunnion.measured.overlay import MeasuredComparison
-from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.reporting import tables
 from trunnion.reporting.binding import binding_picture
 from trunnion.reporting.contents import Contents, gather, with_chart
@@ -30,6 +28,10 @@ from trunnion.results.speeds import frequency_unit as reading_of_frequencies
 from trunnion.results.speeds import speed_factor
 from trunnion.results.words import Words
 from trunnion.waiting import to_the_end
+
+if TYPE_CHECKING:
+    from trunnion.measured.overlay import MeasuredComparison
+    from trunnion.measured.tracking.result import MeasuredOrders
 
 
 @dataclass(frozen=True)
@@ -194,12 +196,12 @@ def pictures(contents: Contents) -> dict[str, ReportPicture]:
 
 def measured_pictures(contents: Contents) -> dict[str, ReportPicture]:
     """Measured orders over the response of every kind of channel, on the Campbell diagram, and on the run-up."""
-    from trunnion.pictures.draw_matplotlib import draw
-    from trunnion.pictures.measured import comparison, on_campbell, on_run_up
-
     found, shown = contents.measured, {}
     if found is None:
         return {}
+    from trunnion.pictures.draw_matplotlib import draw
+    from trunnion.pictures.measured import comparison, on_campbell, on_run_up
+
     for name in compared_channels(found):
         key = f"measured {name}"
         shown[key] = picture(

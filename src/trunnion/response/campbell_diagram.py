@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trunnion.arrays import Array, Complex, Integers
+from trunnion.arrays import Array, Complex, Integers, Places
 from trunnion.driveline.arguments import one_number, speeds_of
 from trunnion.driveline.composite import owners
 from trunnion.driveline.driveline import Driveline
@@ -30,6 +30,7 @@ from trunnion.errors import InputError
 from trunnion.features import left_out
 from trunnion.laws.harmonic import forward, turning
 from trunnion.modes.loaded_modes import loaded_modes
+from trunnion.numerics.bracketing import bracketed
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, members, variable
@@ -329,8 +330,8 @@ def _crossings(
 def closed_in(
     assembly: Assembly, between: tuple[float, float], first: float, line: ExcitationLine
 ) -> tuple[float, float, float | None]:
-    """Speed, frequency and damping ratio where a line that turns forward meets a mode between two speeds, by halving;
-    without a ratio where the mode jumps over it. ``first``: frequency of the mode at the lower speed [rad/s]."""
+    """Speed, frequency and damping ratio where a line that turns forward meets a mode between two speeds; without a ratio
+    where the mode jumps over it, just behind the jump. ``first``: frequency of the mode at the lower speed [rad/s]."""
 
     def here(at: float) -> tuple[float, float, float]:
         values, _ = loaded_modes(assembly, np.array([between[0], at]))
@@ -338,11 +339,14 @@ def closed_in(
         found = values[1, m]
         return line.order * at + line.frequency - found.imag, found.imag, -found.real / abs(found)
 
+    def off_at(points: Array, which: Places) -> Array:
+        return np.array([here(float(at))[0] for at in points])
+
     low, high = between
-    below = line.order * low + line.frequency < first
-    while high - low > CLOSE * high:
-        middle = (low + high) / 2
-        off, frequency, ratio = here(middle)
-        low, high = (middle, high) if (off < 0) == below else (low, middle)
-    off, frequency, ratio = here(high)
-    return high, frequency, ratio if abs(off) <= 10 * CLOSE * abs(frequency) * max(abs(line.order), 1.0) else None
+    ends = np.array([line.order * low + line.frequency - first]), off_at(np.array([high]), np.arange(1))
+    (at,) = bracketed(off_at, np.array([low]), np.array([high]), CLOSE * high, known=ends).tolist()
+    off, frequency, ratio = here(at)
+    if abs(off) <= 10 * CLOSE * abs(frequency) * max(abs(line.order), 1.0):
+        return at, frequency, ratio
+    behind = min(at + CLOSE * high, high)
+    return behind, here(behind)[1], None
