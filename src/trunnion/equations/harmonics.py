@@ -17,6 +17,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -241,10 +242,11 @@ def cylinders(disk: Rotor, law: Excitation) -> complex:
 
 def unexcited(line: Driveline) -> Driveline:
     """``line`` without excitations of disks and transmission errors."""
+    changes: dict[str, dict[str, Any]] = {}
     for name, element in zip(line.names, line.elements, strict=True):
         if isinstance(element, Rotor) and element.excitation:
             keys = ("excitation", "firing_angles", "misfiring")
-            line = line.replace(name, **{key: None for key in keys if key in type(element).model_fields})
+            changes[name] = {key: None for key in keys if key in type(element).model_fields}
         if isinstance(element, GearPair) and element.transmission_error:
-            line = line.replace(name, transmission_error=())
-    return line
+            changes[name] = {"transmission_error": ()}
+    return line.replace_all(changes)

@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 Found = TypeVar("Found")
 HELPED = inf, 0.4
 """Of a time limit around a report, what the search for remedies leaves to the chart, and the share that it takes."""
+DRAWN = 241, 121
+"""Speeds of the even grid on which torque is drawn; fewer where every speed takes a motion of its own. Resonances and
+largest values have speeds of their own."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ class Contents:
 def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
     """What an overview does not hold yet: what would help, modes and torques over speed, irregularity, bending; and
     ``measured`` orders over what the line predicts."""
-    assembly = seen.assembly
+    assembly, stated = seen.assembly, seen.subject.cases[0]
     low, high = _speeds(seen)
     left_out: list[str] = []
 
@@ -80,7 +83,11 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
         turn = seen.turn or unless_refused("Irregularity", lambda: kinetostatics(seen.line))
         sweep = unless_refused(
             "Torque over speed",
-            lambda: sweep_of(response_over(assembly, low, high)),
+            lambda: sweep_of(
+                response_over(
+                    assembly, low, high, points=DRAWN[stated.costly], known=stated.response, motions=stated.motions
+                )
+            ),
         )
     campbell = unless_refused("Campbell diagram", lambda: campbell_diagram(assembly, np.linspace(low, high, 201)))
     bending = bending_speeds(assembly)
@@ -103,9 +110,7 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
         campbell=campbell,
         helped=helped,
         life=_life(seen, left_out),
-        measured=None
-        if measured is None
-        else unless_refused("Measured orders", lambda: _compared(assembly, measured)),
+        measured=None if measured is None else unless_refused("Measured orders", lambda: _compared(assembly, measured)),
         findings=by_gravity([*seen.findings, *more]),
         left_out=tuple(left_out),
     )

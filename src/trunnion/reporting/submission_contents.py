@@ -327,7 +327,7 @@ def _malfunction(
 
 
 def _without(case: LoadCaseResponse, name: str, key: str, number: int) -> LoadCaseResponse:
-    # Which mode leads is not printed of them, and takes the modes of every speed.
-    effort = replace(case.effort, named=False)
+    # Which mode leads is not printed of them, and takes the modes of every speed; nor are peaks.
+    effort, asked = replace(case.effort, named=False), tuple(one for one in case.torques if one[0] == "vibratory")
     failing = assemble(case.assembly.line.replace(name, **{key: number}))
-    return replace(with_other_excitations(case, failing), effort=effort)
+    return replace(with_other_excitations(case, failing), effort=effort, torques=asked)

@@ -330,8 +330,9 @@ def _crossings(
 def closed_in(
     assembly: Assembly, between: tuple[float, float], first: float, line: ExcitationLine
 ) -> tuple[float, float, float | None]:
-    """Speed, frequency and damping ratio where a line that turns forward meets a mode between two speeds; without a ratio
-    where the mode jumps over it, just behind the jump. ``first``: frequency of the mode at the lower speed [rad/s]."""
+    """Speed, frequency and damping ratio where a line that turns forward meets a mode between two speeds; without a
+    ratio where the mode jumps over it, just behind the jump. ``first``: frequency of the mode at the lower speed
+    [rad/s]."""
 
     def here(at: float) -> tuple[float, float, float]:
         values, _ = loaded_modes(assembly, np.array([between[0], at]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -14,7 +14,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances
-from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.span import SmoothRange, Span
 from trunnion.floquet.stability.where_unstable import where_unstable
 from trunnion.numerics.memory import require_memory
 from trunnion.response.orders.response import (
@@ -195,18 +195,21 @@ def response_over(
     orders: Iterable[float] | None = None,
     *,
     points: int = 241,
+    known: OrderResponse | None = None,
+    motions: SteadyStatesBySpeed | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> OrderResponse:
-    """``order_response`` at the speeds of ``sweep_speeds``, each of them solved once."""
+    """``order_response`` at the speeds of ``sweep_speeds``, each of them solved once; ``known``: the response where it
+    was searched over this range already, and the ``motions`` that it is about."""
     assembly, even = assemble(line), _even(low, high, points)
-    motions = steady_states_of(assembly)
-    found = _searched(assembly, even, motions)
+    motions = motions or steady_states_of(assembly)
+    found = _searched(assembly, even, motions, known)
     if found is None:
         return order_response(assembly, even, orders, progress=progress)
-    speeds, known = _with(even, found.speed), found.spectrum
-    del found
+    speeds, solved = _with(even, found.speed), found.spectrum
+    del found, known
     one_motion_each(assembly, speeds, motions)
-    return completed_response(assembly, known, speeds, orders, motions=motions, progress=progress)
+    return completed_response(assembly, solved, speeds, orders, motions=motions, progress=progress)
 
 
 def _even(low: float, high: float, points: int) -> Array:
@@ -219,17 +222,32 @@ def _with(even: Array, found: Array) -> Array:
     return every[(every >= even[0]) & (every <= even[-1])]
 
 
-def _searched(assembly: Assembly, even: Array, motions: SteadyStatesBySpeed | None = None) -> OrderResponse | None:
-    """The response at all speeds at which the search for the largest torques looked; None where there is none."""
+def _searched(
+    assembly: Assembly,
+    even: Array,
+    motions: SteadyStatesBySpeed | None = None,
+    known: OrderResponse | None = None,
+) -> OrderResponse | None:
+    """The response at all speeds at which the search for the largest torques looked, from those on at which it is
+    ``known``; None where there is none."""
     span = Span(assembly, float(even[0]), float(even[-1]))
     try:
         met = resonances(span)
         about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
         first = [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
         respond = partial(response_about, assembly, motions=motions)
+        if known is not None and _spans(known.speed, span.pieces):
+            found = search(assembly, respond, [known.speed], _torques(assembly), known=known).response
+            return completed_response(assembly, found.spectrum, np.union1d(found.speed, first[0]), motions=motions)
         return search(assembly, respond, first, _torques(assembly)).response
     except (InputError, ComputationError):  # said where the response is asked for
         return None
+
+
+def _spans(speeds: Array, pieces: Sequence[SmoothRange]) -> bool:
+    """Whether ``speeds`` are those of the only piece, from end to end."""
+    whole = len(pieces) == 1 and speeds[0] == pieces[0].low and speeds[-1] == pieces[0].high
+    return bool(whole and np.all(np.diff(speeds) > 0))
 
 
 def _between(speeds: Array, part: Array) -> Array:

@@ -453,7 +453,7 @@ class LoadCaseResponse:
             code = np.where(undecided & ~inside, Verdict.UNDECIDED, np.where(inside, Verdict.UNSTABLE, Verdict.STABLE))
             return np.broadcast_to(code, found.speed.shape).astype(np.int8)
 
-        return found if self.rough else replace(found, judged=verdicts)
+        return found if self.rough else replace(found, judged=verdicts).knowing(found.known_ranges)
 
     @property
     def response(self) -> OrderResponse | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -93,6 +93,17 @@ class OrderResponse(Result):
         """True where excitations repeat together only after more than 60 turns of the input, or periods of the slowest
         of them, or never: sums over the cycle are sums of amplitudes."""
         return not self.spectrum.adds_exactly
+
+    @property
+    def known_ranges(self) -> dict[str, Range]:
+        """Ranges over the cycle that are computed already, by name."""
+        return {name: vars(self)[name] for name in ("torque_range", "twist_range") if name in vars(self)}
+
+    def knowing(self, ranges: Mapping[str, Range]) -> OrderResponse:
+        """The same, whose ``known_ranges`` are these."""
+        found = replace(self)
+        vars(found).update(ranges)
+        return found
 
     @cached_property
     def torque_range(self) -> Range:

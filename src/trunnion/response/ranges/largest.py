@@ -29,7 +29,7 @@ from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.numerics.curves import parabola
 from trunnion.response.orders.response import response_of_spectrum
 from trunnion.response.orders.result import OrderResponse
-from trunnion.steady.orders.amplitudes import joined
+from trunnion.steady.orders.amplitudes import Range, joined
 from trunnion.waiting import OutOfTime
 
 POINTS = 65
@@ -255,12 +255,14 @@ class _SearchedRanges:
     ) -> None:
         self.assembly, self.respond, self.quantities = assembly, respond, quantities
         self.response: OrderResponse | None = None
+        self.ranges: dict[str, Range] = {}  # over the cycle, what every look computed anyway
         self.values = np.zeros((0, len(quantities)))
         self.piece = np.zeros(0, dtype=np.intp)
         self.looks = 0
         self.look_of = np.zeros(0, dtype=np.intp)  # the look (speed,) in which each was new
         # By amplitudes and piece, as after a look.
         self.poles: dict[tuple[Hashable, int], tuple[int, Poles, SeenPoles]] = {}
+        self.columns: tuple[list[float], list[float]] = [], []  # order and frequency of the amplitudes
         self.parabolas: dict[int, tuple[int, Parabolas]] = {}  # by piece, as after a look
         self.parts: tuple[int, int, Complex] = (0, -1, np.zeros((0, 0), dtype=complex))  # after a look, of a quantity
 
@@ -270,11 +272,20 @@ class _SearchedRanges:
         piece = np.repeat(np.arange(len(wanted)), [len(part) for part in wanted])
         new = known or self.respond(speeds)
         values = np.stack([q.values(new) for q in self.quantities], axis=1) if self.quantities else self.values[:0]
+        before, ranges = None if self.response is None else self.ranges, new.known_ranges
         parts = [new.spectrum] if self.response is None else [self.response.spectrum, new.spectrum]
         del new, known
         self.response = None  # of many speeds it is large
         together, order = joined(parts)
+        self.ranges = {
+            name: one.rows(order) if before is None else before[name].with_rows(one).rows(order)
+            for name, one in ranges.items()
+            if before is None or name in before
+        }
         self.response = response_of_spectrum(self.assembly, together, remarked=False)
+        columns = self.response.order.tolist(), self.response.frequency.tolist()
+        if columns != self.columns:  # an order that is not worth listing any more, or is now
+            self.columns, self.poles = columns, {}
         self.values = np.concatenate([self.values, values.reshape(len(speeds), -1)])[order]
         self.piece = np.concatenate([self.piece, piece])[order]
         self.looks += 1
@@ -416,7 +427,7 @@ class _SearchedRanges:
                 more = np.max(np.concatenate(hidden), initial=value[q]) - value[q]
                 bend = max(self._bend(q, run, place) for run in self._runs)
                 error[q] = max(more, bend, tolerance / 4 * value[q])  # less than that is not looked for
-        response = response_of_spectrum(self.assembly, self.response.spectrum)
+        response = response_of_spectrum(self.assembly, self.response.spectrum).knowing(self.ranges)
         return Largest(response, at.astype(np.intp), value, error)
 
     def _bend(self, q: int, run: slice, place: int) -> float:

@@ -35,6 +35,14 @@ class Range(NamedTuple):
         """Largest absolute values."""
         return np.maximum(np.abs(self.low), np.abs(self.high))
 
+    def with_rows(self, others: Range) -> Range:
+        """Their rows behind its own."""
+        return Range(np.concatenate([self.low, others.low]), np.concatenate([self.high, others.high]))
+
+    def rows(self, which: Places) -> Range:
+        """Some of its rows."""
+        return Range(self.low[which], self.high[which])
+
 
 def _by_frequency(key: Key) -> tuple[float, Fraction]:
     return key[1], key[0]
