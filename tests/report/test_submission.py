@@ -17,7 +17,7 @@ from trunnion.modes.mass_elastic import holzer, masses, springs
 from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
-from trunnion.reporting.submission_tables import barred, excitations, misfire_checks, rules
+from trunnion.reporting.submission_tables import barred, excitations, holzer_table, misfire_checks, rules
 
 TEXT = """
 format = 1
@@ -378,3 +378,29 @@ def test_what_time_did_not_allow_is_said_and_not_denied(monkeypatch: pytest.Monk
     assert "not all judged, see section 6" in page.html and "not all computed, see section 10" in page.html
     assert "has no cylinders" not in page.html and "Nothing becomes warm" not in page.html
     assert ("Every torque is searched over the whole range" in page.html) is bool(searches)
+
+
+def test_a_printed_holzer_table_adds_up() -> None:
+    """θ, Σ J ω² θ and twists by hand from what is printed, mass by mass, to the four digits there (Holzer 1921)."""
+    contents = made().contents
+    (first, *_), found = contents.holzer, contents.seen.natural_frequencies
+    on_masses, in_springs = holzer_table(contents, first)
+    assert on_masses.heads == ("no.", "mass", "J [kg m²]", "amplitude", "J ω² θ [N m]")
+    assert in_springs.heads == ("spring", "masses", "k [kN m/rad]", "torque [N m]", "twist [mrad]", "node [%]")
+
+    def printed(text: object) -> float:
+        return float(str(text).replace("−", "-"))
+
+    square = float(found.elastic[0]) ** 2
+    inertia, amplitude, inertial = (np.array([printed(row[i]) for row in on_masses.rows]) for i in (2, 3, 4))
+    stiffness, torque, twist = (np.array([printed(row[i]) for row in in_springs.rows]) for i in (2, 3, 4))
+    close = {"rtol": 2e-3, "atol": 2e-3 * float(np.abs(inertial).max())}
+    np.testing.assert_allclose(inertia * square * amplitude * 1e-3, inertial, **close)
+    np.testing.assert_allclose(np.cumsum(inertial)[:-1], -torque, **close)
+    np.testing.assert_allclose(torque / stiffness, twist, rtol=2e-3)
+    np.testing.assert_allclose(np.diff(amplitude), twist, rtol=2e-3, atol=2e-3)
+    assert abs(inertial.sum()) < 2e-3 * np.abs(inertial).max()
+    assert [row[1] for row in in_springs.rows] == ["1 – 2", "2 – 3"]
+    nodes = [printed(row[5]) for row in in_springs.rows if row[5]]
+    (at,) = np.flatnonzero(amplitude[1:] * amplitude[:-1] < 0)
+    assert nodes == [round(100 * abs(amplitude[at] / (amplitude[at + 1] - amplitude[at])))]

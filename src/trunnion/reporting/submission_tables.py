@@ -95,7 +95,7 @@ def particulars(contents: SubmissionContents) -> Table:
     elastic = seen.natural_frequencies.elastic
     if len(elastic):
         lowest = ", ".join(four(float(one) * HERTZ.factor) for one in elastic[:3])
-        rows.append(("lowest natural frequencies", f"{lowest} Hz"))
+        rows.append(("lowest undamped modes", f"{lowest} Hz"))
     if contents.misfiring or contents.unsearched:
         rows.append(("a cylinder out of work", _malfunction(contents)))
     if contents.left_out:
@@ -167,12 +167,12 @@ def mass_table(contents: SubmissionContents) -> Table:
 
 def spring_table(contents: SubmissionContents) -> Table:
     """Springs of the mass–elastic system, at the speed of the mass behind them."""
-    rows = springs(contents.seen.assembly)
+    rows, numbers = springs(contents.seen.assembly), _numbers(contents)
     prefix, size = _prefix(row.stiffness for row in rows)
     return Table.of(
         {
             "spring": row.name,
-            "between": f"{row.between[0]} – {row.between[1]}",
+            "masses": _between(row, numbers),
             f"stiffness [{prefix}N m/rad]": row.stiffness / size,
             f"referred to the input [{prefix}N m/rad]": row.referred / size,
             "damping [N m s/rad]": row.damping,
@@ -181,6 +181,16 @@ def spring_table(contents: SubmissionContents) -> Table:
         }
         for row in rows
     )
+
+
+def _numbers(contents: SubmissionContents) -> dict[str, int]:
+    """Of masses by name, as their table has them."""
+    return {row.name: i for i, row in enumerate(masses(contents.seen.assembly), start=1)}
+
+
+def _between(row: SpringRow, numbers: dict[str, int]) -> str:
+    """The two masses by number; what drives the line by name."""
+    return " – ".join(str(numbers.get(name, name)) for name in row.between)
 
 
 def _loss(row: SpringRow) -> str:
@@ -197,16 +207,20 @@ def _prefix(values: Iterable[float]) -> tuple[str, float]:
 
 
 def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table, Table]:
-    """Masses and springs of one mode, at ±1 mrad of the mass that moves most."""
+    """Masses and springs of one mode, at ±1 mrad of the mass that moves most: inertia, amplitude, torque of inertia;
+    then what these add up to in each spring, its stiffness, its twist."""
     amplitudes, inertial, between = (
         _without_rounding(one) for one in (mode.amplitude, mode.inertia_torque, mode.torque)
     )
-    listed = masses(contents.seen.assembly)
+    listed, held, numbers = masses(contents.seen.assembly), springs(contents.seen.assembly), _numbers(contents)
     prefix, size = _prefix([*(MILLI * inertial), *(MILLI * between)])
+    stiff, unit = _prefix(row.stiffness for row in held)
     balance = [
         {
+            "no.": numbers[row.name],
             "mass": row.name,
-            "relative amplitude": float(amplitude),
+            "J [kg m²]": row.inertia,
+            "amplitude": float(amplitude),
             f"J ω² θ [{prefix}N m]": MILLI * float(torque) / size,
         }
         for row, amplitude, torque in zip(listed, amplitudes, inertial, strict=True)
@@ -215,10 +229,13 @@ def holzer_table(contents: SubmissionContents, mode: HolzerTable) -> tuple[Table
     in_springs = [
         {
             "spring": row.name,
+            "masses": _between(row, numbers),
+            f"k [{stiff}N m/rad]": row.stiffness / unit,
             f"torque [{prefix}N m]": MILLI * float(torque) / size,
-            "node [% of the twist in front of it]": f"{100 * at[row.name]:.0f}" if row.name in at else "",
+            "twist [mrad]": float(torque) / row.stiffness if row.stiffness else np.nan,
+            "node [%]": f"{100 * at[row.name]:.0f}" if row.name in at else "",
         }
-        for row, torque in zip(springs(contents.seen.assembly), between, strict=True)
+        for row, torque in zip(held, between, strict=True)
     ]
     return Table.of(balance), Table.of(in_springs)
 
@@ -267,7 +284,7 @@ def _excitations(
         shakes = element.of_one_cylinder if isinstance(element, Engine) else getattr(element, "excitation", ())
         disk = _firing_throw(name, element) if isinstance(element, Engine) else name
         for i, one in enumerate(shakes, start=1):
-            phase = four(float(np.rad2deg(one.phase))) if not one.phases else "of the table"
+            phase = four(float(np.rad2deg(one.phase))) if not one.phases else "table"
             known = sizes.get((disk, i))
             there = ("", "") if known is None else (four(abs(known) / unit), four(float(np.rad2deg(np.angle(known)))))
             yield called, order_name(one.order or 0.0, one.frequency or 0.0), _size(one), phase, *there
@@ -303,7 +320,7 @@ def _size(one: Excitation) -> str:
         return f"{four(one.quadratic_amplitude)}\N{NO-BREAK SPACE}N\N{NO-BREAK SPACE}m\N{NO-BREAK SPACE}s² times ω²"
     if one.share is not None:
         return f"{four(100 * one.share)} % of the mean torque"
-    return f"table of {len(one.amplitudes)} points up to {_torque(one.largest)}"
+    return f"table of {len(one.amplitudes)}, up to {_torque(one.largest)}"
 
 
 def _torque(value: float) -> str:
