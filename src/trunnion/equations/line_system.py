@@ -260,7 +260,7 @@ class LineSystem(Portable):
             begin += law.numbers.size
         added = co.shift[case].copy()
         for s, joint in zip(topo.joints, co.joints, strict=True):
-            stations[s, core.PHASE] = self._carried[s] @ added
+            stations[s, core.PHASE] = self.carried[s] @ added
             added[s] += joint.turned
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
@@ -338,7 +338,7 @@ class LineSystem(Portable):
         return compliances
 
     @cached_property
-    def _carried(self) -> Array:
+    def carried(self) -> Array:
         """By how much every station turns on with what is added to the rotation of another (station, station)."""
         topo = self.assembly.topology
         carried = np.eye(len(topo.stations))

@@ -68,6 +68,15 @@ def rate(rows: Array, omega: float) -> Array:
     return np.concatenate([np.zeros_like(rows[..., :1]), k * rows[..., h + 1 :], -k * rows[..., 1 : h + 1]], axis=-1)
 
 
+def add_rate(to: Array, rows: Array) -> None:
+    """Add to ``to`` the products of matrices ``rows`` (…, 2h + 1) with ``rate_matrix`` from the right, which is minus
+    its transpose."""
+    h = order(rows)
+    k = np.arange(1.0, h + 1)
+    to[..., 1 : h + 1] += k * rows[..., h + 1 :]
+    to[..., h + 1 :] -= k * rows[..., 1 : h + 1]
+
+
 def rate_matrix(h: int, omega: float) -> Array:
     """The matrix that does the same to one row."""
     return np.ascontiguousarray(rate(np.eye(2 * h + 1), omega).T)

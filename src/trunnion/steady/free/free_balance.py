@@ -24,6 +24,7 @@ from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
 from trunnion.equations.loads import drive_places, drive_torques
+from trunnion.equations.numbers_of_rows import numbers_of_rows
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
@@ -186,7 +187,7 @@ class FreeBalance:
 
     def numbers(self, table: Array, co: LineCoefficients) -> Array:
         """What the compiled equations read (case, number)."""
-        return np.stack([self.line.numbers(row, known=co, case=i) for i, row in enumerate(table)])
+        return numbers_of_rows(self.line, table, co)
 
     def _at_speeds(self, speed: Array) -> Array:
         table = self.assembly.table(len(speed))
@@ -290,14 +291,15 @@ class FreeBalance:
         cases, wide = len(rate), 2 * h + 1
         rates, slopes = motions.sampled()
         speed = motions.speed
+        by_speed = np.repeat([-1.0 / speed**2, rate / speed**2], n, axis=0).T[:, None, None]
+        both = fourier.product_blocks(slopes[..., n:, :] * by_speed, h)
+        matrix = both[..., :n, :].copy()
+        fourier.add_rate(matrix, both[..., n:, :])
         d = fourier.rate_matrix(h, 1.0)
-        by_angle, by_speed = (fourier.product_blocks(part, h) for part in np.split(slopes[..., n:, :], 2, axis=-1))
-        # Products with D from the right: D is minus its transpose.
-        matrix = fourier.rate(by_speed, 1.0) * rate[:, None, None, None, None] - by_angle
-        matrix[:, np.arange(n), :, np.arange(n), :] += (d @ d) * (rate**2)[:, None, None]
+        matrix[:, np.arange(n), :, np.arange(n), :] += (d @ d) * ((rate / speed) ** 2)[:, None, None]
         size = n * wide
         whole = np.zeros((cases, size + 1, size + 1))
-        whole[:, :size, :size] = matrix.reshape(cases, size, size) / (speed**2)[:, None, None]
+        whole[:, :size, :size] = matrix.reshape(cases, size, size)
         missing = self._missing(motions, unit, rates)
         if not self.free:  # no torque is missing
             whole[:, size, size] = 1.0
