@@ -76,10 +76,11 @@ class BoxCoefficients:
 
 
 def box_coefficients(
-    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], last: int
+    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], last: int, powers: int = 0
 ) -> BoxCoefficients:
-    """Of the box from ``speeds[0]`` to ``speeds[1]`` and over all ``ranges``, as waves of ``last`` harmonics."""
-    topo, many = assembly.topology, 1 + len(ranges)
+    """Of the box from ``speeds[0]`` to ``speeds[1]`` and over all ``ranges``, as waves of ``last`` harmonics and
+    ``powers`` of the first parameter beyond it."""
+    topo, many = assembly.topology, 1 + len(ranges) + powers
     table = assembly.table(1 + 2 * len(ranges), sum(speeds) / 2)
     for k, one in enumerate(ranges):
         values = np.full(len(table), (one.low + one.high) / 2)
@@ -185,7 +186,7 @@ def _put_twists(
         else:
             own = float(shaft_stiffness(assembly, assembly.table(1, float(co.speed[0])), i, number)[0])
             twisted = torque * (1 / own)
-            shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size)
+            shift[behind] = shift[behind] + Wave(twisted.parts, twisted.rest + STATED * twisted.size, twisted.powers)
 
 
 def _inverses(

@@ -44,7 +44,8 @@ class BoxMatrix:
     """A(τ, p) (2n, 2n): ``parts`` (1 + parameters, 2K + 1, 2n, 2n), and a bound of what they leave out (2n, 2n).
 
     ``rate`` s: cycles of the first harmonic per turn of the input; ``speed``: middle and half width of Ω [rad/s];
-    ``energy`` (2n, 2n): of the middle, twice it, floating point. A free–free line has one state less.
+    ``energy`` (2n, 2n): of the middle, twice it, floating point. A free–free line has one state less. ``powers`` : of
+    the first parameter among the parameters, see ``waves``.
     """
 
     parts: Complex
@@ -52,6 +53,7 @@ class BoxMatrix:
     rate: float
     speed: tuple[float, float]
     energy: Array
+    powers: int = 0
 
     @property
     def last(self) -> int:
@@ -198,7 +200,7 @@ class BoxLine:
             for m, amplitude, phase in zip(law.orders, law.amplitude, law.phase, strict=True):
                 a, at = float(np.ravel(amplitude)[0]), float(np.ravel(phase)[0])
                 z = circle(m) * complex(np.exp(1j * at))
-                z = Wave(z.parts, z.rest + 1e-13 * z.size)
+                z = Wave(z.parts, z.rest + 1e-13 * z.size, z.powers)
                 sine, cosine = (z - z.conjugate()) * (-0.5j * a), (z + z.conjugate()) * (0.5 * a)
                 forward, eta = forward + sine, eta + cosine * m
                 slope, curvature = slope - sine * m**2, curvature - cosine * m**3
@@ -274,7 +276,7 @@ class BoxLine:
                 if entry.size:
                     entries[springs + i, springs + j] = entry
         # Ratios are exact fractions, of which E and ρ are the nearest numbers.
-        entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size) for place, one in entries.items()}
+        entries = {place: Wave(one.parts, one.rest + ROUNDED * one.size, one.powers) for place, one in entries.items()}
         return BoxEntries(entries, energy, light, aside)
 
     def _made(self, found: BoxEntries) -> BoxMatrix:
@@ -345,7 +347,7 @@ class BoxLine:
                 at = complex(one.complex_amplitude[0]) / 2
                 up = affine(1.0, {}, self.parameters, self.last).shifted(round(float(one.order) / rate)) * at
                 wave = wave + up + up.conjugate()
-            found[mesh.compliance] = Wave(wave.parts, wave.rest + 1e-13 * wave.size)
+            found[mesh.compliance] = Wave(wave.parts, wave.rest + 1e-13 * wave.size, wave.powers)
         return found
 
 

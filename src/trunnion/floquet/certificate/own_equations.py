@@ -47,7 +47,7 @@ class MotionWaves:
 
     def widened(self, radii: Array) -> MotionWaves:
         """All motions near it: each state within its radius."""
-        states = [Wave(one.parts, one.rest + float(r)) for one, r in zip(self.states, radii, strict=True)]
+        states = [Wave(one.parts, one.rest + float(r), one.powers) for one, r in zip(self.states, radii, strict=True)]
         many = len(self.twist)
         return MotionWaves(tuple(states[:many]), tuple(states[many:]), self.drive)
 
@@ -69,7 +69,8 @@ class Rates:
 @dataclass(frozen=True)
 class MotionEquations:
     """Of one box. ``drive`` (station,): torque [N m] in the mean sense there of one at the input that drives;
-    ``stages`` of springs that have some."""
+    ``stages`` of springs that have some; ``powers`` of the first parameter beyond it among the ``parameters``, see
+    ``waves``."""
 
     assembly: Assembly
     co: BoxCoefficients
@@ -77,6 +78,7 @@ class MotionEquations:
     last: int
     drive: Array
     stages: tuple[OwnStage, ...] = ()
+    powers: int = 0
 
     @property
     def rate(self) -> float:
@@ -255,7 +257,7 @@ def _add(to: dict[int, Wave], what: dict[int, Wave], by: Wave | float) -> None:
 def derivative(wave: Wave, rate: float) -> Wave:
     """By φ, of a wave without rest."""
     order = 1j * rate * np.arange(-wave.last, wave.last + 1)
-    return Wave(wave.parts * order, 1e-15 * float(np.abs(wave.parts * order).sum()))
+    return Wave(wave.parts * order, 1e-15 * float(np.abs(wave.parts * order).sum()), wave.powers)
 
 
 def residuals(own: MotionEquations, motion: MotionWaves, found: Rates) -> list[Wave]:
@@ -266,7 +268,7 @@ def residuals(own: MotionEquations, motion: MotionWaves, found: Rates) -> list[W
 def motion_of(own: MotionEquations, parts: Sequence[Complex], drive: Array) -> MotionWaves:
     """States by their parts (1 + parameters, 2K + 1) and the torque's (1 + parameters,)."""
     many, last = len(own.assembly.topology.compliances), own.last
-    states = [Wave(np.asarray(one, dtype=complex), 0.0) for one in parts]
+    states = [Wave(np.asarray(one, dtype=complex), 0.0, own.powers) for one in parts]
     torque = np.zeros((1 + own.parameters, 2 * last + 1), dtype=complex)
     torque[:, last] = drive
-    return MotionWaves(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0))
+    return MotionWaves(tuple(states[:many]), tuple(states[many:]), Wave(torque, 0.0, own.powers))

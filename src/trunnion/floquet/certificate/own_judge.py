@@ -50,8 +50,10 @@ TUBES = 4
 """Heights that are tried."""
 FURTHER = 1.5
 """How far the torque takes the speed the second time, over what the first left uncovered."""
-NARROW = 0.004
+NARROW = 0.05
 """Width in ln(speed) of the first box that is tried."""
+POWERS = 2
+"""Of the torque beyond it that are followed: its square and its cube. Boxes become twenty times as wide."""
 PER_HARMONIC = 24
 """Angles per harmonic at which P is looked at."""
 
@@ -123,13 +125,13 @@ class OwnMotionLine:
         middle = sum(speeds) / 2
         last = max(harmonics_needed(assembly, ranges, speeds), motions.h)
         # The first parameter of a free–free line is a torque, not the speed.
-        co = box_coefficients(assembly, (middle, middle) if topo.free else speeds, ranges, last)
+        co = box_coefficients(assembly, (middle, middle) if topo.free else speeds, ranges, last, POWERS)
         drive = np.zeros(len(topo.stations))
         if topo.free:
             row = assembly.table(1, middle)
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
         stages = own_stages(assembly, assembly.table(1, middle))
-        return MotionEquations(assembly, co, 1 + len(ranges), last, drive, stages)
+        return MotionEquations(assembly, co, 1 + len(ranges) + POWERS, last, drive, stages, POWERS)
 
 
 def _rows(row: Array, speeds: Array) -> Array:
@@ -202,10 +204,11 @@ def judged_motion(own: MotionEquations, motion: MotionWaves, speeds: tuple[float
 
 def _left_by_each(own: MotionEquations, motion: MotionWaves, modal: ModalBox) -> Array:
     """What each parameter alone leaves over beside what decays (parameters,): what brings it says where to halve."""
-    if own.parameters == 1:
+    many = own.parameters - own.powers
+    if many == 1:
         return np.ones(1)
     found = []
-    for v in range(1, 1 + own.parameters):
+    for v in range(1, 1 + many):
         there, only = replace(own, co=own.co.along(v)), motion.along(v)
         size = np.array([one.size for one in residuals(there, only, there.rates(only))])
         found.append(float((np.abs(modal.to_modes) @ size / modal.decay).max()))
@@ -238,7 +241,7 @@ def _matrix(own: MotionEquations, found: Rates) -> BoxMatrix:
     stiffness = [one.mean.real for one in own.co.stiffness]
     mass = own.assembly.topology.on_unknowns(np.array([[one.mean.real for one in own.co.inertia]]))[0]
     energy = np.diag([*stiffness, *mass[: size - springs]])
-    return BoxMatrix(parts, rest * OUTWARD, own.rate, (1.0, 0.0), energy)
+    return BoxMatrix(parts, rest * OUTWARD, own.rate, (1.0, 0.0), energy, own.powers)
 
 
 def _least_eigenvalue(series: LyapunovSeries) -> float:

@@ -1,7 +1,8 @@
 """A periodic motion of a line over the angle of its input, found in floating point: where a proof begins.
 
 The balance of harmonics over time is read off at even angles; Newton's steps on the waves of ``own_equations`` then
-make it a solution to rounding, and to first order in speed and tolerances. Nothing here proves anything.
+make it a solution to rounding, to first order in tolerances, and in the torque to the order that its waves have.
+Nothing here proves anything.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ STEPS = 8
 """Newton's steps at most."""
 CLOSED = 1e-13
 """What is left over the motion itself at which it is enough."""
+ENOUGH = 0.01
+"""The same over what the waves leave out, which no step mends."""
 TURNS = 30
 """Steps in which an angle is inverted."""
 
@@ -72,12 +75,15 @@ def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None)
     """The motion near ``motion``, of a free–free line at the ``slowness`` asked for; None where there is none."""
     found, best = own.rates(motion), np.inf
     for _ in range(STEPS):
-        left = np.array([one.parts for one in residuals(own, motion, found)])
+        missed = residuals(own, motion, found)
+        left, cut_off = np.array([one.parts for one in missed]), np.array([one.rest for one in missed])
         size = np.array([max(float(np.abs(one.parts).sum()), 1e-9) for one in motion.states])
         missing = float((np.abs(left).sum(axis=(1, 2)) / size).max())
         if not np.isfinite(missing) or missing > 1e3:
             return None
         if missing < CLOSED or (missing < 1e-9 and missing > 0.3 * best):
+            break
+        if missing < 1e-6 and np.all(np.abs(left).sum(axis=(1, 2)) < ENOUGH * cut_off):
             break
         best = missing
         motion = _stepped(own, motion, found, left, slowness)

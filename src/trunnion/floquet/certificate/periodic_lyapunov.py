@@ -7,7 +7,8 @@ In modal coordinates of the mean line, y with A = H(τ) there and H₀'s diagona
 whose solution is the energy of the modes where nothing varies, whatever the resonances, and grows beyond all bounds
 where the line comes to its limit. The derivatives by the parameters solve the same with what they move on the right,
 but for its mean on the diagonal, the change of the decay rates. The energy itself changes with the frequencies, by
-δω/ω of each mode, which is put in. By harmonics these are linear equations that GMRES solves, divided by
+δω/ω of each mode, which is put in. With powers of the first parameter P has them too, each of what the lower ones
+leave. By harmonics these are linear equations that GMRES solves, divided by
 imsΩ + λ̄_i + λ_j: few of them, those near a resonance, are not near to one. What is found proves nothing by itself:
 ``proof`` checks it.
 """
@@ -21,6 +22,7 @@ import scipy.linalg
 
 from trunnion.arrays import Array, Complex
 from trunnion.floquet.certificate.box_equations import BoxMatrix
+from trunnion.floquet.certificate.waves import chebyshev_rows
 
 ENOUGH = 1e-5
 """What may be left of the equations, relative to their right side."""
@@ -30,6 +32,8 @@ LOOKED = 3
 """Steps between looks at what is left."""
 SKEWED = 1e3
 """Condition of the modes beyond which the undamped ones are taken in their place."""
+SWEEPS = 2
+"""Over the powers of the first parameter."""
 SIDES = (4, 8, 16, 32, 64, 128)
 """Harmonics of P beyond its mean, tried in turn."""
 UNSOLVED = 2
@@ -150,6 +154,7 @@ class _Solver:
     speed: tuple[float, float]
     sides: int
     times: int
+    powers: int
 
     @classmethod
     def of(cls, box: BoxMatrix, modal: ModalBox, sides: int) -> _Solver:
@@ -160,8 +165,9 @@ class _Solver:
         order: Complex = np.asarray(1j * np.arange(-sides, sides + 1)[:, None, None] * box.rate * box.speed[0])
         over = order + (own.conj()[:, None] + own[None, :])
         return cls(
-            modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay, box.speed, sides, times
-        )
+            modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay, box.speed, sides, times,
+            box.powers,
+        )  # fmt: skip
 
     def series(self) -> LyapunovSeries:
         size = len(self.decay)
@@ -172,26 +178,49 @@ class _Solver:
         parts[0] = first
         if not solved:
             return LyapunovSeries(parts, False)
-        grid = _values(first, self.times)
-        own = np.einsum("ii->i", self.h[0, self.h.shape[1] // 2])
+        rows = chebyshev_rows(len(self.h), self.powers) if self.powers else []
         for v in range(1, len(self.h)):
-            moved = self.h[v]
-            if not moved.any() and not (v == 1 and self.speed[1]):
-                continue
-            turned = grid @ _values(moved, self.times)
-            right = self._harmonics(turned + turned.conj().swapaxes(1, 2))
-            if v == 1:
-                right = right + self.order * first * (self.speed[1] / self.speed[0])
-            energy = np.zeros_like(first)
-            energy[self.sides] = np.diag(
-                _weights(own, np.einsum("ii->i", moved[moved.shape[0] // 2]), first[self.sides])
-            )
-            right = right + self.apply(energy)
-            kept = np.einsum("ii->i", right[self.sides])
-            right[self.sides] -= np.diag(kept)
-            found, done = self.solve(-right)
-            parts[v], solved = energy + found, solved and done
+            if v not in rows and (self.h[v].any() or (v == 1 and self.speed[1])):
+                parts[v], done = self._beside(v, self._moved(v, first), first)
+                solved = solved and done
+        for _ in range(SWEEPS if rows else 0):
+            for d, v in enumerate(rows):
+                right = self._left_at(d, parts[rows])
+                found, done = self._beside(v, right, first) if d else self._without_decay(right)
+                parts[v], solved = found + (first if not d else 0.0), solved and done
         return LyapunovSeries(parts, solved)
+
+    def _moved(self, v: int, p: Complex) -> Complex:
+        """H_v*P + PH_v, with what the speed moves of the derivative by the angle."""
+        turned = _values(p, self.times) @ _values(self.h[v], self.times)
+        right = self._harmonics(turned + turned.conj().swapaxes(1, 2))
+        return right + self.order * p * (self.speed[1] / self.speed[0]) if v == 1 else right
+
+    def _left_at(self, degree: int, p: Complex) -> Complex:
+        """What the Chebyshev series ``p`` (degree, …) leaves at one degree, by all of H but its mean."""
+        found, rows = np.zeros_like(p[0]), chebyshev_rows(len(self.h), self.powers)
+        for a, b in np.ndindex(len(rows), len(rows)):
+            share = ((a + b == degree) + (abs(a - b) == degree)) / 2
+            if a and share and p[b].any():
+                found = found + share * self._moved(rows[a], p[b])
+        return found
+
+    def _beside(self, v: int, right: Complex, first: Complex) -> tuple[Complex, bool]:
+        """P_v by what is on its ``right``: the energy's own change, and the rest."""
+        own = np.einsum("ii->i", self.h[0, self.h.shape[1] // 2])
+        energy = np.zeros_like(right)
+        energy[self.sides] = np.diag(
+            _weights(own, np.einsum("ii->i", self.h[v, self.h.shape[1] // 2]), first[self.sides])
+        )
+        found, done = self._without_decay(right + self.apply(energy))
+        return energy + found, done
+
+    def _without_decay(self, right: Complex) -> tuple[Complex, bool]:
+        """P by all on its right but its mean on the diagonal, the change of the decay rates."""
+        kept = np.einsum("ii->i", right[self.sides])
+        right = right.copy()
+        right[self.sides] -= np.diag(kept)
+        return self.solve(-right)
 
     def apply(self, p: Complex) -> Complex:
         """ΩP′ + H*P + PH, of Hermitian P."""

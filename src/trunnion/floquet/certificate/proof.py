@@ -16,8 +16,9 @@ A = A₀ + Σ p_v A_v + R from ``box_equations``,
 
 each a Fourier series in τ. Its mean on the diagonal for p = 0 is kept as it is, all else is bounded entry by entry by
 sums of moduli. So U*NU ≤ C in the sense x*U*NUx ≤ |x|ᵀC|x|, with a real symmetric C whose entries beside the diagonal
-are not negative. If a vector v > 0 has Cv < 0, C is negative definite (a symmetric M-matrix, Berman and Plemmons), and
-so is N. The same test is made of −P(0, p) after a congruence.
+are not negative. Where the first parameter has powers, products go by degrees of its Chebyshev polynomials, and each
+degree is bounded by its sum of moduli. If a vector v > 0 has Cv < 0, C is negative definite (a symmetric M-matrix,
+Berman and Plemmons), and so is N. The same test is made of −P(0, p) after a congruence.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex
 from trunnion.floquet.certificate.box_equations import BoxMatrix
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox
-from trunnion.floquet.certificate.waves import OUTWARD, UNIT
+from trunnion.floquet.certificate.waves import OUTWARD, UNIT, chebyshev_rows
 
 HALVINGS = 12
 """With which a decay rate is found."""
@@ -86,7 +87,7 @@ def _checked(box: BoxMatrix, modal: ModalBox, found: LyapunovSeries) -> tuple[Bo
         bound = _Bound.of(box, modal, found)
         proved, excess, weight = _negative(bound.whole)
         proved = proved and bound.invertible and _positive(found)
-        blame = np.array([weight @ one @ weight for one in bound.each])
+        blame = np.array([weight @ one @ weight for one in bound.each[: many - box.powers]])
         decay = _decay(bound, float(modal.decay.min())) if proved else 0.0
     return BoxVerdict(bool(proved), excess, np.nan_to_num(blame), decay), bound
 
@@ -133,7 +134,7 @@ class _Bound:
         e = np.abs(modal.to_modes @ modal.modes - np.eye(size)) + error * (to @ fro)
         near = np.eye(size) + e
         # Products of P and H by harmonics: (2K + 1) sums of D terms each, and their sums over parameters.
-        rounding = 8 * (size + 2 * min(last, sides) + 2 * many + 16) * UNIT
+        rounding = 8 * (size + 2 * min(last, sides) + 2 * many + 4 * box.powers + 16) * UNIT
         rest = p_all @ left_out
         rest = rest + rounding * (p_all @ h_all + fastest * turned_all)
         rest = rest + fastest * (e.T @ turned_all @ near + turned_all @ e) / 2 + e.T @ p_all @ h_all
@@ -145,13 +146,24 @@ class _Bound:
         def with_turn(series: Complex, p: Complex, by: float) -> Complex:
             return np.asarray(series + np.pad(order * p * by, pad))
 
-        middle = with_turn(_hermitian(terms(0, 0)), found.parts[0], speed)
+        rows = chebyshev_rows(many + 1, box.powers) if box.powers else [0]
+        alone = [v for v in range(1, many + 1) if v not in rows]
+        degrees = [np.zeros((2 * (sides + last) + 1, size, size), dtype=complex) for _ in range(2 * len(rows) - 1)]
+        for a, b in np.ndindex(len(rows), len(rows)):
+            made = terms(rows[a], rows[b])
+            if b < 2:  # the turn of P_a at the speed's mean, and at what of it the first parameter moves
+                made = made + np.pad(order * found.parts[rows[a]] * ((speed, half)[b] / 2), pad)
+            for to in (a + b, abs(a - b)):
+                degrees[to] += made / 2
+        middle = _hermitian(degrees[0])
         centre = sides + last
         c = np.abs(middle).sum(axis=0) + rest
         mean = middle[centre]
         c += np.diag(np.diagonal(mean).real - np.abs(np.diagonal(mean)))
         each = np.zeros((many, size, size))
-        for v in range(1, many + 1):
+        for one in degrees[1:]:
+            each[0] += np.abs(_hermitian(one)).sum(axis=0)
+        for v in alone:
             if not (h[v].any() or found.parts[v].any() or (v == 1 and half)):
                 continue
             first = _hermitian(terms(0, v) + terms(v, 0))
@@ -167,13 +179,13 @@ class _Bound:
             wide = np.abs(square).sum(axis=0)
             wide[np.diag_indices(size)] += diagonal - np.abs(np.diagonal(square[centre]))
             each[v - 1] += wide
-            for w in range(v + 1, many + 1):
+            for w in [*(w for w in alone if w > v), *rows[1:]]:
                 both = _hermitian(terms(v, w) + terms(w, v))
-                if v == 1:
-                    both = with_turn(both, found.parts[w], half)
+                if v == 1 or w == 1:
+                    both = with_turn(both, found.parts[w if v == 1 else v], half)
                 share = np.abs(both).sum(axis=0) / 2
                 each[v - 1] += share
-                each[w - 1] += share
+                each[0 if w in rows else w - 1] += share
         whole = c + each.sum(axis=0) + 16 * many * UNIT * np.abs(c)
         off = ~np.eye(size, dtype=bool)
         whole = (whole + whole.T) / 2

@@ -5,6 +5,10 @@ a Fourier series in the angle, linear in the parameters. What products leave of 
 last one kept, and rounding go into the rest (*Taylor models*, after Makino and Berz, with Fourier series in place of
 polynomials). Sums of moduli of harmonics bound a wave from above.
 
+Of the first parameter more can be kept: with ``powers`` the last rows are those of the Chebyshev polynomials
+T₂(p₁), T₃(p₁) …, for which 2 T_a T_b = T_{a+b} + T_{|a−b|} and |T_a| ≤ 1. Whoever takes each for a parameter of its own
+bounds more than there is.
+
 Rounding. Sums and products of IEEE doubles are right to u = 2⁻⁵³; a product of two waves is a sum of less than
 n = 2 (harmonics) + 4 (parameters) + 16 terms in any order, so its error is below 4nu times the product of both sums of
 moduli (Higham, Accuracy and Stability of Numerical Algorithms, 3.1 and 3.6). ``ROUND`` u is twice that of every term.
@@ -33,10 +37,11 @@ SMALL = 1e-19
 
 @dataclass(frozen=True)
 class Wave:
-    """``parts`` (1 + parameters, 2K + 1): harmonics −K … K of the middle, then of what each parameter adds."""
+    """``parts`` (1 + parameters + powers, 2K + 1): harmonics −K … K of the middle, then of what each parameter adds."""
 
     parts: Complex
     rest: float
+    powers: int = 0
 
     @cached_property
     def sizes(self) -> Complex:
@@ -66,19 +71,21 @@ class Wave:
     def along(self, parameter: int) -> Wave:
         """What one parameter alone makes of it, without its rest."""
         parts = np.zeros_like(self.parts)
-        parts[[0, parameter]] = self.parts[[0, parameter]]
-        return Wave(parts, 0.0)
+        kept = chebyshev_rows(len(parts), self.powers) if parameter == 1 else [0, parameter]
+        parts[kept] = self.parts[kept]
+        return Wave(parts, 0.0, self.powers)
 
     def __add__(self, other: Wave | complex) -> Wave:
         if not isinstance(other, Wave):
             other = constant(other, self)
         parts = self.parts + other.parts
-        return Wave(parts, (self.rest + other.rest + ROUND * (self.size + other.size)) * OUTWARD)
+        rest = (self.rest + other.rest + ROUND * (self.size + other.size)) * OUTWARD
+        return Wave(parts, rest, max(self.powers, other.powers))
 
     __radd__ = __add__
 
     def __neg__(self) -> Wave:
-        return Wave(-self.parts, self.rest)
+        return Wave(-self.parts, self.rest, self.powers)
 
     def __sub__(self, other: Wave | complex) -> Wave:
         return self + (-other)
@@ -88,29 +95,48 @@ class Wave:
 
     def __mul__(self, other: Wave | complex) -> Wave:
         if not isinstance(other, Wave):
-            return Wave(self.parts * other, (self.rest * abs(other) + ROUND * self.size * abs(other)) * OUTWARD)
-        count, last = self.parts.shape[0], self.last
-        parts = np.empty_like(self.parts)
-        whole = np.convolve(self.parts[0], other.parts[0])
-        lost = np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum()
-        parts[0] = whole[last : 3 * last + 1]
-        for v in range(1, count):
-            if not (self.parts[v].any() or other.parts[v].any()):
-                parts[v] = 0.0
+            rest = (self.rest * abs(other) + ROUND * self.size * abs(other)) * OUTWARD
+            return Wave(self.parts * other, rest, self.powers)
+        count, last, powers = self.parts.shape[0], self.last, max(self.powers, other.powers)
+        parts, lost = np.zeros_like(self.parts), 0.0
+
+        def product(a: int, b: int) -> Complex | None:
+            """What is kept of the product of two rows."""
+            nonlocal lost
+            if not (self.parts[a].any() and other.parts[b].any()):
+                return None
+            whole = np.convolve(self.parts[a], other.parts[b])
+            lost += float(np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum())
+            return np.asarray(whole[last : 3 * last + 1])
+
+        rows = chebyshev_rows(count, powers) if powers else [0]
+        for a, b in np.ndindex(len(rows), len(rows)):
+            made = product(rows[a], rows[b])
+            if made is None:
                 continue
-            whole = np.convolve(self.parts[0], other.parts[v]) + np.convolve(self.parts[v], other.parts[0])
-            lost += np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum()
-            parts[v] = whole[last : 3 * last + 1]
-        moved, others = self.sizes[1:].sum(), other.sizes[1:].sum()
-        rest = lost + moved * others + self.size * other.rest + self.rest * (other.size - other.rest)
-        rest += ROUND * (2 * last + 2 * count + 16) * self.size * other.size
-        return Wave(parts, float(rest) * OUTWARD)
+            ends = (a + b,) if not (a and b) else (a + b, abs(a - b))
+            for to in ends:
+                if to < len(rows):
+                    parts[rows[to]] += made / len(ends)
+                else:
+                    lost += float(np.abs(made).sum()) / len(ends)
+        alone = [v for v in range(1, count) if v not in rows]
+        for v in alone:
+            for one in (product(0, v), product(v, 0)):
+                if one is not None:
+                    parts[v] += one
+        moved, others = self.sizes[alone].sum(), other.sizes[alone].sum()
+        along, along_others = self.sizes[rows[1:]].sum(), other.sizes[rows[1:]].sum()
+        rest = lost + moved * (others + along_others) + along * others
+        rest += self.size * other.rest + self.rest * (other.size - other.rest)
+        rest += ROUND * (2 * last + 2 * count + 4 * powers + 16) * self.size * other.size
+        return Wave(parts, float(rest) * OUTWARD, powers)
 
     __rmul__ = __mul__
 
     def conjugate(self) -> Wave:
         """Its complex conjugate for real τ and p."""
-        return Wave(self.parts[:, ::-1].conj(), self.rest)
+        return Wave(self.parts[:, ::-1].conj(), self.rest, self.powers)
 
     def inverse(self) -> Wave:
         """1/f; ``ZeroDivisionError`` where f may vanish.
@@ -127,11 +153,13 @@ class Wave:
         guess[0] = _harmonics(over[None], last)[0]
         if count > 1 and self.parts[1:].any():
             guess[1:] = _harmonics(-(over**2) * _on_grid(self.parts[1:], times), last)
-        made = Wave(guess, 0.0)
+        made = Wave(guess, 0.0, self.powers)
+        for _ in range(self.powers):  # Newton's steps, for the products of what the first parameter moves
+            made = Wave((made * (2.0 - self * made)).parts, 0.0, self.powers)
         left = (1.0 - self * made).size
         if not left < 1:
             raise ZeroDivisionError
-        return Wave(guess, made.size * left / (1 - left) * OUTWARD)
+        return Wave(made.parts, made.size * left / (1 - left) * OUTWARD, self.powers)
 
     def exp(self) -> Wave:
         """e^f, by its series of a 2^k-th part, squared k times; the mean apart."""
@@ -145,25 +173,31 @@ class Wave:
             term = term * small * (1 / k)
             found = found + term
             bound = bound * small.size / k
-        found = Wave(found.parts, (found.rest + 2 * bound) * OUTWARD)
+        found = Wave(found.parts, (found.rest + 2 * bound) * OUTWARD, found.powers)
         for _ in range(halvings):
             found = found * found
         scale = complex(np.exp(mean))
         made = found * scale
-        return Wave(made.parts, (made.rest + LIBRARY * (1 + abs(mean)) * abs(scale) * found.size) * OUTWARD)
+        rest = (made.rest + LIBRARY * (1 + abs(mean)) * abs(scale) * found.size) * OUTWARD
+        return Wave(made.parts, rest, made.powers)
 
     def shifted(self, harmonics: int) -> Wave:
         """f e^{ihsτ}."""
         parts, last = np.zeros_like(self.parts), self.last
         if abs(harmonics) > 2 * last:
-            return Wave(parts, self.size)
+            return Wave(parts, self.size, self.powers)
         if harmonics >= 0:
             parts[:, harmonics:] = self.parts[:, : 2 * last + 1 - harmonics]
             lost = np.abs(self.parts[:, 2 * last + 1 - harmonics :]).sum()
         else:
             parts[:, :harmonics] = self.parts[:, -harmonics:]
             lost = np.abs(self.parts[:, :-harmonics]).sum()
-        return Wave(parts, (self.rest + float(lost)) * OUTWARD)
+        return Wave(parts, (self.rest + float(lost)) * OUTWARD, self.powers)
+
+
+def chebyshev_rows(count: int, powers: int) -> list[int]:
+    """Of ``count`` rows those of 1, p₁, T₂(p₁) …"""
+    return [*range(min(count, 2)), *range(count - powers, count)]
 
 
 def constant(value: complex, like: Wave) -> Wave:
@@ -200,7 +234,7 @@ def ahead(moved: Wave) -> Wave:
         if power.rest > 0.5 * power.size:  # nothing but its rest is left
             break
     bound = power.size / (1 - size) * size
-    found = Wave(found.parts, (found.rest + bound) * OUTWARD)
+    found = Wave(found.parts, (found.rest + bound) * OUTWARD, found.powers)
     return (found - found.conjugate()) * (-0.5j)
 
 
