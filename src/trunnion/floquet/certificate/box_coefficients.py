@@ -76,10 +76,18 @@ class BoxCoefficients:
 
 
 def box_coefficients(
-    assembly: Assembly, speeds: tuple[float, float], ranges: Sequence[NumberRange], last: int, powers: int = 0
+    assembly: Assembly,
+    speeds: tuple[float, float],
+    ranges: Sequence[NumberRange],
+    last: int,
+    powers: int = 0,
+    near: Wave | None = None,
 ) -> BoxCoefficients:
     """Of the box from ``speeds[0]`` to ``speeds[1]`` and over all ``ranges``, as waves of ``last`` harmonics and
-    ``powers`` of the first parameter beyond it."""
+    ``powers`` of the first parameter beyond it.
+
+    ``near`` : nearly the speed, in place of it, for torques that are no more than what others are counted from.
+    """
     topo, many = assembly.topology, 1 + len(ranges) + powers
     table = assembly.table(1 + 2 * len(ranges), sum(speeds) / 2)
     for k, one in enumerate(ranges):
@@ -101,10 +109,12 @@ def box_coefficients(
 
     half = (speeds[1] - speeds[0]) / 2
     # Exactly what it says: the ends are moved outward by more than rounding makes of the middle.
-    speed = affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last)
+    speed = replace(affine(sum(speeds) / 2, {1: half * OUTWARD} if half else {}, many, last), powers=powers)
     stiffness, damping = waves(co.stiffness), waves(co.damping, extra)
     constant, viscous, quadratic = waves(co.load), waves(co.viscous), waves(co.quadratic)
-    torque = _torques(assembly, speed, constant, viscous, quadratic)
+    torque = _torques(assembly, near or speed, constant, viscous, quadratic)
+    if near:
+        torque = [Wave(one.parts, 0.0, one.powers) for one in torque]
     shift, untwisted_shift = waves(co.shift), waves(co.shift)
     for e, compliance in enumerate(topo.compliances):
         _put_twists(assembly, co, e, compliance.shafts, stiffness[e], torque[e], shift, compliance.number)

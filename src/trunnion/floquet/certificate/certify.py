@@ -115,7 +115,7 @@ class StabilityCertificate(Result):
             yield f"undecided {inside}{what}: {100 * self.undecided_share:.3g} % of the volume, {rest}{ended}"
         boxes = f"  {self.boxes} box{'es' if self.boxes != 1 else ''} judged"
         where = "" if self.verdict == "proved stable" else " where proved"
-        known = np.isfinite(self.decay)
+        known = self.decay > 0  # not NaN, nor a rate too slow to be found
         yield boxes + (f"; disturbances die out at {self.decay:.3g} 1/s at least{where}" if known else "")
         if self.about_own_motion:
             proved = ", proved to exist" if len(self.proved_low) and self.counterexample is None else ""

@@ -6,7 +6,8 @@ speed of the input, prescribed or the first of them, and r the ratio in front of
     w₀ q′ = w_far − r w_near,
     w₀ M_i w_i′ = −½ M_i′ w_i² − Σ r_s T_s(r_s w_i) − f_own + Σ r_e f_e,     f = T̄ + k q + c (w_far − r w_near).
 
-The torque T̄ of the mean loads does not go with a stiffness, which so moves q little. Angles follow from φ and the
+The torque T̄ of the mean loads goes with the torque that drives and not with a stiffness, which so moves q little: it is
+no more than what twists count from, and any function of the parameters would do. Angles follow from φ and the
 twists, so the equations have the period of the joints in φ, whatever the speed does. A free–free line loses its shift
 of phase with them: of two motions that differ by that, both are the same function of φ. Under a torque that drives,
 constant and free, its periodic motion is one of 2n − 1 equations, and its multipliers are all of the line's but the 1

@@ -38,7 +38,7 @@ from trunnion.floquet.certificate.own_stages import own_stages, require_stages_k
 from trunnion.floquet.certificate.own_start import Slowness, begun, solved
 from trunnion.floquet.certificate.periodic_lyapunov import LyapunovSeries, ModalBox, lyapunov_series, modal_box
 from trunnion.floquet.certificate.proof import check_tube
-from trunnion.floquet.certificate.waves import OUTWARD, UNIT
+from trunnion.floquet.certificate.waves import OUTWARD, UNIT, affine
 from trunnion.steady.free.free_balance import FreeBalance, SteadyStates
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve
 
@@ -112,26 +112,32 @@ class OwnMotionLine:
         )
         if not (motions.found[0] and motions.resolved[0]):
             return None
-        own = self._equations(speeds, ranges, motions)
-        found = solved(own, begun(own, motions), _asked(own, speeds, further))
+        own = self._equations(speeds, ranges, motions, further)
+        found = solved(own, begun(own, motions), _slowness(own, speeds, further))
         if found is not None:
             require_stages_kept(self.assembly, own.stages, found.twist, middle)
         return None if found is None else (own, found)
 
     def _equations(
-        self, speeds: tuple[float, float], ranges: Sequence[NumberRange], motions: SteadyStates
+        self, speeds: tuple[float, float], ranges: Sequence[NumberRange], motions: SteadyStates, further: float
     ) -> MotionEquations:
         assembly, topo = self.assembly, self.assembly.topology
         middle = sum(speeds) / 2
         last = max(harmonics_needed(assembly, ranges, speeds), motions.h)
-        # The first parameter of a free–free line is a torque, not the speed.
-        co = box_coefficients(assembly, (middle, middle) if topo.free else speeds, ranges, last, POWERS)
+        many, stages = 1 + len(ranges) + POWERS, own_stages(assembly, assembly.table(1, middle))
+        held, near = speeds, None
+        if topo.free:
+            # The first parameter is a torque, not the speed. Twists count from those of the mean loads at the speed
+            # that it makes, but where a spring has stages: they are asked of the twist beyond one that is fixed.
+            held = middle, middle
+            mean, half = _asked(speeds, further)
+            near = None if stages else replace(affine(mean, {1: half}, many, last), powers=POWERS).inverse()
+        co = box_coefficients(assembly, held, ranges, last, POWERS, near)
         drive = np.zeros(len(topo.stations))
         if topo.free:
             row = assembly.table(1, middle)
             drive = -drive_torques(topo, drive_places(topo, assembly.packed.column, row), np.ones(1))[0]
-        stages = own_stages(assembly, assembly.table(1, middle))
-        return MotionEquations(assembly, co, 1 + len(ranges) + POWERS, last, drive, stages, POWERS)
+        return MotionEquations(assembly, co, many, last, drive, stages, POWERS)
 
 
 def _rows(row: Array, speeds: Array) -> Array:
@@ -140,13 +146,18 @@ def _rows(row: Array, speeds: Array) -> Array:
     return table
 
 
-def _asked(own: MotionEquations, speeds: tuple[float, float], further: float) -> Slowness | None:
+def _asked(speeds: tuple[float, float], further: float) -> tuple[float, float]:
+    """Mean of 1/(mean speed) [s/rad] and what the first parameter adds, over a box and a little beyond it."""
+    slow, fast = 1 / speeds[0], 1 / speeds[1]
+    middle, half = (slow + fast) / 2, (slow - fast) / 2
+    return middle, -(half * (1 + BEYOND[1]) + BEYOND[0] * middle + further)
+
+
+def _slowness(own: MotionEquations, speeds: tuple[float, float], further: float) -> Slowness | None:
     if not own.assembly.topology.free:
         return None
-    slow, fast = 1 / speeds[0], 1 / speeds[1]
     asked = np.zeros(1 + own.parameters)
-    middle, half = (slow + fast) / 2, (slow - fast) / 2
-    asked[:2] = middle, -(half * (1 + BEYOND[1]) + BEYOND[0] * middle + further)
+    asked[:2] = _asked(speeds, further)
     return Slowness(asked)
 
 

@@ -74,11 +74,16 @@ def _waves(angle: Array, h: int) -> Array:
 def solved(own: MotionEquations, motion: MotionWaves, slowness: Slowness | None) -> MotionWaves | None:
     """The motion near ``motion``, of a free–free line at the ``slowness`` asked for; None where there is none."""
     found, best = own.rates(motion), np.inf
+    beside = np.append(np.abs(own.twisted), np.zeros(len(motion.speed)))  # what twists count from
     for _ in range(STEPS):
         missed = residuals(own, motion, found)
         left, cut_off = np.array([one.parts for one in missed]), np.array([one.rest for one in missed])
-        size = np.array([max(float(np.abs(one.parts).sum()), 1e-9) for one in motion.states])
+        size = np.array([float(np.abs(one.parts).sum()) for one in motion.states])
+        size = np.maximum(size + beside, 1e-9)
         missing = float((np.abs(left).sum(axis=(1, 2)) / size).max())
+        if slowness is not None:
+            off = slowness.asked - own.input_speed(motion).inverse().parts[:, own.last]
+            missing = max(missing, float(np.abs(off).max() / slowness.asked[0]))
         if not np.isfinite(missing) or missing > 1e3:
             return None
         if missing < CLOSED or (missing < 1e-9 and missing > 0.3 * best):

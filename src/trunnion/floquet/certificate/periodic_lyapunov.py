@@ -165,8 +165,8 @@ class _Solver:
         order: Complex = np.asarray(1j * np.arange(-sides, sides + 1)[:, None, None] * box.rate * box.speed[0])
         over = order + (own.conj()[:, None] + own[None, :])
         return cls(
-            modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay, box.speed, sides, times,
-            box.powers,
+            modal.h, _values(modal.h[0], times), order, np.asarray(1 / over), modal.decay,
+            speed=box.speed, sides=sides, times=times, powers=box.powers,
         )  # fmt: skip
 
     def series(self) -> LyapunovSeries:

@@ -69,9 +69,10 @@ class Wave:
         return float(self.sizes.sum()) <= abs(self.mean) * OUTWARD
 
     def along(self, parameter: int) -> Wave:
-        """What one parameter alone makes of it, without its rest."""
+        """What one parameter alone makes of it, without its rest; beside the first where that has powers, of which the
+        middle holds a part."""
         parts = np.zeros_like(self.parts)
-        kept = chebyshev_rows(len(parts), self.powers) if parameter == 1 else [0, parameter]
+        kept = [*(chebyshev_rows(len(parts), self.powers) if self.powers else [0]), parameter]
         parts[kept] = self.parts[kept]
         return Wave(parts, 0.0, self.powers)
 
