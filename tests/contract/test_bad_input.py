@@ -546,7 +546,22 @@ PYTHON = [
     (
         lambda: engine(angles=[f"{i} deg" for i in range(540)]),
         "Engine.pressure = [{",
-        ": covers 539 deg, and a cycle of 4 strokes has 720 deg; give one whole cycle, or strokes = 2",
+        ": covers 539 deg, and a cycle of 4 strokes has 720 deg; give one whole cycle",
+    ),
+    (
+        lambda: engine(angles=[f"{i} deg" for i in range(360)]),
+        "Engine.pressure = [{",
+        ": covers 359 deg, and a cycle of 4 strokes has 720 deg; write strokes = 2, or give one whole cycle",
+    ),
+    (
+        lambda: engine(angles=list(range(720))),
+        "Engine.pressure = [{",
+        "deg, and a cycle of 4 strokes has 720 deg; check the unit of its angles: deg read as rad, say",
+    ),
+    (
+        lambda: engine(angles=[f"{np.deg2rad(i)} deg" for i in range(720)]),
+        "Engine.pressure = [{",
+        "deg, and a cycle of 4 strokes has 720 deg; check the unit of its angles: rad read as deg, say",
     ),
     (
         lambda: engine(angles=[f"{i} deg" for i in range(721)], pressures=[2e5] * 720 + [3e5]),
@@ -572,7 +587,7 @@ PYTHON = [
     (
         lambda: engine(angles=["0 deg"] * 720),
         "Engine.pressure 1 angles = ['0 deg', '0 deg', ",
-        ": must rise; sort them; each once",
+        ": must rise: 0 deg after 0 deg; sort them; each once",
     ),
     (
         lambda: engine(pressures=[-1] * 720),
@@ -2207,6 +2222,13 @@ PYTHON = [
         lambda: order_response(driving(Disk(inertia=9.0, name="engine"), propeller()), [30.0]),
         "driveline.load_torque: is free–free and its torques do not balance",
         'and nothing drives; give the driving disk, "engine" say, drive_share = 1',
+    ),
+    (
+        lambda: order_response(
+            Driveline([Disk(inertia=1.0), Shaft(stiffness=1e4), engine(), Shaft(stiffness=1e4), propeller()]), [30.0]
+        ),
+        "driveline.load_torque: is free–free and its torques do not balance",
+        'and nothing drives; give the engine, "Engine 1" say, drive_share = 1',
     ),
     (
         lambda: order_response(driving(motor(**KLOSS), fan(quadratic_load=0.01)), [120.0]),

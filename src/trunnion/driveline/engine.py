@@ -405,15 +405,24 @@ class Engine(Composite):
         angles, pressures = curve.angles, curve.pressures
         span, step = angles[-1] - angles[0], max(b - a for a, b in pairwise(angles))
         cycle = f"{self.cycle / DEGREE:g} deg"
-        if span < self.cycle - 1.5 * step or span > self.cycle + SAME_ANGLE:
+        if not _covers(self.cycle, span, step):
             problem = f"covers {span / DEGREE:.6g} deg{at}, and a cycle of {self.strokes} strokes has {cycle}"
-            remedy = f"give one whole cycle, or strokes = {6 - self.strokes}"
-            raise InputError(problem, key=key, remedy=remedy)
+            raise InputError(problem, key=key, remedy=self._whole_cycle(span, step))
         gap = abs(pressures[-1] - pressures[0])
         if self.closes(curve) and gap > CLOSED * max(pressures):
             ends = f"{pressures[0] / 1e5:.4g} bar at its beginning and {pressures[-1] / 1e5:.4g} bar a cycle later"
             problem = f"does not close{at}: {ends}"
             raise InputError(problem, key=key, remedy="give one cycle of steady running")
+
+    def _whole_cycle(self, span: float, step: float) -> str:
+        """What to do about a curve over another ``span`` than the cycle, a ``step`` between its points [rad]."""
+        other = 6 - self.strokes
+        if _covers(other * pi, span, step):
+            return f"write strokes = {other}, or give one whole cycle"
+        for factor, words in ((DEGREE, "deg read as rad"), (1 / DEGREE, "rad read as deg")):
+            if _covers(self.cycle, factor * span, factor * step):
+                return f"check the unit of its angles: {words}, say"
+        return "give one whole cycle"
 
     def closes(self, curve: PressureCurve) -> bool:
         """Whether the last point of a curve is the first one again."""
@@ -644,6 +653,11 @@ class Engine(Composite):
             name=name, after=after, inertia=inertia + many * mean, drive_share=share,
             **{key: value for key, value in {**taken, **shakes}.items() if value},
         )  # fmt: skip
+
+
+def _covers(cycle: float, span: float, step: float) -> bool:
+    """Whether a curve over ``span`` is a whole ``cycle``, of which the last ``step`` may be left out [rad]."""
+    return cycle - 1.5 * step <= span <= cycle + SAME_ANGLE
 
 
 def _bar(pressure: float) -> str:

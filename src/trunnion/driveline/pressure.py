@@ -22,6 +22,7 @@ from trunnion.driveline.quantities import (
     Pressure,
     Several,
     optional,
+    shown,
 )
 from trunnion.driveline.record import Record, as_tuple, listed
 from trunnion.errors import InputError
@@ -74,8 +75,9 @@ class PressureCurve(Record):
         if len(self.pressures) != count:
             problem = f"must be {count} quantities, one for each of angles, and are {len(self.pressures)}"
             raise InputError(problem, key="pressures", remedy="give one at every angle")
-        if any(b <= a for a, b in pairwise(self.angles)):
-            raise InputError("must rise", key="angles", remedy="sort them; each once")
+        if (wrong := next(((a, b) for a, b in pairwise(self.angles) if b <= a), None)) is not None:
+            before, behind = (shown(angle, ANGLE, "deg") for angle in wrong)
+            raise InputError(f"must rise: {behind} after {before}", key="angles", remedy="sort them; each once")
         if min(self.pressures) <= 0:
             remedy = "pressures are absolute: add that of the air, 1.013 bar, to those above it"
             raise InputError("must be positive", key="pressures", value=min(self.pressures), remedy=remedy)

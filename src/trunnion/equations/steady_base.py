@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.converter_balance import refuse_converters
+from trunnion.driveline.engine import Engine
 from trunnion.driveline.mean_balance import balances_in_words
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.driveline.vehicle import Tyre
@@ -240,6 +241,9 @@ def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     topo = assembly.topology
     if runs_by_itself(assembly.line) and (balances := balances_in_words(assembly.line)):
         return f"leave the speed out, so that it runs where they do, at {balances}; or give the motor drive_share = 1"
+    engine = next((name for name, one in assembly.line.as_stated.parts if isinstance(one, Engine)), None)
+    if engine is not None and not (_at_input(assembly, row[None]) < 0).any():
+        return f'give the engine, "{engine}" say, drive_share = 1'
     station, element = _driving(assembly, row[None])
     name = assembly.line.names[element]
     remedy = f'give the driving disk, "{name}" say, drive_share = 1'
