@@ -1,4 +1,5 @@
-"""10⁵ boxes of small lines and 10³ of real ones, attacked at corners and inside: how many were proved, none falsely.
+"""10⁵ boxes of small lines, 10³ of real ones and 600 of pairs about their own motion, attacked at corners and inside:
+how many were proved, none falsely.
 
 Run from the repository: ``PYTHONPATH=src:tests python tests/attack_certificates.py LOG --seconds 1500``. Parts are
 numbered; each draws its line and boxes from its own number, and adds one row to LOG. Run again with the same LOG it
@@ -16,20 +17,23 @@ from pathlib import Path
 
 import numpy as np
 from oracles.attacked_boxes import Attack, attack, check, real_shape
+from oracles.attacked_own_boxes import attack_own
 
 import trunnion as tn
 
 SMALL, SMALL_BOXES, SMALL_POINTS = 500, 200, 12
 REAL, REAL_BOXES = 100, 10
+OWN, OWN_BOXES, OWN_POINTS = 100, 6, 6
 AS_REAL = Attack(points=12, least=-2.0, widest=-2.5, proved_alone=True)
 EXAMPLES = Path(__file__).parents[1] / "examples"
 NAMES = ("truck", "rolling-mill-spindle", "steering-column", "pto-shaft")
 
 
 def parts() -> Iterator[tuple[str, int]]:
-    """Kind and number of every part; five small ones between two real ones."""
+    """Kind and number of every part; five small ones between two real ones, and one about its own motion."""
     for k in range(REAL):
         yield "real", k
+        yield "own", k
         for small in range(5 * k, 5 * k + 5):
             yield "small", small
 
@@ -38,6 +42,8 @@ def run(kind: str, number: int) -> tuple[int, int, int]:
     """Boxes, how many were proved, and how many hold an unstable line."""
     if kind == "small":
         return SMALL_BOXES, *check(100_000 + number, SMALL_BOXES, 1 + number % 3, number % 2 == 0, SMALL_POINTS)
+    if kind == "own":
+        return OWN_BOXES, attack_own(np.random.default_rng(300_000 + number), OWN_BOXES, OWN_POINTS, str(number)), 0
     rng = np.random.default_rng(200_000 + number)
     shape = real_shape(rng, tn.load(EXAMPLES / f"{NAMES[number % len(NAMES)]}.toml"))
     return REAL_BOXES, *attack(rng, shape, REAL_BOXES, AS_REAL, f"real {number}")
@@ -46,7 +52,7 @@ def run(kind: str, number: int) -> tuple[int, int, int]:
 def totals(rows: list[dict[str, object]]) -> str:
     """What all rows come to."""
     said = []
-    for kind, whole in (("small", SMALL * SMALL_BOXES), ("real", REAL * REAL_BOXES)):
+    for kind, whole in (("small", SMALL * SMALL_BOXES), ("real", REAL * REAL_BOXES), ("own", OWN * OWN_BOXES)):
         own = np.array([row["found"] for row in rows if row["kind"] == kind]).reshape(-1, 3).astype(int).sum(axis=0)
         said.append(
             f"{kind} lines: {own[0]} of {whole} boxes, {own[1]} proved, {own[2]} attacked ones hold an unstable line"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.attacked_own_boxes import attack_own, counted, value
 from oracles.bent_pair import PERIOD, BentPair
 
 import trunnion as tn
@@ -31,13 +32,6 @@ def ranges_of(own: OwnMotionLine, shares: Tolerances) -> list[NumberRange]:
     return [NumberRange(s.label, s.columns, s.low, s.high) for s in read_tolerances(own.assembly, shares)]
 
 
-def value(wave: Wave, phi: float, p: np.ndarray) -> float:
-    order = np.arange(-wave.last, wave.last + 1)
-    # Rows of the first parameter's Chebyshev polynomials stand last.
-    powers = np.cos(np.arange(2, 2 + wave.powers) * np.arccos(p[0]))
-    return float((np.concatenate([[1.0], p, powers]) @ wave.parts @ np.exp(2j * order * phi)).real)
-
-
 def box(
     shares: Tolerances = SHARES, width: float = 2e-4, pair: BentPair = PAIR
 ) -> tuple[MotionEquations, MotionWaves, list[NumberRange], tuple[float, float]]:
@@ -55,11 +49,6 @@ def corner(ranges: list[NumberRange], signs: np.ndarray) -> BentPair:
         NAMES[one.label.split(".")[1]]: one.high if s > 0 else one.low for one, s in zip(ranges, signs, strict=True)
     }
     return PAIR.at(**numbers)
-
-
-def counted(own: MotionEquations, pair: BentPair, p: np.ndarray) -> np.ndarray:
-    """What is added to the states of the waves for those of the pair: its twists count from a fixed one."""
-    return np.array([(value(own.co.torque[0], 0.0, p) + pair.mean) / pair.stiffness, 0.0, 0.0])
 
 
 # What encloses contains
@@ -160,6 +149,11 @@ def test_the_bound_holds_of_all_angles_and_parameters(shares: Tolerances, width:
             assert true <= most + 1e-12 * abs(true)
             nearest = max(nearest, most / true if true < 0 else 0.0)
     assert nearest > 0.5
+
+
+@pytest.mark.parametrize("number", [6, 20])
+def test_what_is_proved_near_the_boundary_holds_at_corners_and_inside(number: int) -> None:
+    assert attack_own(np.random.default_rng(300_000 + number), 6, 4, str(number)) >= 2
 
 
 # What is not to be proved is not
