@@ -20,6 +20,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -100,34 +101,30 @@ class Wave:
             return Wave(self.parts * other, rest, self.powers)
         count, last, powers = self.parts.shape[0], self.last, max(self.powers, other.powers)
         parts, lost = np.zeros_like(self.parts), 0.0
-
-        def product(a: int, b: int) -> Complex | None:
-            """What is kept of the product of two rows."""
-            nonlocal lost
-            if not (self.parts[a].any() and other.parts[b].any()):
-                return None
-            whole = np.convolve(self.parts[a], other.parts[b])
-            lost += float(np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum())
-            return np.asarray(whole[last : 3 * last + 1])
-
         rows = chebyshev_rows(count, powers) if powers else [0]
-        for a, b in np.ndindex(len(rows), len(rows)):
-            made = product(rows[a], rows[b])
-            if made is None:
-                continue
-            ends = (a + b,) if not (a and b) else (a + b, abs(a - b))
-            for to in ends:
-                if to < len(rows):
-                    parts[rows[to]] += made / len(ends)
-                else:
-                    lost += float(np.abs(made).sum()) / len(ends)
         alone = [v for v in range(1, count) if v not in rows]
+        degrees: dict[int, Complex] = {}
+        for a, b in product(range(len(rows)), repeat=2):
+            one, two = self.parts[rows[a]], other.parts[rows[b]]
+            if not (a or b) or (one.any() and two.any()):
+                whole = np.convolve(one, two)
+                ends = (a + b, abs(a - b)) if a and b else (a + b,)
+                for degree in ends:
+                    share = whole / len(ends)
+                    degrees[degree] = degrees[degree] + share if degree in degrees else share
+        for degree, whole in degrees.items():
+            lost += np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum()
+            if degree < len(rows):
+                parts[rows[degree]] = whole[last : 3 * last + 1]
+            else:
+                lost += np.abs(whole[last : 3 * last + 1]).sum()
         for v in alone:
-            for one in (product(0, v), product(v, 0)):
-                if one is not None:
-                    parts[v] += one
-        moved, others = self.sizes[alone].sum(), other.sizes[alone].sum()
+            if self.parts[v].any() or other.parts[v].any():
+                whole = np.convolve(self.parts[0], other.parts[v]) + np.convolve(self.parts[v], other.parts[0])
+                lost += np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum()
+                parts[v] = whole[last : 3 * last + 1]
         along, along_others = self.sizes[rows[1:]].sum(), other.sizes[rows[1:]].sum()
+        moved, others = self.sizes[alone].sum(), other.sizes[alone].sum()
         rest = lost + moved * (others + along_others) + along * others
         rest += self.size * other.rest + self.rest * (other.size - other.rest)
         rest += ROUND * (2 * last + 2 * count + 4 * powers + 16) * self.size * other.size
