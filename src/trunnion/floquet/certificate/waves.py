@@ -110,7 +110,7 @@ class Wave:
                 whole = np.convolve(one, two)
                 ends = (a + b, abs(a - b)) if a and b else (a + b,)
                 for degree in ends:
-                    share = whole / len(ends)
+                    share: Complex = np.asarray(whole / len(ends), dtype=complex)
                     degrees[degree] = degrees[degree] + share if degree in degrees else share
         for degree, whole in degrees.items():
             lost += np.abs(whole[:last]).sum() + np.abs(whole[3 * last + 1 :]).sum()
