@@ -136,8 +136,11 @@ def one_motion_each(
     ------
     ComputationError : the motions fold back, and several have one of the speeds.
     """
-    lossy = bool(assembly.coefficients(assembly.table(1), any_frequency=True).loss.any())  # about rigid shafts then
-    if motions is not None and not lossy and not motions.obstacle:
+    if motions is None or motions.obstacle:
+        return motions
+    table = assembly.table(1)
+    table[:, 0] = speeds[0]
+    if not assembly.coefficients(table, any_frequency=True).loss.any():  # with a loss factor about rigid shafts
         from trunnion.steady.free.several_motions import require_one_motion_each
 
         require_one_motion_each(motions, assembly.line, speeds)
