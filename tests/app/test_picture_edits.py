@@ -152,3 +152,15 @@ def test_in_the_sketch_parts_are_dragged_put_between_and_taken_away(look: Look) 
     )
     after = page.get_by_label(re.compile("^after of "))
     assert after.first.input_value() == "Disk 2"
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    page.get_by_role("button", name="Undo", exact=True).first.click()
+    becomes(page, first)
+    chip, gap = page.locator(".chip[data-kind=Coupling]"), page.locator("[data-where='behind load']")
+    dragged = "(part, kind) => part.dispatchEvent(new DragEvent(kind, {dataTransfer: new DataTransfer()}))"
+    chip.evaluate(dragged, "dragstart")
+    page.get_by_role("button", name="Disk 1, Disk", exact=True).press("Delete")  # the sketch changes under the hand
+    page.wait_for_timeout(4_000)
+    assert parts(page) == first
+    gap.evaluate(dragged, "drop")
+    becomes(page, ["ConstantSpeed 1", "Shaft 1", "HookeJoint 1", "Shaft 2", "load", "Coupling 1"])

@@ -37,7 +37,7 @@ export function render({ model }) {
   const chips = element("span", { class: "chips", role: "group", "aria-label": "parts" })
   const palette = element("div", { class: "palette" }, element("span", {}, "Insert"), chips, kind,
     element("span", { class: "hint" }, "drag one to a +, or press the +; drag a part to a + to move it"))
-  let dragged = null, chosen = model.kinds.includes("Disk") ? "Disk" : model.kinds[0]
+  let dragged = null, waits = false, chosen = model.kinds.includes("Disk") ? "Disk" : model.kinds[0]
 
   function choose(name) {
     chosen = name
@@ -53,7 +53,11 @@ export function render({ model }) {
     event.dataTransfer.setData("text/plain", what.kind ?? what.spot.name)
     stage.classList.add("dragging")
   }
-  const end = () => { dragged = null; stage.classList.remove("dragging") }
+  function end() {
+    dragged = null
+    stage.classList.remove("dragging")
+    if (waits) build()
+  }
 
   const to = (spot, front) => ({ path: spot.path, key: spot.key, front })
   function insert(spot, front, name) {
@@ -100,8 +104,9 @@ export function render({ model }) {
   }
 
   function build() {
+    waits = dragged !== null // a sketch drawn anew would take what is dragged, and where it goes, out of the hand
+    if (waits) return
     const root = stage.getRootNode(), focused = root.activeElement?.dataset?.id
-    end()
     stage.replaceChildren()
     if (!model.svg) return
     const bytes = new TextEncoder().encode(model.svg)
