@@ -343,7 +343,12 @@ BAD = [
     ("l.csv", "{head}x,inertia,0,,-2\n", "x.inertia = -2: must be positive"),
     ("l.csv", "{head}x,inertia,0,,2\ny,inertia,1,,2\n", "y: hangs on nothing"),
     ("l.csv", "{head}x,spring,0,1,,3\n", "has neither a drive nor an inertia"),
-    ("l.csv", "{head}x,inertia,0,,2\ns,spring,0,1,,3\ny,inertia,1,,2\ng,gear,0,1,,,,2\n", "g: closes a loop"),
+    (
+        "l.csv",
+        "{head}x,inertia,0,,2\ns,spring,0,1,,3\ny,inertia,1,,2\ng,gear,0,1,,,,2\n",
+        "s: closes a loop whose ends",
+    ),
+    ("l.csv", "{head}x,inertia,0,,2\nf,gear,0,1,,,,2\ny,inertia,1,,2\ng,gear,0,1,,,,2\n", "g: closes a loop; leave it"),
     (
         "l.csv",
         "{head}a,drive,0,,,,,,,,10\nx,inertia,1,,2\ns,spring,0,1,,3\nt,spring,1,2,,3\nb,drive,2,,,,,,,,11\n",

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from oracles.passing_order import states_on_run
 
 import trunnion as tn
 
@@ -32,12 +35,18 @@ def data() -> tn.MeasuredOrders:
     return tn.track_orders(run, [1, 2], window=4)
 
 
+@pytest.fixture(scope="module")
+def slow(data: tn.MeasuredOrders) -> tn.MeasuredOrders:
+    """The same windows in a run so slow that nothing lags."""
+    return replace(data, time=1e6 * data.time)
+
+
 @pytest.mark.parametrize("damping", [20.0, 2.0, 0.05])
-def test_peaks_are_those_of_the_closed_form(data: tn.MeasuredOrders, damping: float) -> None:
+def test_peaks_are_those_of_the_closed_form(slow: tn.MeasuredOrders, damping: float) -> None:
     """At 0.05 N m s/rad the peak is 0.05 rad/s wide, a two-hundredth of what lies between two windows."""
-    found = tn.compare_measured(resonator(damping), data)
+    found = tn.compare_measured(resonator(damping), slow)
     speed, height = top(damping)
-    assert np.diff(np.sort(data.speed)).max() > 5.0
+    assert np.diff(np.sort(slow.speed)).max() > 5.0
     hub, tube = found.channels.index("hub"), found.channels.index("tube")
     assert abs(found.peak[0, hub] - height) <= found.peak_error[0, hub] + 1e-9 * height
     assert found.peak_error[0, hub] < 2e-4 * height
@@ -48,14 +57,28 @@ def test_peaks_are_those_of_the_closed_form(data: tn.MeasuredOrders, damping: fl
     assert found.peak[1, hub] == 0.0  # nothing shakes it twice a turn
 
 
-def test_a_peak_between_the_tracked_speeds_is_said(data: tn.MeasuredOrders) -> None:
+def test_a_peak_between_the_tracked_speeds_is_said(data: tn.MeasuredOrders, slow: tn.MeasuredOrders) -> None:
     """Read at the windows alone the sharp line seems to agree, or to be smaller."""
-    sharp = tn.compare_measured(resonator(0.05), data)
+    sharp = tn.compare_measured(resonator(0.05), slow)
     said = sharp.sentence(0, sharp.channels.index("hub"))
     assert "between the tracked speeds; at those up to" in said and "3000 mrad" in said
     assert float(np.abs(sharp.predicted[:, 0]).max()) < 0.2 * sharp.peak[0].max()
     same = tn.compare_measured(resonator(20.0), data)
     assert "between" not in same.sentence(0, 0) and "as predicted to" in same.sentence(0, 0)
+
+
+def test_peaks_of_a_fast_run_are_those_of_the_run(data: tn.MeasuredOrders) -> None:
+    """80 rad/s² through a resonance 4 rad/s wide: in closed form, the hub shaken by a torque of order 1."""
+    found = tn.compare_measured(resonator(2.0), data)
+    rate = (290.0 - 90.0) / 2.5
+    speed = np.linspace(data.speed.min(), data.speed.max(), 20001)
+    matrix = np.array([[0.0, 1.0], [-STIFFNESS / INERTIA, -2.0 / INERTIA]])
+    swing = np.abs(states_on_run(matrix, np.array([0.0, TORQUE / INERTIA]), np.zeros(2), 1.0, speed, rate)[:, 0])
+    hub = found.channels.index("hub")
+    assert swing.max() < 0.6 * top(2.0)[1] and speed[swing.argmax()] > top(2.0)[0] + 3.0
+    assert abs(found.peak[0, hub] - swing.max()) <= found.peak_error[0, hub] + 1e-5 * swing.max()
+    assert found.peak_error[0, hub] < 2e-4 * swing.max()
+    assert abs(found.peak_speed[0, hub] - speed[swing.argmax()]) < 0.05
 
 
 @pytest.mark.parametrize("stiffness", [1.7e4, 1.9e4, 2.15e4])

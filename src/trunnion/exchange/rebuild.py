@@ -13,7 +13,7 @@ from trunnion.errors import InputError
 from trunnion.exchange.network import FlangeDrive, FlangeGear, FlangeInertia, FlangeSpring, Item, Network
 
 SAME_SPEED = 1e-9
-"""Share by which the speeds of two drives may miss each other."""
+"""Share by which speeds that must be one may miss each other."""
 
 
 def line_of(network: Network) -> Driveline:
@@ -21,7 +21,8 @@ def line_of(network: Network) -> Driveline:
 
     Raises
     ------
-    InputError : it is not a line: parts that nothing joins, gears that close a loop, drives that contradict each other.
+    InputError : it is not a line: parts that nothing joins, gears that close a loop, a loop that would wind up, drives
+        that contradict each other.
     """
     return _Rebuilt(network).line()
 
@@ -36,6 +37,7 @@ class _Rebuilt:
         self.elements: list[Element] = []
         self.seat: dict[int, Element] = {}
         self.turning: dict[int, float] = {}
+        self.closing = _closing(network)
 
     def line(self) -> Driveline:
         first = next((one for kind in (FlangeDrive, FlangeInertia) for one in self.network.of(kind)), None)
@@ -46,7 +48,7 @@ class _Rebuilt:
         while waiting:  # the newest flange first, so that what follows a shaft stands behind it
             flange = waiting.pop()
             self._sit(flange)
-            joined = next((one for one in self.left if _touches(one, flange)), None)
+            joined = next((one for one in self.left if _touches(one, flange) and not self._waits(one, flange)), None)
             if joined is None:
                 continue
             waiting.append(flange)
@@ -57,6 +59,10 @@ class _Rebuilt:
         speed = self._speed()
         operation = None if speed is None else Operation(speed=speed)
         return Driveline(self.elements, name=self.network.name or None, operation=operation)
+
+    def _waits(self, one: Item, flange: int) -> bool:
+        """Whether a spring that closes a loop has its other end still to be reached."""
+        return id(one) in self.closing and _far(one, flange) not in self.turning
 
     def _sit(self, flange: int) -> None:
         """Put every inertia and drive of a flange there."""
@@ -79,25 +85,29 @@ class _Rebuilt:
         """Put a spring or gear that leads on from a flange; the new flange behind it, if it is one."""
         self.left.remove(one)
         assert isinstance(one, FlangeSpring | FlangeGear)
-        far = one.far if one.near == flange else one.near
-        closes = far in self.turning
+        far = _far(one, flange)
         if isinstance(one, FlangeSpring):
+            closes = far in self.turning
             loss = {"damping": one.damping} if one.damping else {}
             end = {"to": self.seat[far].name} if closes else {}
             made = _made(Shaft, name=one.name, stiffness=one.stiffness, **loss, **end, **self._behind(flange))
             if closes:
+                self._must_turn_alike(one, flange, far)
                 self.elements.append(made)
                 return []
             self.turning[far] = self.turning[flange]
         else:
-            if closes:
-                remedy = "leave it out; a rigid gear that closes a loop holds or contradicts the others"
-                raise InputError("closes a loop", element=one.name, remedy=remedy)
             ratio = one.ratio if one.near == flange else 1 / one.ratio
             made = _made(Ratio, name=one.name, **_ratio(ratio), **self._behind(flange))
             self.turning[far] = self.turning[flange] / float(ratio)
         self._put(made, far)
         return [far]
+
+    def _must_turn_alike(self, spring: FlangeSpring, flange: int, far: int) -> None:
+        speeds = self.turning[flange], self.turning[far]
+        if abs(speeds[0] - speeds[1]) > SAME_SPEED * abs(speeds[0]):
+            problem = f"closes a loop whose ends turn {speeds[0]:g} and {speeds[1]:g} times a turn of the input"
+            raise InputError(problem, element=spring.name, remedy="check the gears of the loop, or leave it out")
 
     def _put(self, made: Element, flange: int) -> None:
         self.elements.append(made)
@@ -128,6 +138,37 @@ class _Rebuilt:
 
 def _made(kind: type[Element], **data: Any) -> Element:
     return kind(**data)
+
+
+def _closing(network: Network) -> set[int]:
+    """Identities of the springs that close a loop: a gear never does.
+
+    Raises
+    ------
+    InputError : a gear has to.
+    """
+    part: dict[int, int] = {}
+
+    def root(flange: int) -> int:
+        while (above := part.setdefault(flange, flange)) != flange:
+            flange = above
+        return flange
+
+    found: set[int] = set()
+    for one in (*network.of(FlangeGear), *network.of(FlangeSpring)):
+        near, far = root(one.near), root(one.far)
+        if near == far and isinstance(one, FlangeGear):
+            remedy = "leave it out; a rigid gear that closes a loop holds or contradicts the others"
+            raise InputError("closes a loop", element=one.name, remedy=remedy)
+        if near == far:
+            found.add(id(one))
+        part[far] = near
+    return found
+
+
+def _far(one: Item, flange: int) -> int:
+    assert isinstance(one, FlangeSpring | FlangeGear)
+    return one.far if one.near == flange else one.near
 
 
 def _touches(one: Item, flange: int) -> bool:

@@ -1,7 +1,6 @@
 """A synthetic test bench: the signals that pickups and gauges would record of a line, with everything that spoils them.
 
-The line moves as ``order_response`` says at every speed of the run: quasi-steadily, which holds while the speed stays
-for several decay times within the width of a resonance; where it does not, that is said.
+The line moves as ``order_response`` says at a steady speed, and in a run lags behind that as ``run_response`` says.
 """
 
 from __future__ import annotations
@@ -17,22 +16,17 @@ from trunnion.driveline.arguments import one_number, rising_range, speeds_of, wh
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.inertia_torque import inertia_torque
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
+from trunnion.measured.run_response import FIRST_GRID, run_response
 from trunnion.measured.signals.measurement import TURN, Channel, Measurement, PulseTrain, SampledSignal
 from trunnion.measured.tracking.places import even_places, speed_ratios
-from trunnion.modes.natural_frequencies import natural_frequencies
 from trunnion.response.orders.response import response_about, steady_states_of
 from trunnion.response.orders.result import OrderResponse
-from trunnion.results.units import figures
+from trunnion.steady.orders.forced_response import shaft_names
 
-FIRST_GRID, LAST_GRID = 65, 16385
-"""Speeds at which the response is computed, doubled until it is smooth between them."""
-BETWEEN = 2e-5
-"""Largest error between speeds, relative to the largest amplitude of a channel."""
 ROUNDS = 60
-DWELL = 3.0
-"""Decay times that a run-up has to stay within the width of a resonance."""
 
 
 @dataclass(frozen=True)
@@ -58,31 +52,51 @@ class _Course:
 
 @dataclass(frozen=True)
 class _OrderMotion:
-    """Re Σ Y_k(Ω) e^{i(kφ + νt)} of one quantity, and its mean."""
+    """Re Σ Y_k(Ω) e^{i(kφ + νt)} of one quantity; amplitudes (order,) where the speed stays, else over the speed."""
 
     order: Array
     frequency: Array
-    spline: CubicSpline | None
-    steady: Complex
-    mean: float
+    amplitude: CubicSpline | Complex
 
     def at(self, time: Array, angle: Array, speed: Array) -> tuple[Array, Array]:
         """Values (m,), and their slope over the angle."""
-        amplitude = self.steady[None, :] if self.spline is None else self.spline(speed)
+        amplitude = self.amplitude(speed) if isinstance(self.amplitude, CubicSpline) else self.amplitude[None, :]
         waves = amplitude * np.exp(
             1j * (np.multiply.outer(angle, self.order) + np.multiply.outer(time, self.frequency))
         )
         turned = 1j * (self.order + np.multiply.outer(1.0 / speed, self.frequency))
         return np.asarray(waves.real.sum(axis=1)), np.asarray((turned * waves).real.sum(axis=1))
 
-    def accelerating(self, time: Array, angle: Array, speed: Array) -> Array:
-        """Its second derivative by the time (m,), amplitude and speed as they stand at each instant."""
-        amplitude = self.steady[None, :] if self.spline is None else self.spline(speed)
-        waves = amplitude * np.exp(
-            1j * (np.multiply.outer(angle, self.order) + np.multiply.outer(time, self.frequency))
-        )
-        rates = np.multiply.outer(speed, self.order) + self.frequency
-        return np.asarray(-(rates**2 * waves).real.sum(axis=1))
+
+@dataclass(frozen=True)
+class _BenchResponse:
+    """What each disk and spring of a line does on the bench.
+
+    listed: the response at a few speeds, which lists its orders. amplitude: of rotations of the disks, their
+    accelerations and torques of the springs, one after another (order, quantity) where the speed stays, else a spline
+    of these over the speed. torque (spring,) [N m]: mean, with what accelerates the inertia behind it.
+    """
+
+    listed: OrderResponse
+    amplitude: CubicSpline | Complex
+    torque: Array
+
+    def motion(self, name: str, kind: str) -> _OrderMotion:
+        """Of a disk (its "rotation" or "acceleration") or a spring ("torque")."""
+        disks = self.listed.inertias
+        if kind != "torque" and name not in disks:  # held at the driven end
+            return _OrderMotion(np.zeros(0), np.zeros(0), np.zeros(0, dtype=complex))
+        own = {"rotation": 0, "acceleration": len(disks), "torque": 2 * len(disks)}[kind]
+        own += self.listed.springs.index(name) if kind == "torque" else disks.index(name)
+        if isinstance(self.amplitude, CubicSpline):
+            part: CubicSpline | Complex = CubicSpline(self.amplitude.x, self.amplitude(self.amplitude.x)[:, :, own])
+        else:
+            part = self.amplitude[:, own]
+        return _OrderMotion(self.listed.order, self.listed.frequency, part)
+
+    def mean(self, spring: str) -> float:
+        """Torque of a spring about which it vibrates [N m]."""
+        return float(self.torque[self.listed.springs.index(spring)])
 
 
 def measure(
@@ -155,11 +169,11 @@ def measure(
     for key, value in {"missing": missing, "double": double}.items():
         if not 0 <= one_number(value, key) < 0.2:
             raise InputError("must be a share below 0.2", key=key, value=value, remedy="0.001, say")
-    response = _responses(assembly, course)
+    response = _bench_response(assembly, course)
     teeth = {name: whole_number(count, f"pickups.{name}", 2) for name, count in pickups.items()}
     ratios, even = speed_ratios(assembly), even_places(assembly)
-    disks = (*even, *response[0].inertias)
-    known = {"pickups": disks, "gauges": response[0].springs, "accelerometers": disks}
+    disks = (*even, *response.listed.inertias)
+    known = {"pickups": disks, "gauges": response.listed.springs, "accelerometers": disks}
     for key, names in {"pickups": teeth, "gauges": gauges, "accelerometers": accelerometers}.items():
         for name in names:
             if name not in known[key]:
@@ -172,7 +186,7 @@ def measure(
         pattern = pitch_error * TURN / count * (error - error.mean())
         wheel = _Wheel(name, count, pattern, abs(ratios[name]))
         noise = np.random.default_rng([seed, place])
-        times = wheel.edges(course, _motion(response, course, name, "rotation"), start_angle)
+        times = wheel.edges(course, response.motion(name, "rotation"), start_angle)
         times = _spoiled(times, noise, jitter, missing, double)
         if name in drifts:
             times = times * (1 + drifts[name])
@@ -181,19 +195,19 @@ def measure(
     for place, name in enumerate(gauges):
         noise = np.random.default_rng([seed, len(teeth) + place])
         time = np.arange(int(duration * gauge_rate)) / gauge_rate
-        motion = _motion(response, course, name, "torque")
-        torque = motion.mean + motion.at(time, start_angle + course.angle(time), course.speed(time))[0]
+        motion = response.motion(name, "torque")
+        torque = response.mean(name) + motion.at(time, start_angle + course.angle(time), course.speed(time))[0]
         values = torque + gauge_noise * noise.normal(size=len(time))
         label = f"torque of {name}" if name in teeth else name
         channels.append(SampledSignal(values, gauge_rate, label, "torque", name))
     for place, name in enumerate(accelerometers):
         noise = np.random.default_rng([seed, len(teeth) + len(gauges) + place])
         time = np.arange(int(duration * gauge_rate)) / gauge_rate
-        motion = _motion(response, course, name, "rotation")
-        swing = motion.accelerating(time, start_angle + course.angle(time), course.speed(time))
+        motion = response.motion(name, "acceleration")
+        swing = motion.at(time, start_angle + course.angle(time), course.speed(time))[0]
         values = abs(ratios[name]) * course.acceleration + swing + accelerometer_noise * noise.normal(size=len(time))
         channels.append(SampledSignal(values, gauge_rate, f"acceleration of {name}", "acceleration", name))
-    return Measurement(channels, "synthetic bench", _remarks(assembly, course, response))
+    return Measurement(channels, "synthetic bench", _remarks(assembly, response.listed))
 
 
 def _course(speeds: object, duration: float) -> _Course:
@@ -209,47 +223,38 @@ def _course(speeds: object, duration: float) -> _Course:
     return _Course(speed, 0.0, duration)
 
 
-def _responses(assembly: Assembly, course: _Course) -> tuple[OrderResponse, float]:
-    """The response at speeds so near that it is smooth between them, and how far a spline is off there."""
+def _bench_response(assembly: Assembly, course: _Course) -> _BenchResponse:
     motions = steady_states_of(assembly)
     low, high = sorted((course.first, course.first + course.acceleration * course.duration))
-    if course.acceleration == 0:
-        return response_about(assembly, np.array([course.first]), motions), 0.0
-    count = FIRST_GRID
-    found = response_about(assembly, np.linspace(low, high, count), motions)
-    while True:
-        error = max(_between(found, values) for values in (found.rotation, found.torque))
-        if error <= BETWEEN:
-            return found, error
-        count = 2 * count - 1
-        if count > LAST_GRID:
-            raise ComputationError(
-                f"the response is not smooth over {LAST_GRID} speeds (error {error:.2g}): a resonance without damping; "
-                "give the line damping, or ask for a smaller range"
-            )
-        found = response_about(assembly, np.linspace(low, high, count), motions)
+    speeds = np.linspace(low, high, FIRST_GRID) if course.acceleration else np.array([course.first])
+    listed = response_about(assembly, speeds, motions)
+    inertia = dict(zip(shaft_names(assembly), inertia_torque(assembly).tolist(), strict=True))
+    behind = np.array([inertia.get(name, 0.0) for name in listed.springs])
+    mean = listed.mean_torque.mean(axis=0) + course.acceleration * behind
+    if not course.acceleration:
+        return _BenchResponse(listed, _quantities(listed, listed)[0], mean)
+
+    def respond(speed: Array) -> Complex:
+        return _quantities(response_about(assembly, speed, motions), listed)
+
+    found = run_response(respond, low, high, course.acceleration, listed.order)
+    return _BenchResponse(listed, CubicSpline(found.speed, found.passing), mean)
 
 
-def _between(found: OrderResponse, values: Complex) -> float:
-    """Error in the middles of a spline through every other speed, relative to the largest amplitude of a place."""
-    if not values.size:
-        return 0.0
-    whole = CubicSpline(found.speed[::2], values[::2])(found.speed[1::2])
-    scale = np.abs(values).max(axis=(0, 1))
-    # A spline's error falls with the fourth power of the step: half the step has a sixteenth.
-    off = np.abs(whole - values[1::2]).max(axis=(0, 1)) / 16
-    return float(np.max(off / np.where(scale > 0, scale, 1.0), initial=0.0))
-
-
-def _motion(response: tuple[OrderResponse, float], course: _Course, name: str, kind: str) -> _OrderMotion:
-    found = response[0]
-    if kind == "rotation" and name not in found.inertias:  # held at the driven end
-        return _OrderMotion(np.zeros(0), np.zeros(0), None, np.zeros(0, dtype=complex), 0.0)
-    names, values = (found.inertias, found.rotation) if kind == "rotation" else (found.springs, found.torque)
-    own = values[:, :, names.index(name)]
-    mean = 0.0 if kind == "rotation" else float(found.mean_torque[:, names.index(name)].mean())
-    spline = CubicSpline(found.speed, own) if len(found.speed) > 1 else None
-    return _OrderMotion(found.order, found.frequency, spline, own[0], mean)
+def _quantities(found: OrderResponse, listed: OrderResponse) -> Complex:
+    """Rotations, accelerations and torques (speed, order, quantity) of the orders that are listed."""
+    known = [(round(k, 9), round(nu, 9)) for k, nu in zip(found.order.tolist(), found.frequency.tolist(), strict=True)]
+    made = np.zeros(
+        (len(found.speed), len(listed.order), 2 * len(listed.inertias) + len(listed.springs)), dtype=complex
+    )
+    for k, (order, frequency) in enumerate(zip(listed.order.tolist(), listed.frequency.tolist(), strict=True)):
+        if (round(order, 9), round(frequency, 9)) not in known:
+            continue
+        column = known.index((round(order, 9), round(frequency, 9)))
+        rate = (order * found.speed + frequency)[:, None]
+        rotation = found.rotation[:, column]
+        made[:, k] = np.concatenate([rotation, -(rate**2) * rotation, found.torque[:, column]], axis=1)
+    return made
 
 
 @dataclass(frozen=True)
@@ -291,28 +296,6 @@ def _spoiled(times: Array, noise: np.random.Generator, jitter: float, missing: f
     return np.sort(np.concatenate([times[~lost], again]))
 
 
-def _remarks(assembly: Assembly, course: _Course, response: tuple[OrderResponse, float]) -> tuple[str, ...]:
+def _remarks(assembly: Assembly, response: OrderResponse) -> tuple[str, ...]:
     left = [one.sentence for one in left_out("measure", assembly.line)]
-    found = list(dict.fromkeys([*left, *(one.sentence for one in response[0].remarks)]))
-    if course.acceleration:
-        found += _too_fast(assembly, course, response[0])
-    return tuple(found)
-
-
-def _too_fast(assembly: Assembly, course: _Course, response: OrderResponse) -> list[str]:
-    """Resonances that a run-up passes faster than they settle."""
-    modes = natural_frequencies(assembly)
-    speeds = sorted((course.first, course.first + course.acceleration * course.duration))
-    worst = (np.inf, "")
-    for frequency, ratio in zip(modes.elastic.tolist(), modes.damping_ratio[modes.still :].tolist(), strict=True):
-        for order in response.order[response.frequency == 0].tolist():
-            if speeds[0] <= frequency / order <= speeds[1]:
-                width, decay = 2 * ratio * frequency / order, 1 / max(ratio * frequency, 1e-300)
-                stays = width / abs(course.acceleration) / decay
-                worst = min(worst, (stays, f"order {order:g} at {figures(frequency / TURN, 4)} Hz"))
-    if worst[0] >= DWELL:
-        return []
-    return [
-        f"The run-up stays {figures(worst[0], 2)} decay times within the resonance of {worst[1]}: signals are those of "
-        "the steady response at each speed; run_up has the true passage."
-    ]
+    return tuple(dict.fromkeys([*left, *(one.sentence for one in response.remarks)]))

@@ -133,9 +133,11 @@ def twins_of(misfit: Misfit, minima: list[FitPoint], known: Flags) -> list[FitPo
     found: list[FitPoint] = []
     candidates = list(minima[1:])
     for share in images(misfit, best.share):
-        predicted = misfit.predicted(values_at(misfit, share)[None])[0]
-        if misfit.chi_square(predicted) < best.chi_square + 1e3:
-            candidates.append(descend(misfit, share, misfit.angle(predicted), free))
+        values = values_at(misfit, share)
+        own = (misfit.passing([values]) or misfit) if misfit.passed else misfit
+        predicted = own.predicted(values[None])[0]
+        if own.chi_square(predicted) < best.chi_square + 1e3:
+            candidates.append(descend(own, share, own.angle(predicted), free))
     for one in candidates:
         near = [np.abs(one.share - other.share)[known].max(initial=0.0) for other in (best, *found)]
         if one.chi_square < best.chi_square + TWIN and min(near) > APART:

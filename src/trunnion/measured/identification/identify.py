@@ -43,6 +43,9 @@ MOST_WINDOWS = 120
 """Windows that are fitted; of more, as many spread evenly."""
 FEWER_WINDOWS = 16
 """The same of a free–free line with joint angles, whose own motion is found for each."""
+PASSES, NEARBY, LAG_SETTLED = 8, 1e3, 0.02
+"""Rounds in which the lag in the run is found anew at the best, how much worse (χ², times its scale squared) others may
+fit without it to be followed, and standard deviations by which the lag may change in the last round."""
 ANEW = 6
 """Times that a better fit found on the way may begin anew."""
 UNLIKELY = 1e-3
@@ -115,9 +118,10 @@ def identify(
     advance(0.1)
     start = shares_of(misfit, np.array([one.nominal for one in space.free]))
     misfit, minima = _resolved(misfit, search(misfit, start, seed))
+    misfit, minima, settled = _passing(misfit, minima, freedom)
     advance(0.4)
-    best, intervals, scale = _profiled(misfit, minima, freedom, lambda share: advance(0.4 + 0.4 * share))
-    minima = [best, *minima]
+    misfit, minima, intervals, scale = _profiled(misfit, minima, freedom, lambda share: advance(0.4 + 0.4 * share))
+    best = minima[0]
     twins = twins_of(misfit, minima, np.array([not (one.low_open and one.high_open) for one in intervals]))
     values = values_at(misfit, best.share)
     residual, slope = misfit.linear(values, best.angle)
@@ -135,7 +139,9 @@ def identify(
     gaussian = gaussian_of(misfit, values, intervals, spread * width)
     sampled, drawn = LikelihoodDraws(np.zeros((0, 0)), 0.0, 0.0), np.full((1, len(values)), np.nan)
     if draws and (twins or not gaussian.all()):
-        sampled, drawn = likelihood_draws(misfit, [best, *twins], spread, scale, draws, seed)
+        every = [best, *twins]
+        about = misfit.passing([values_at(misfit, one.share) for one in every]) if misfit.passed else None
+        sampled, drawn = likelihood_draws(about or misfit, every, spread, scale, draws, seed)
     ends = np.quantile(drawn, (0.025, 0.975), axis=0)
     advance(1.0)
     made = Identification(
@@ -177,7 +183,7 @@ def identify(
         findings=(),
         unit=speed_unit(assembly.line),
     )
-    return replace(made, findings=by_gravity(_findings(made, misfit)))
+    return replace(made, findings=by_gravity(_findings(made, misfit, settled)))
 
 
 def _resolved(misfit: Misfit, minima: list[FitPoint]) -> tuple[Misfit, list[FitPoint]]:
@@ -199,6 +205,33 @@ def _resolved(misfit: Misfit, minima: list[FitPoint]) -> tuple[Misfit, list[FitP
     return misfit, minima
 
 
+def _scale(best: FitPoint, freedom: int) -> float:
+    """By which χ² counts where noise does not explain the misfit."""
+    return max(1.0, best.chi_square / freedom) if chi2.sf(best.chi_square, freedom) < UNLIKELY else 1.0
+
+
+def _passing(misfit: Misfit, minima: list[FitPoint], freedom: int) -> tuple[Misfit, list[FitPoint], bool]:
+    """The misfit with the lag that the line has in a run, its minima, and whether the lag at the best has settled.
+
+    Where the lag is not known, or the speed stays, the steady response is compared, as it was.
+    """
+    free = np.zeros(len(misfit.free), dtype=bool)
+    scale = _scale(minima[0], freedom)
+    near = [one for one in minima if one.chi_square < minima[0].chi_square + NEARBY * scale**2]
+    for _ in range(PASSES):
+        # The best comes first: what is not known of its lag counts as noise.
+        found = misfit.passing([values_at(misfit, one.share) for one in near])
+        if found is None:
+            return replace(misfit, passed=()), minima, not misfit.passed
+        apart = found.apart(misfit, values_at(misfit, near[0].share))
+        misfit = found
+        near = sorted((descend(misfit, one.share, one.angle, free) for one in near), key=lambda one: one.chi_square)
+        misfit, near = _resolved(misfit, near)
+        if apart < LAG_SETTLED * np.sqrt(_scale(near[0], freedom)):
+            return misfit, near, True
+    return misfit, near, False
+
+
 def _windows(data: MeasuredOrders, most: int) -> Places:
     count = len(data.speed)
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.intp))
@@ -206,11 +239,12 @@ def _windows(data: MeasuredOrders, most: int) -> Places:
 
 def _profiled(
     misfit: Misfit, minima: list[FitPoint], freedom: int, advance: Callable[[float], None]
-) -> tuple[FitPoint, list[ProfileInterval], float]:
-    """The best, intervals of all parameters, and the scale of χ²; begun anew where a profile finds a better fit."""
-    best = minima[0]
+) -> tuple[Misfit, list[FitPoint], list[ProfileInterval], float]:
+    """The misfit, its minima, intervals of all parameters, and the scale of χ²; begun anew where a profile finds a
+    better fit, with the lag that the line has there."""
     for _ in range(ANEW):
-        scale = max(1.0, best.chi_square / freedom) if chi2.sf(best.chi_square, freedom) < UNLIKELY else 1.0
+        best = minima[0]
+        scale = _scale(best, freedom)
         slope = misfit.linear(values_at(misfit, best.share), best.angle)[1]
         found = []
         try:
@@ -218,9 +252,11 @@ def _profiled(
                 found.append(profile_interval(misfit, best, slope, k, scale))
                 advance((k + 1) / len(misfit.free))
         except BetterFit as better:
-            best = better.point
+            minima = [better.point, *minima]
+            if misfit.passed:
+                misfit, minima, _ = _passing(misfit, minima, freedom)
             continue
-        return best, found, scale
+        return misfit, minima, found, scale
     raise InputError(
         "have a likelihood with too many minima", key="free", remedy="narrow their bounds, or let fewer be free"
     )
@@ -251,7 +287,9 @@ def _by_channel(misfit: Misfit, residual: Array) -> Array:
 def _held_out(assembly: Assembly, data: MeasuredOrders, fitted: Misfit, best: FitPoint) -> float:
     """χ² over its number of a run that was not fitted, which begins at an angle of its own."""
     other = misfit_of(assembly, data, fitted.free, fitted.begin, _windows(data, max(len(fitted.rows), 1)))
-    predicted = other.predicted(values_at(fitted, best.share)[None])[0]
+    values = values_at(fitted, best.share)
+    other = other.passing([values]) or other
+    predicted = other.predicted(values[None])[0]
     return other.chi_square(predicted) / max(other.count - (fitted.begin is None), 1)
 
 
@@ -290,8 +328,13 @@ def _distance(
     return TongueDistance("joint angles", nominal, max(nominal - half, 1.0), nominal + half, found)
 
 
-def _findings(found: Identification, misfit: Misfit) -> Iterator[Finding]:
+def _findings(found: Identification, misfit: Misfit, settled: bool) -> Iterator[Finding]:
     yield from found.knowable.findings
+    if not settled:
+        yield Finding(
+            Gravity.CAUTION,
+            "How the line lags in this run did not settle with its numbers: run up more slowly, or narrow the bounds.",
+        )
     if found.probability < UNLIKELY:
         worst = np.unravel_index(int(np.nanargmax(found.residual)), found.residual.shape)
         yield Finding(

@@ -31,6 +31,8 @@ TIED = 0.98
 """Correlation from which only a combination is known."""
 SPEEDS = 65
 """At which orders and natural frequencies that follow the speed are compared."""
+FAR_BETTER = 100.0
+"""Times from which it does not tell how much better a pickup would know a number."""
 POINTS = 8
 """Points within the bounds that are looked at besides the line as it stands."""
 
@@ -209,8 +211,9 @@ def _findings(
         worst = int(share.argmax())
         at = int(gain[:, worst].argmax())
         if gain[at, worst] > 1.1:
-            factor = figures(float(gain[at, worst]), 2)
-            yield Finding(Gravity.NOTE, f"A pickup on {places[at]} would know {names[worst]} {factor} times as well.")
+            factor = float(gain[at, worst])
+            times = figures(factor, 2) if factor < FAR_BETTER else f"more than {FAR_BETTER:.0f}"
+            yield Finding(Gravity.NOTE, f"A pickup on {places[at]} would know {names[worst]} {times} times as well.")
 
 
 def _crossed(misfit: Misfit) -> list[float]:

@@ -5,6 +5,7 @@ the reference run's noise, or of the pitch errors as they are stated. Of each or
 best is taken off, and counts by itself: (Y − P e^{ikα} − C)/σ, and C/τ. Both are linear in P.
 
 Where the line's amplitude P bends within a window, the window's mean of it is compared, and σ is that of noise alone.
+Where the speed changes, P lags behind the steady response as ``linear_lag`` says.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.tolerance.parameter_intervals import ParameterInterval, table_at
+from trunnion.measured.identification.linear_lag import LinearLag, WindowLag
 from trunnion.measured.identification.window_speeds import WindowSpeeds, bent_windows, window_speeds
+from trunnion.measured.lag import channels_on_run
 from trunnion.measured.predicted import PredictedChannels, best_angle, predicted_channels, turned, usable
 from trunnion.measured.tracking.result import MeasuredOrders
 
@@ -35,7 +38,8 @@ class Misfit:
     """Residuals of a line at values of its free parameters.
 
     channels : the measured ones. free : parameters. begin : rotation of the input [rad] at the first pulse, None where
-    it is free too, and then the last of the unknowns. nodes : speeds of a window in which amplitudes bend.
+    it is free too, and then the last of the unknowns. nodes : speeds of a window in which amplitudes bend. passed : how
+    the line lags in the run, about some values; none where that is not counted.
     """
 
     channels: PredictedChannels
@@ -43,6 +47,7 @@ class Misfit:
     begin: float | None
     rows: Places
     nodes: int = NODES
+    passed: tuple[LinearLag, ...] = ()
 
     @property
     def data(self) -> MeasuredOrders:
@@ -71,13 +76,19 @@ class Misfit:
         return window_speeds(self.data, self.rows, self.channels.columns, self.bent, self.nodes)
 
     @cached_property
-    def deviation(self) -> Array:
-        """Standard deviations (window, order, channel) of either part, infinite of what is not known."""
+    def _noise(self) -> Array:
+        """Of the measurement alone."""
         columns = list(self.channels.columns)
         whole, bend = (one[self.rows][:, :, columns] for one in (self.data.deviation, self.data.curvature))
         counted = np.where(self.bent[:, None, None], whole**2 - bend**2, whole**2)
         known = usable(self.data, self.channels.columns)[self.rows] & (counted > 0)
         return np.asarray(np.where(known, np.sqrt(np.where(known, counted, 1.0)), np.inf))
+
+    @cached_property
+    def deviation(self) -> Array:
+        """Standard deviations (window, order, channel) of either part, infinite of what is not known."""
+        # How the line moved before the run is as little known as noise.
+        return np.asarray(np.hypot(self._noise, self._lags[0].before)) if self.passed else self._noise
 
     @cached_property
     def constant(self) -> Array:
@@ -95,7 +106,57 @@ class Misfit:
         table = np.repeat(table_at(self.channels.assembly, self.free, values), len(speeds), axis=0)
         table[:, 0] = np.tile(speeds, len(values))
         made = self.channels.at(table)
-        return self.speeds.means(made.reshape(len(values), len(speeds), *made.shape[1:]))
+        steady = self.speeds.means(made.reshape(len(values), len(speeds), *made.shape[1:]))
+        if not self.passed:
+            return steady
+        return np.array([one + self._lag(own, one) for own, one in zip(values, steady, strict=True)])
+
+    @cached_property
+    def _lags(self) -> tuple[WindowLag, ...]:
+        return tuple(one.in_windows(self.speeds) for one in self.passed)
+
+    def _lag(self, values: Array, steady: Complex) -> Complex:
+        """By the nearest of the lines whose lag is known."""
+        return min(self._lags, key=lambda one: one.distance(values)).of(values, steady)
+
+    def passing(self, points: Sequence[Array]) -> Misfit | None:
+        """The misfit of lines that lag in the run, as about values (free,); None where that is not known."""
+        found = [self._lag_about(one) for one in points]
+        known = [one for one in found if one is not None]
+        return replace(self, passed=tuple(known)) if len(known) == len(found) else None
+
+    def _lag_about(self, values: Array) -> LinearLag | None:
+        width = np.array([one.high - one.low for one in self.free])
+        base = channels_on_run(self.channels, self._row(values))
+        if base is None:
+            return None
+        alone = LinearLag(values, width, np.zeros(len(values)), (base,))
+        lag = alone.in_windows(self.speeds).lag
+        if float(np.linalg.norm(lag / self._noise)) < SETTLED:
+            return alone
+        runs, step = (
+            [base],
+            np.where(values + STEP * width <= [one.high for one in self.free], 1.0, -1.0) * STEP * width,
+        )
+        for k in range(len(values)):
+            point = values.copy()
+            point[k] += step[k]
+            # At as many speeds, so that errors between them do not count as slopes.
+            run = channels_on_run(self.channels, self._row(point), base.grid)
+            if run is None:
+                return None
+            runs.append(run)
+        return LinearLag(values, width, step, tuple(runs))
+
+    def _row(self, values: Array) -> Array:
+        return np.asarray(table_at(self.channels.assembly, self.free, values[None])[0])
+
+    def apart(self, other: Misfit, values: Array) -> float:
+        """How far the lag at values (free,) is from that of another misfit, in standard deviations, all windows
+        together."""
+        steady = replace(self, passed=()).predicted(values[None])[0]
+        lags = [one._lag(values, steady) if one.passed else np.zeros_like(steady) for one in (self, other)]
+        return float(np.linalg.norm((lags[0] - lags[1]) / self.deviation))
 
     def finer(self, values: Array) -> Misfit | None:
         """Over twice as many speeds a window, where means at values (free,) differ by them; None where they do not."""

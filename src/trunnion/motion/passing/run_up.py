@@ -24,8 +24,8 @@ from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.inertia_torque import inertia_torque
 from trunnion.equations.line_system import LineSystem, line_system
-from trunnion.equations.loads import drive_torques, given_shares, static_torque
 from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
@@ -331,7 +331,7 @@ def run_up(
         lower=seen.low[:, :count],
         vibration=seen.largest[:, count:],
         lag=lag,
-        inertia_torque=np.abs(_inertia_torque(run.line.assembly)) * asked.acceleration,
+        inertia_torque=np.abs(inertia_torque(run.line.assembly)) * asked.acceleration,
         steady=found,
         ending=ending,
         unit=run.unit,
@@ -378,18 +378,6 @@ def _let_slip(prepared: LineSystem, state: Array) -> Array:
     return np.concatenate([motion.rotation[0, firsts], rates, state[2 * n :]])
 
 
-def _inertia_torque(assembly: Assembly) -> Array:
-    """Torque of every compliance (shaft,) [N m] per acceleration of the input [rad/s²], in the sense of its twist."""
-    topo = assembly.topology
-    coefficients = assembly.coefficients(assembly.table(1), statically_twisted=False, free_play=True)
-    ratios = np.abs(topo.mean_speeds)
-    needed = coefficients.inertia * ratios
-    if topo.free:
-        share = given_shares(topo, assembly.packed.column, assembly.table(1))
-        needed = needed + drive_torques(topo, share, needed @ ratios)
-    return np.asarray(static_torque(topo, needed)[0])
-
-
 @dataclass(frozen=True)
 class _FreeInputSpeed:
     """Speed and acceleration of a free–free line: what is asked, less its ``lag`` (turns,) [rad/s] about
@@ -419,7 +407,7 @@ def _quasi_static(assembly: Assembly, asked: SpeedSchedule, own: _FreeInputSpeed
     table = np.repeat(assembly.table(1), STATIC_SPEEDS, axis=0)
     table[:, 0] = speeds
     static = assembly.coefficients(table, free_play=True).torque
-    inertia = _inertia_torque(assembly)
+    inertia = inertia_torque(assembly)
 
     def torque(times: Array) -> Array:
         speed, rate = (asked.profile.at(times), asked.rate(times)) if own is None else own.at(times)
