@@ -6,13 +6,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.line_system import ANGLE_SCALE
 from trunnion.errors import ComputationError
 from trunnion.results.speeds import show_speed
-from trunnion.steady.free.free_balance import FreeBalance, SteadyStates
+from trunnion.steady.free.free_balance import MOST_NUMBERS, FreeBalance, SteadyStates
 from trunnion.steady.free.periodic_steady_states import SEVERAL, Break, SteadyStatesBySpeed, breaks, merged
 from trunnion.steady.free.tree_newton import TreeMotions
 
@@ -27,14 +27,17 @@ them all, seconds each."""
 def leads_elsewhere(balance: FreeBalance, motions: SteadyStates) -> bool:
     """Whether the motion of a line, solved along its tree, is so far from that of rigid shafts, and the way to it so
     bent, that others may have the same speed."""
-    table, co = motions.table, motions.coefficients
-    rigid = balance.rigid(table, motions.h, co)
-    apart = motions.rows - rigid
-    if not motions.found[0] or np.abs(apart).max() <= FAR:
+    rigid = balance.rigid(motions.table, motions.h, motions.coefficients)
+    if not motions.found[0] or np.abs(motions.rows - rigid).max() <= FAR:
         return not motions.found[0]
+    return _bent(balance, motions, rigid)
+
+
+def _bent(balance: FreeBalance, motions: SteadyStates, rigid: Array) -> bool:
+    """Whether the way from ``rigid`` shafts to a motion far from them is bent."""
     begin = TreeMotions(rigid, np.zeros(1), np.zeros(1))
-    once = balance.newton(table).corrected(begin, balance.torque_unit(co), ANGLE_SCALE)
-    return bool(np.abs(once.rows - motions.rows).max() > BENT * np.abs(apart).max())
+    once = balance.newton(motions.table).corrected(begin, balance.torque_unit(motions.coefficients), ANGLE_SCALE)
+    return bool(np.abs(once.rows - motions.rows).max() > BENT * np.abs(motions.rows - rigid).max())
 
 
 def require_one_motion(curve: SteadyStatesBySpeed, line: Driveline, speed: float) -> None:
@@ -58,18 +61,26 @@ def require_one_motion_each(curve: SteadyStatesBySpeed, line: Driveline, speeds:
     """
     asked = np.unique(speeds)
     motions = curve.at_all(asked)
-    doubtful = asked[[_doubtful(curve.balance, motions.part(slice(i, i + 1))) for i in range(len(asked))]]
+    doubtful = asked[_doubtful(curve.balance, motions)]
     if len(doubtful):
         runs = np.split(doubtful, np.flatnonzero(doubtful[1:] > (1 + ASIDE) * doubtful[:-1]) + 1)
         curve.broken = tuple(merged(one for run in runs for one in _breaks_about(curve, run)))
         _refuse_folds(curve, line, doubtful.tolist())
 
 
-def _doubtful(balance: FreeBalance, motion: SteadyStates) -> bool:
-    """``leads_elsewhere``, of a line that is no tree: whether the motion is far from rigid shafts."""
-    if balance.of_tree or not motion.found[0]:
-        return leads_elsewhere(balance, motion)
-    return bool(np.abs(motion.rows - balance.rigid(motion.table, motion.h, motion.coefficients)).max() > FAR)
+def _doubtful(balance: FreeBalance, motions: SteadyStates) -> Flags:
+    """``leads_elsewhere`` of every one of them (case,); of a line that is no tree, whether it is far from rigid shafts
+    or not found."""
+    count = len(motions.value)
+    size = max(1, MOST_NUMBERS // (motions.times * len(balance.assembly.topology.mean_speeds)))
+    parts = [motions.part(slice(i, i + size)) for i in range(0, count, size)]
+    rigid = np.concatenate([balance.rigid(part.table, part.h, part.coefficients) for part in parts])
+    found = ~motions.found | (np.abs(motions.rows - rigid).max(axis=(1, 2)) > FAR)
+    if balance.of_tree:
+        for i in np.flatnonzero(found & motions.found).tolist():
+            one = slice(i, i + 1)
+            found[i] = _bent(balance, motions.part(one), rigid[one])
+    return np.asarray(found)
 
 
 def _breaks_about(curve: SteadyStatesBySpeed, speeds: Array) -> tuple[Break, ...]:
