@@ -90,7 +90,9 @@ def _cell(value: object) -> str:
 
 
 def findings(found: Sequence[Finding], title: str = "Findings") -> None:
-    """One paragraph each, the gravest first, in the colour of its gravity."""
+    """One paragraph each, the gravest first, in the colour of its gravity; nothing where there is none."""
+    if not found:
+        return
     from rich.table import Table
     from rich.text import Text
 

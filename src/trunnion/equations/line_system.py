@@ -234,9 +234,7 @@ class LineSystem(Portable):
         if self.leaves and topo.free:
             stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
         if on.acceleration:
-            elsewhere = "use tn.order_response at several speeds, or tn.simulate at one"
-            refuse_curves(topo, elsewhere)
-            refuse_torque_tables(self.assembly.line, elsewhere)
+            self.refuse_change()
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
@@ -300,10 +298,21 @@ class LineSystem(Portable):
             load = load + drive_torques(topo, drive_places(topo, column, row[None]), np.array([drive]))[0]
         return load, by_speed, by_square
 
+    def refuse_change(self) -> None:
+        """Refuse what the equations of motion take at one speed, where the speed changes.
+
+        Raises
+        ------
+        InputError : so.
+        """
+        elsewhere = "use tn.order_response at several speeds, or tn.simulate at one"
+        refuse_curves(self.assembly.topology, elsewhere)
+        refuse_torque_tables(self.assembly.line, elsewhere)
+        for one in self.torques:
+            one.refuse_change()
+
     def _harmonic(self, one: DiskTorque, course: SpeedRamp, row: Array) -> list[float]:
         """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course."""
-        if course.acceleration:
-            one.refuse_change()
         at = np.concatenate([[course.speed], row[1:]])[None] if one.law.varies else row[None]
         torque, sense = one.size(self.assembly, at)[0], float(np.sign(self.assembly.topology.mean_speeds[one.station]))
         frequency = float(row[one.columns[2]]) if one.columns[2] >= 0 else 0.0

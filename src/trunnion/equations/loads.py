@@ -8,7 +8,7 @@ share of what is left as a constant torque, a motor with the slope that it has w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -154,6 +154,15 @@ def _beyond(name: str, reach: tuple[float, float], speeds: Array) -> InputError:
         f"is a curve from {covers}, which does not cover {asked} of its shaft", element=name, key="curve",
         remedy="add points, or narrow the range of speeds",
     )  # fmt: skip
+
+
+def curve_ends(topo: Topology, column: Column, table: Array) -> Iterator[tuple[str, float, float]]:
+    """Of every machine with a curve of torque over speed its name, and the input speeds [rad/s] where that begins and
+    ends, in the first row of ``table``."""
+    for (station, place), (name, rotor) in zip(topo.disks, topo.rotors, strict=True):
+        load, ratio = rotor.load_of(_numbers(column, table[:1], place)), abs(float(topo.mean_speeds[station]))
+        if ratio and not isinstance(load, PowerCurve):
+            yield name, load.range[0] / ratio, load.range[1] / ratio
 
 
 def _put_slopes(topo: Topology, column: Column, table: Array, loads: StationLoads, by_share: Array) -> None:

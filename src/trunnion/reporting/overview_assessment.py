@@ -24,6 +24,7 @@ from trunnion.driveline.driveline import Driveline, hooke_joints
 from trunnion.driveline.operating_speed import known_speed, operating_speed, speed_unit
 from trunnion.driveline.operation import Operation
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.loads import curve_ends
 from trunnion.equations.steady_base import require_turning
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import lowest_speed
@@ -227,6 +228,9 @@ def beyond_findings(subject: AssessmentInput, assessment: Assessment) -> list[Fi
         if why := time_is_up():
             found.append(Finding(Gravity.NOTE, f"{_just(side)} nothing was searched: {why}."))
             continue
+        ends, cut = _covered(subject, ends)
+        if cut:
+            found.append(Finding(Gravity.NOTE, f"{_just(side)} nothing is judged {cut}."))
         if not 0 < ends[0] < ends[1]:
             continue
         cases = [replace(case, low=ends[0], high=ends[1], effort=QUICK) for case in subject.cases]
@@ -249,6 +253,18 @@ def beyond_findings(subject: AssessmentInput, assessment: Assessment) -> list[Fi
         for why in dict.fromkeys(reasons):
             found.append(Finding(Gravity.NOTE, f"{_just(side)} no torque is judged: {why}."))
     return found
+
+
+def _covered(subject: AssessmentInput, ends: tuple[float, float]) -> tuple[tuple[float, float], str]:
+    """As much of a range as the curves of all machines cover, and what is cut off: there the line has no steady
+    motion."""
+    assembly = subject.cases[0].assembly
+    (low, high), why = ends, []
+    for name, first, last in curve_ends(assembly.topology, assembly.packed.column, assembly.table(1, subject.low)):
+        if first > ends[0] or last < ends[1]:
+            low, high = max(low, first), min(high, last)
+            why.append(f"that of {name} covers {subject.ranges([(first, last)])}")
+    return (low, high), f"where a curve ends, {'; '.join(why)}" if why else ""
 
 
 def _just(side: str) -> str:

@@ -24,12 +24,13 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
+from trunnion.driveline.machines import Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
 from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, StabilityOverSpeed, straight_decay
 from trunnion.modes.resonance_speeds import resonance_speeds
-from trunnion.results.counts import counted
+from trunnion.results.counts import counted, listed
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import OutOfTime
 
@@ -74,7 +75,8 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
     if found.ranges:
         if not case.parametric:
-            why = f"{here}: negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
+            fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
+            why = f"{here}: {_constant_power(case) or fed}"
             margin = -np.inf
         else:
             why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
@@ -102,6 +104,18 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         proof = PROVED if _proved(case) else SEARCHED
         because += "; proved for every speed of the range" if proof == PROVED else ""
     yield replace(_judged(case, status, because + gaps, float(share), worst, (), covered), proof=proof)
+
+
+def _constant_power(case: LoadCaseResponse) -> str:
+    """Of the generators that take the same power at any speed, why that feeds a disturbance and what else to state."""
+    parts = case.assembly.line.parts
+    names = [name for name, one in parts if isinstance(one, Generator) and one.power is not None]
+    if not names:
+        return ""
+    return (
+        f"at constant power {listed(names)} resists with less torque the faster it turns, and no governor is in the "
+        "model that keeps the speed: state its curve, of torque over speed, in place of power"
+    )
 
 
 def _proved(case: LoadCaseResponse) -> bool:

@@ -283,6 +283,7 @@ def run_up(
     refuse_pendulums(line.line if isinstance(line, Assembly) else line)
     prepared = line_system(line, first)
     require_share(prepared.assembly)
+    prepared.refuse_change()
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)
     ended = ""
     try:
