@@ -72,7 +72,7 @@ def test_in_the_browser_a_part_is_made_of_a_component(look: Look) -> None:
     sheet = page.get_by_role("region", name=f"Coupling 1: {COMPONENT}")
     sheet.wait_for()
     assert sheet.get_by_text("80 kN m/rad").count() == 2  # as typed, and in the line
-    page.get_by_text("rating: heat rating of Coupling 1", exact=True).wait_for()
+    page.get_by_text("heat rating of Coupling 1", exact=True).wait_for()
     look.view("Driveline")
     page.get_by_role("button", name="Undo", exact=True).first.click()
     look.view("Parts")

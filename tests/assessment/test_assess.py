@@ -191,13 +191,13 @@ def test_coupling_ratings_by_hand():
     found = tn.assess(two_mass(factors, spring=coupling, load=60.0), (120.0, 120.0))
     amplitude = torque(240.0)
     expected = {
-        "nominal torque": 60.0 * 1.4,
-        "maximum torque": (60.0 + amplitude) * 1.4 * 1.3,
+        "nominal torque rating": 60.0 * 1.4,
+        "maximum torque rating": (60.0 + amplitude) * 1.4 * 1.3,
         "rated torque": amplitude * math.sqrt(240.0 / (2 * math.pi) / 10),  # S_t lowers the rating
         "heat rating": 0.5 * C * 240.0**2 * (amplitude / abs(K + 240j * C)) ** 2 * 1.4,
     }
     for key, value in expected.items():
-        assert found.check(f"rating: {key} of coupling").value == pytest.approx(value, rel=1e-9), key
+        assert found.check(f"{key} of coupling").value == pytest.approx(value, rel=1e-9), key
     assert frequency_factor(tn.hz(4.0)) == 1.0
     assert frequency_factor(tn.hz(22.5)) == pytest.approx(1.5)
 

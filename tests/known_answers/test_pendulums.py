@@ -154,7 +154,7 @@ def test_assess_finds_what_a_dense_scan_finds() -> None:
     for k, name in enumerate(("front", "rear")):
         peak = scan.peak_torque[:, scan.springs.index(name)].max()
         assert found.check(f"max torque of {name}").value == pytest.approx(peak, rel=1e-4), k
-    travel = found.check("rating: largest travel of pendulum")
+    travel = found.check("largest travel of pendulum")
     own = scan.twist_range.largest[:, scan.springs.index("pendulum")].max() * (RADIUS + LENGTH)
     assert travel.value == pytest.approx(own, rel=1e-4) and travel.unit == "m"
 

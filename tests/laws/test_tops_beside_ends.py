@@ -31,6 +31,6 @@ def test_the_top_is_found_wherever_the_range_ends(seed: int) -> None:
         tn.Disk(inertia=inertia, load_torque=load, excitation=[{"order": order, "amplitude": size}]),
     ])  # fmt: skip
     slow, fast = (share * np.sqrt(k / inertia) / order for share in (low, high))
-    (check,) = [one for one in tn.assess(line, (slow, fast)).checks if one.name.startswith("rating: maximum torque")]
+    (check,) = [one for one in tn.assess(line, (slow, fast)).checks if one.name.startswith("maximum torque rating")]
     true = load + size * torque(float(np.clip(top, low, high)), zeta)
     assert true * (1 - 1e-9) <= check.value + check.error and check.value <= true * (1 + 1e-9)

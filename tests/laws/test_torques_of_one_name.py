@@ -66,7 +66,7 @@ def test_each_torque_is_one_number_in_every_room(run, tmp_path, monkeypatch) -> 
     response = tn.order_response(one, tn.sweep_speeds(one, LOW, HIGH))
     shown = json.loads(run("order-response", "one.toml", "--json").stdout)["springs"][0]
     row, columns = response.table()[0], {"vibratory": response.vibratory_torque, "rated": response.rated_torque}
-    checks = {"vibratory": "vibratory torque of coupling", "rated": "rating: rated torque of coupling"}
+    checks = {"vibratory": "vibratory torque of coupling", "rated": "rated torque of coupling"}
     for name, column in columns.items():
         values = [
             judged.check(checks[name]).value,
@@ -82,6 +82,6 @@ def test_each_torque_is_one_number_in_every_room(run, tmp_path, monkeypatch) -> 
 
 def test_a_hot_coupling_bears_less_and_is_loaded_alike() -> None:
     """S_t lowers T_KW: the rated torque stays the number that it is, the margin falls."""
-    cold, hot = (tn.assess(line(factor)).check("rating: rated torque of coupling") for factor in (1.0, 1.4))
+    cold, hot = (tn.assess(line(factor)).check("rated torque of coupling") for factor in (1.0, 1.4))
     assert hot.value == pytest.approx(cold.value, rel=1e-12) and hot.limit == pytest.approx(cold.limit / 1.4)
     assert hot.margin == pytest.approx(1 - cold.value * 1.4 / 800.0)

@@ -143,10 +143,10 @@ def quantities(line: ScannedLine) -> Iterator[Quantity]:
             outer, inner, _ = link.tube
             yield Quantity(f"max stress of {name}", "peak", _torque(e, 16 * outer / np.pi / (outer**4 - inner**4)))
         if link.kind == "coupling":
-            yield Quantity(f"rating: nominal torque of {name}", "number", _mean(e, 1.3))
-            yield Quantity(f"rating: maximum torque of {name}", "peak", _torque(e, 1.3 * 1.1))
-            yield Quantity(f"rating: rated torque of {name}", "number", _rated(e))
-            yield Quantity(f"rating: heat rating of {name}", "number", _heat(e, 1.3, c[e], loss[e]))
+            yield Quantity(f"nominal torque rating of {name}", "number", _mean(e, 1.3))
+            yield Quantity(f"maximum torque rating of {name}", "peak", _torque(e, 1.3 * 1.1))
+            yield Quantity(f"rated torque of {name}", "number", _rated(e))
+            yield Quantity(f"heat rating of {name}", "number", _heat(e, 1.3, c[e], loss[e]))
     for i in range(len(line.masses)):
         yield Quantity(f"max speed fluctuation of m{i}", "swing", _motion(i, 1))
         yield Quantity(f"max acceleration of m{i}", "swing", _motion(i, 2))

@@ -13,7 +13,7 @@ pytest.importorskip("bokeh")
 import trunnion as tn
 from trunnion.pictures.draw_bokeh import Drawn, palette
 from trunnion.pictures.draw_matplotlib import draw
-from trunnion.pictures.looks import FAMILIES, LOOKS, PALETTES, WHITE, look
+from trunnion.pictures.looks import FAMILIES, LOOKS, PALETTES, WHITE, curve, look
 from trunnion.pictures.modes import mode_shapes
 from trunnion.pictures.picture import (
     Arrows,
@@ -267,3 +267,16 @@ def test_a_picture_into_axes_of_ones_own() -> None:
     axes = Figure().add_subplot()
     shown = draw(single(Axis("a"), Axis("b"), [points_at([(1.0, 2.0)], "point")]), axes)
     assert shown is axes and axes.lines[0].get_xydata().tolist() == [[1.0, 2.0]]
+
+
+def test_a_legend_shows_lines_with_marks_as_they_are_drawn() -> None:
+    """Without colour a mark alone is one of many."""
+    marked = [role for k in range(40) if look(role := curve(k)).marker and not look(role).every]
+    assert len(marked) > 3
+    axes = draw(single(Axis("speed"), Axis("torque"), [Line(X, Y, role, role) for role in marked[:4]]))
+    curves = {line.get_label(): line for line in axes.get_lines()}
+    legend = axes.get_legend()
+    assert legend is not None
+    for handle, text in zip(legend.get_lines(), legend.get_texts(), strict=True):
+        own = curves[text.get_text()]
+        assert handle.get_linestyle() == own.get_linestyle() and handle.get_marker() == own.get_marker()

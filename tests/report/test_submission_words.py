@@ -15,7 +15,7 @@ from trunnion.modes.mass_elastic import holzer, masses, springs
 from trunnion.pictures.looks import curve, look
 from trunnion.pictures.orders import same_looks
 from trunnion.pictures.picture import Axis, Line, single
-from trunnion.reporting.page import formula
+from trunnion.reporting.page import formula, with_units
 from trunnion.reporting.submission import Submission
 from trunnion.reporting.submission_tables import excitations
 from trunnion.reporting.tables import Table, four
@@ -24,6 +24,35 @@ from trunnion.results.words import Words
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LINES = ["passenger-car", "two-stroke-ship", "six-cylinder-ship", "harbour-tug", "truck"]
+
+
+TWO_DISKS = """
+format = 1
+[operation]
+speed = "900 rpm"
+[[limit]]
+of = "coupling"
+vibratory_torque = "LIMIT"
+FACTORS
+[[element]]
+type = "Disk"
+name = "engine"
+inertia = "2 kg*m^2"
+drive_share = 1
+excitation = [{ order = 2, amplitude = "1 kN*m" }]
+[[element]]
+type = "Coupling"
+name = "coupling"
+stiffness = "20 kN*m/rad"
+relative_damping = 0.8
+loss_factor_frequency = "10 Hz"
+maximum_torque = "5 kN*m"
+[[element]]
+type = "Disk"
+name = "load"
+inertia = "3 kg*m^2"
+load_torque = "200 N*m"
+"""
 
 
 @cache
@@ -84,7 +113,7 @@ def test_a_loss_factor_is_printed_as_it_was_stated() -> None:
     assert (spring.stated_loss, spring.loss_frequency) == pytest.approx((0.015, 12 * np.pi))
     assert spring.damping == pytest.approx(0.015 * spring.stiffness / (12 * np.pi))
     page = handed_in().html
-    assert "0.02 at 50 Hz" in page and "0.01 at 50 Hz" in page
+    assert "0.02 at 50\u00a0Hz" in page and "0.01 at 50\u00a0Hz" in page
     assert "a loss factor stated at a frequency as the viscous damping that has it there" in page
 
 
@@ -155,3 +184,35 @@ def test_progress_says_which_cylinder_is_searched() -> None:
     tn.submission(line, speed=30.0, progress=shares.append, doing=said.append)
     assert said == [f"cylinder {number} of engine, misfiring" for number in (1, 2)]
     assert shares == [1 / 3, 2 / 3, 1.0]
+
+
+def test_no_line_ends_between_a_number_and_its_unit() -> None:
+    tied = with_units("12.85 kN m against 16 kN m at 780 rpm, 19.7 % free, mode 5 (61.08 Hz), Shaft 2 means 5 mm")
+    assert tied == (
+        "12.85\u00a0kN\u00a0m against 16\u00a0kN\u00a0m at 780\u00a0rpm, 19.7\u00a0% free, mode 5 (61.08\u00a0Hz), "
+        "Shaft 2 means 5\u00a0mm"
+    )
+
+
+def test_a_result_says_exceeded_once() -> None:
+    line = tn.loads(TWO_DISKS.replace("LIMIT", "100 N*m").replace("FACTORS", ""))
+    made = tn.submission(line)
+    assert made.contents.seen.assessment.check("vibratory torque of coupling").exceeded
+    assert "exceeded, exceeded" not in made.html and "exceeded by" in made.html
+
+
+@pytest.mark.parametrize(
+    ("factors", "words"),
+    [
+        ("", "largest, mean included"),
+        ("temperature_factor = 1.2", "largest, mean included, times the temperature factor"),
+        (
+            "temperature_factor = 1.2\nstarting_factor = 1.1",
+            "largest, mean included, times the temperature and starting factor",
+        ),
+    ],
+)
+def test_service_factors_are_named_where_they_are_stated(factors: str, words: str) -> None:
+    judged = tn.assess(tn.loads(TWO_DISKS.replace("LIMIT", "1 MN*m").replace("FACTORS", factors)))
+    course = judged.check("maximum torque rating of coupling").course
+    assert course is not None and course.says == words

@@ -73,7 +73,7 @@ def test_a_margin_must_stay_free() -> None:
 
 def test_assess_proves_ratings_too() -> None:
     judged = tn.assess(coupled(1.5), SPEEDS)
-    ratings = [f"rating: {rating} of coupling" for rating in ("maximum torque", "rated torque", "heat rating")]
+    ratings = [f"{rating} of coupling" for rating in ("maximum torque rating", "rated torque", "heat rating")]
     for name in (*ratings, "max twist of coupling", "max acceleration of load"):
         check = judged.check(name)
         assert check.words == "satisfied, proved", (name, check.because)

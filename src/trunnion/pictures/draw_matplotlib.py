@@ -354,8 +354,8 @@ def _entry(role: str, name: str, kind: str) -> list[Artist]:
         return [Patch(label=name, **style)]
     if kind == "mark":
         return [Line2D([], [], label=name, **{**_marking(one), "ms": max(min(one.size, 9.0), 3.4)})]
-    marks = {**_marking(one), "mew": 1.0} if one.marker else {}
-    return [Line2D([], [], label=name, **{**marks, **_stroke(one)})]
+    marks = {key: value for key, value in _marking(one).items() if key != "ls"} if one.marker else {}
+    return [Line2D([], [], label=name, **{**marks, **({"mew": 1.0} if marks else {}), **_stroke(one)})]
 
 
 def _line(axes: Axes, item: described.Line, panel: Panel) -> list[Artist]:

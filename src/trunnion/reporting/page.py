@@ -12,6 +12,9 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined, se
 from trunnion.reporting.tables import TIED, with_signs
 from trunnion.writing import written_whole
 
+UNIT = re.compile(r"(?<=[0-9]) ((?:%|rpm|rad/s|1/s|kg m²|[kMG]?(?:N m|N|W|Pa|Hz)|[km]?m|°C)(?!\w))")
+"""What stands behind a number and belongs to it."""
+
 
 @dataclass(frozen=True)
 class HtmlPage:
@@ -42,6 +45,7 @@ def environment(*parts: str) -> Environment:
     )
     environment.filters["signs"] = with_signs
     environment.filters["tied"] = tied
+    environment.filters["with_units"] = with_units
     environment.filters["in_css"] = in_css
     environment.filters["formula"] = formula
     return environment
@@ -50,6 +54,11 @@ def environment(*parts: str) -> Environment:
 def tied(head: str) -> str:
     """A column head whose unit in brackets stays on one line."""
     return re.sub(r"\[[^\]]*\]", lambda unit: unit[0].replace(" ", TIED), head)
+
+
+def with_units(text: str) -> str:
+    """Text in which no line ends between a number and its unit."""
+    return UNIT.sub(lambda found: TIED + found[1].replace(" ", TIED), str(text))
 
 
 def formula(text: str) -> str:

@@ -552,7 +552,7 @@ def _rule(check: Check, words: Words) -> dict[str, object]:
     value, limit = _sides(check, words)
     return {
         "check": check.name,
-        "result": f"{check.words}{f', {check.margin_word}' if check.margin_word else ''}",
+        "result": _result(check),
         "rule": check.rule.formula,
         "source": f"{check.rule.source} ({check.rule.certainty})",
         "value": value,
@@ -560,6 +560,13 @@ def _rule(check: Check, words: Words) -> dict[str, object]:
         f"searched [{words.unit}]": " and ".join(words.ends(*ends) for ends in searched) or EMPTY,
         "may be low by": _error(check, words),
     }
+
+
+def _result(check: Check) -> str:
+    """ "satisfied, 31 % free", "exceeded by 54 %"."""
+    if check.margin_word.startswith(check.words):
+        return check.margin_word
+    return f"{check.words}{f', {check.margin_word}' if check.margin_word else ''}"
 
 
 def _error(check: Check, words: Words) -> str:

@@ -157,7 +157,7 @@ def _above(bound: float, value: float) -> str:
 
 def _too_few(boxes: int) -> str:
     if not boxes:
-        return "with so many springs and excitations a proof takes longer than this command spends on it"
+        return "with so many springs and excitations a proof takes longer than is spent on one here"
     return f"{_boxes(boxes)} {'does' if boxes == 1 else 'do'} not suffice for a proof"
 
 

@@ -46,12 +46,13 @@ FORMULAS = {
     "largest_travel": OF_PENDULUMS.formula,
 }
 TAKEN = {
-    "nominal_torque": "mean, times the temperature factor",
-    "maximum_torque": f"{WHOLE}, times temperature and starting factor",
+    "nominal_torque": "mean",
+    "maximum_torque": WHOLE,
     "vibratory_torque": "sum of amplitudes, each times its frequency factor: an upper bound",
-    "heat_rating": "mean over the cycle, times the temperature factor",
+    "heat_rating": "mean over the cycle",
     "largest_travel": WHOLE,
 }
+"""What of the response a rating is compared with, but for the service factors that are stated."""
 
 
 KINDS = {"heat_rating": POWER, "largest_travel": LENGTH}
@@ -92,7 +93,7 @@ def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str
     by_order = np.abs(measure.parts(response)) ** (2 if measure.squared else 1)
     leads = key != "nominal_torque"
     seen = course(
-        response, f"{words.removesuffix(' rating')} of {name}", kind, TAKEN[key], found.values,
+        response, f"{words.removesuffix(' rating')} of {name}", kind, _taken(case, name, key), found.values,
         {f"{LIMITED.get(key, words)} {shown(allowed, kind, digits=4)}": allowed}, by_order if leads else None,
     )  # fmt: skip
     inputs = _factors(case, name, key, found.at)
@@ -101,6 +102,15 @@ def _rated(subject: AssessmentInput, case: LoadCaseResponse, name: str, key: str
         more="; a sum of amplitudes, an upper bound" if key == "vibratory_torque" else "", element=name,
         cause=cause(case, found.at, by_order[found.at]) if leads else None, course=seen,
     )  # fmt: skip
+
+
+def _taken(case: LoadCaseResponse, name: str, key: str) -> str:
+    """``TAKEN``, with the service factors that are not one."""
+    temperature, starting = service_factors(case.assembly, name)
+    factors = ["temperature"] if temperature != 1 and key not in ("vibratory_torque", "largest_travel") else []
+    if starting != 1 and key == "maximum_torque":
+        factors.append("starting")
+    return TAKEN[key] + (f", times the {' and '.join(factors)} factor" if factors else "")
 
 
 def _factors(case: LoadCaseResponse, name: str, key: str, at: int) -> str:

@@ -251,8 +251,8 @@ def allowed_by(rating: float, key: str, temperature: float) -> float:
 
 
 def rating_name(name: str, key: str) -> str:
-    """ "rating: rated torque of coupling"."""
-    return f"rating: {rating_words(key)} of {name}"
+    """ "rated torque of coupling", "maximum torque rating of coupling": told from "max torque of coupling", a limit."""
+    return f"{rating_words(key)}{' rating' if key in ('nominal_torque', 'maximum_torque') else ''} of {name}"
 
 
 def rating_words(key: str) -> str:
