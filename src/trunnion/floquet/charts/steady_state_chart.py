@@ -26,7 +26,7 @@ from trunnion.equations.steady_base import refuse_dragged, require_steady_base, 
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.axes import AxisRequest, ChartAxis, axis, check_corners
 from trunnion.floquet.charts.chart_pixels import Pixels
-from trunnion.floquet.propagation.about_steady_states import multipliers_about
+from trunnion.floquet.propagation.about_steady_states import beside_neutral_multipliers, multipliers_about
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.patches.patches import Box, PatchedFunction
 from trunnion.results.chart import ChartPoint, SpotCheck
@@ -125,13 +125,9 @@ class SteadyStateChart:
         motions = slopes_along(curve, x)
         found = multipliers_about(motions)
         critical = np.where(found.critical.imag < 0, found.critical.conj(), found.critical)
-        every = np.full((len(x), size), np.nan, dtype=complex)
-        known = np.flatnonzero(np.isfinite(found.radius))
-        if len(known):
-            left = motions.beside_neutral(known, found.matrix[known])
-            values = np.linalg.eigvals(left).astype(complex)
-            aside = np.ones((len(known), every.shape[1] - values.shape[1]))
-            every[known] = np.concatenate([aside, values], axis=1)
+        values = beside_neutral_multipliers(motions, found)
+        aside = np.where(np.isfinite(found.radius), 1.0, np.nan)[:, None]
+        every = np.concatenate([np.repeat(aside, size - values.shape[1], axis=1), values], axis=1)
         pixels = Pixels(found.radius, found.error, critical, found.verdict)
         return SteadyStateRow(pixels, every, curve.broken, curve.at_all(x), up)
 

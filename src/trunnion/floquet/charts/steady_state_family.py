@@ -3,18 +3,23 @@ regions are searched by where nothing is an analytic function of both parameters
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
 
-from trunnion.arrays import Array
+from trunnion.arrays import Array, Complex
 from trunnion.equations.coefficients import Assembly
 from trunnion.floquet.charts.axes import ChartAxis
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.charts.steady_state_chart import SteadyStateChart
-from trunnion.floquet.propagation.about_steady_states import multipliers_about, pixels_of_rows
+from trunnion.floquet.propagation.about_steady_states import (
+    SteadyStateMultipliers,
+    beside_neutral_multipliers,
+    multipliers_about,
+    pixels_of_rows,
+)
 from trunnion.steady.free.folds_between import folds_between, slopes
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, slopes_along
 from trunnion.waiting import keep_time
@@ -67,6 +72,19 @@ class SteadyStateFamily(LineFamily):
             found.put((places,), self._scattered(x[places], y[places]))
         return found
 
+    def with_multipliers(self, x: Array, y: float) -> tuple[Pixels, Complex]:
+        """Points (x,) of a row, and all multipliers of each (point, m)."""
+        motions = slopes_along(self.row(y), x)
+        found = multipliers_about(motions)
+        return _upper(found), beside_neutral_multipliers(motions, found)
+
+    @property
+    def turned(self) -> SteadyStateFamily:
+        """The same with its axes exchanged."""
+        assert self.charted is not None
+        charted = replace(self.charted, x=self.charted.y, y=self.charted.x)
+        return replace(self, x=self.y, y=self.x, charted=charted, kept={})
+
     def settled(self, x: Array, y: Array) -> Pixels | None:
         """Nothing better is known."""
         return None
@@ -96,6 +114,9 @@ class SteadyStateFamily(LineFamily):
 
 
 def _pixels(curve: SteadyStateCurve, values: Array) -> Pixels:
-    found = multipliers_about(slopes_along(curve, values))
+    return _upper(multipliers_about(slopes_along(curve, values)))
+
+
+def _upper(found: SteadyStateMultipliers) -> Pixels:
     critical = np.where(found.critical.imag < 0, found.critical.conj(), found.critical)
     return Pixels(found.radius, found.error, critical, found.verdict)

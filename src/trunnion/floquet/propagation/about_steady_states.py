@@ -49,6 +49,15 @@ def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) ->
     return SteadyStateMultipliers(radius, error, critical, code.astype(np.int8), matrix)
 
 
+def beside_neutral_multipliers(motions: SteadyStateSlopes, found: SteadyStateMultipliers) -> Complex:
+    """Every multiplier (value, m) but those of what is not a disturbance; NaN where no motion is known."""
+    known = np.flatnonzero(np.isfinite(found.radius))
+    left = motions.beside_neutral(known, found.matrix[known])
+    every = np.full((len(found.radius), left.shape[1]), np.nan, dtype=complex)
+    every[known] = np.linalg.eigvals(left)
+    return every
+
+
 def pixels_of_rows(balance: FreeBalance, table: Array, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
     """Of lines that lie anywhere, rows of packed numbers (line, column): about the motion that rigid shafts lead to,
     else that of a line nearby in the table.

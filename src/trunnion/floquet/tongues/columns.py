@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from trunnion.arrays import Array, Flags
 from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.tongues.boundary_traces import Search
 from trunnion.floquet.tongues.region import Region, turned
 from trunnion.floquet.tongues.rows import OPEN_ERROR, unstable_intervals
 from trunnion.results.verdict import Verdict
@@ -37,11 +39,16 @@ def complete_columns(region: Region) -> ColumnSearch:
     assert isinstance(family, LineFamily)
     about = turned(replace(family, x=family.y, y=family.x), region.function, region.threads)
 
-    def search(u: Array) -> list[Column]:
-        rows = unstable_intervals(about, u)
-        return [Column(row.v, np.stack([row.low, row.high], axis=1), row.unknown) for row in rows]
+    return columns_as_rows(partial(unstable_intervals, about))
 
-    return search
+
+def columns_as_rows(search: Search) -> ColumnSearch:
+    """Columns that are the rows of the box turned about, found by ``search`` there."""
+
+    def columns(u: Array) -> list[Column]:
+        return [Column(row.v, np.stack([row.low, row.high], axis=1), row.unknown) for row in search(u)]
+
+    return columns
 
 
 def sampled_columns(region: Region, v: Array) -> ColumnSearch:

@@ -12,14 +12,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trunnion.arrays import Array, Flags
+from trunnion.arrays import Array, Complex, Flags
 from trunnion.floquet.charts.chart_families import LineFamily
+from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
 from trunnion.floquet.ranges.collisions import exponent_collisions
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.floquet.tongues.boundary_traces import Search
+from trunnion.floquet.tongues.multiplier_collisions import multiplier_collisions
 from trunnion.floquet.tongues.region import Region
 from trunnion.floquet.tongues.rows import BY_ROWS, OPEN_ERROR, TongueRow, kind_of, settled
 from trunnion.results.verdict import Verdict
@@ -27,7 +29,9 @@ from trunnion.results.verdict import Verdict
 RISES = 0.02
 """Growth is largest on a level where it rises by this share of itself above that beside."""
 SAMPLES = 49
-"""Places of a row along a parameter that is not a speed."""
+"""Places of a row along a parameter that is not a speed, at least."""
+MOVES, HALVINGS = 0.25, 4
+"""Change of phase [rad] from one place to the next above which there is one between them, and so many times."""
 WORDS = (
     "were searched at an even grid of speeds and at every meeting of two Floquet exponents that joints and meshes can "
     "open: a heuristic, so narrow regions may be missing"
@@ -35,8 +39,8 @@ WORDS = (
 
 
 SAMPLED_WORDS = (
-    f"were sampled at {SAMPLES} places and looked at closely where growth is largest: a heuristic, so narrow "
-    "regions may be missing"
+    f"were sampled at {SAMPLES} places or more and looked at closely where growth is largest and wherever two "
+    "multipliers meet: a heuristic, so narrow regions may be missing"
 )
 
 
@@ -97,24 +101,72 @@ def rows_by_collisions(region: Region, family: LineFamily) -> Search:
 
 
 def sampled_rows(region: Region) -> Search:
-    """The search of rows along any parameter, looked at in ``SAMPLES`` even places and closely where ρ is largest."""
-    places = np.linspace(region.box.u0, region.box.u1, SAMPLES)
+    """The search of rows along any parameter of a line about its own motion: at ``SAMPLES`` even places and at more
+    where phases move by much from one to the next, closely where ρ is largest and wherever two multipliers meet."""
 
     def search(v: Array) -> list[TongueRow]:
         v = np.atleast_1d(np.asarray(v, dtype=float))
-        found = region.judged(np.tile(places, len(v)), np.repeat(v, len(places)))
-        over = (found.radius - 1 - found.error).reshape(len(v), len(places))
-        row, change = np.nonzero((over[:, :-1] > 0) != (over[:, 1:] > 0))
-        height = np.where(np.isfinite(over), over, -np.inf)
-        inner = height[:, 1:-1]
-        top_row, top = np.nonzero((inner <= 0) & (inner >= height[:, :-2]) & (inner >= height[:, 2:]))
-        marks = row, (places[change] + places[change + 1]) / 2
-        inside, peak = np.nonzero(over > 0)
-        close = top_row, np.stack([places[top], places[top + 2]], axis=1)
-        rows = settled(region, v, marks, (inside, places[peak]), close)
-        return [_with_unknown(one, own, places) for one, own in zip(rows, np.isfinite(over), strict=True)]
+        seen = [_sampled(region, float(own)) for own in v]
+        row = [np.full(len(one.marks), k) for k, one in enumerate(seen)]
+        peaked = [np.full(len(one.peaks), k) for k, one in enumerate(seen)]
+        looked = [np.full(len(one.close), k) for k, one in enumerate(seen)]
+        rows = settled(
+            region, v, (np.concatenate(row), np.concatenate([one.marks for one in seen])),
+            (np.concatenate(peaked), np.concatenate([one.peaks for one in seen])),
+            (np.concatenate(looked), np.concatenate([one.close for one in seen])),
+        )  # fmt: skip
+        return [_with_unknown(one, own.known, own.places) for one, own in zip(rows, seen, strict=True)]
 
     return search
+
+
+@dataclass(frozen=True)
+class _Samples:
+    """What samples of a row show: ``places`` and where something is ``known`` of them, ``marks`` between stable and
+    unstable ones, ``peaks`` among the unstable, and stretches to be looked at closely."""
+
+    places: Array
+    known: Flags
+    marks: Array
+    peaks: Array
+    close: Array
+
+
+def _sampled(region: Region, v: float) -> _Samples:
+    family, y = region.family, float(region.y(np.array(v)))
+    assert isinstance(family, SteadyStateFamily)
+    places = np.linspace(region.box.u0, region.box.u1, SAMPLES)
+    pixels, values = family.with_multipliers(region.x(places), y)
+    for _ in range(HALVINGS):
+        fast = np.flatnonzero(_moves(values) > MOVES)
+        if not len(fast):
+            break
+        between = (places[fast] + places[fast + 1]) / 2
+        more, own = family.with_multipliers(region.x(between), y)
+        order = np.argsort(np.concatenate([places, between]))
+        places, values = np.concatenate([places, between])[order], np.concatenate([values, own])[order]
+        every = zip(pixels._asdict().values(), more._asdict().values(), strict=True)
+        pixels = Pixels._make(np.concatenate(both)[order] for both in every)
+    over = pixels.radius - 1 - pixels.error
+    change = np.flatnonzero((over[:-1] > 0) != (over[1:] > 0))
+    height = np.where(np.isfinite(over), over, -np.inf)
+    inner = height[1:-1]
+    top = np.flatnonzero((inner <= 0) & (inner >= height[:-2]) & (inner >= height[2:]))
+    _, met = multiplier_collisions(
+        lambda at, _: family.with_multipliers(region.x(at), y)[1], places, values[None]
+    )  # fmt: skip
+    reach = np.diff(places).max() / 4
+    about = np.clip(met[:, None] + reach * np.array([-1.0, 1.0]), places[0], places[-1])
+    return _Samples(
+        places, np.isfinite(over), (places[change] + places[change + 1]) / 2, places[over > 0],
+        np.concatenate([np.stack([places[top], places[top + 2]], axis=1), about]),
+    )  # fmt: skip
+
+
+def _moves(values: Complex) -> Array:
+    """The largest change of phase [rad] from each sample to the next; NaN beside samples of which nothing is known."""
+    phase = np.sort(np.abs(np.angle(values)), axis=1)
+    return np.asarray(np.abs(np.diff(phase, axis=0)).max(axis=1))
 
 
 def _with_unknown(row: TongueRow, known: Flags, places: Array) -> TongueRow:

@@ -18,14 +18,27 @@ from trunnion.arrays import Array
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.floquet.charts.chart_families import LineFamily
 from trunnion.floquet.charts.stability_chart import Task
+from trunnion.floquet.charts.steady_state_family import SteadyStateFamily
 from trunnion.floquet.tongues.boundaries import MOST
 from trunnion.floquet.tongues.boundary_traces import Search
-from trunnion.floquet.tongues.columns import Column, ColumnSearch, complete_columns, sampled_columns
+from trunnion.floquet.tongues.columns import (
+    Column,
+    ColumnSearch,
+    columns_as_rows,
+    complete_columns,
+    sampled_columns,
+)
 from trunnion.floquet.tongues.levels import levels_of, own_value
 from trunnion.floquet.tongues.region import Region, patched, unpatched
 from trunnion.floquet.tongues.result import Tongues
 from trunnion.floquet.tongues.rows import unstable_intervals
-from trunnion.floquet.tongues.rows_by_collisions import WORDS, RowFamily, rows_by_collisions, tops
+from trunnion.floquet.tongues.rows_by_collisions import (
+    WORDS,
+    RowFamily,
+    rows_by_collisions,
+    sampled_rows,
+    tops,
+)
 from trunnion.floquet.tongues.shapes import lost
 from trunnion.floquet.tongues.tongues import (
     PATCH_TOLERANCE,
@@ -132,8 +145,11 @@ def _ways(task: Task, family: LineFamily, levels: Array, report_progress: Callab
     if not _completely(task, family):
         region = unpatched(family, task.x.values, task.y.values, threads)
         finer = np.interp(np.arange(FINER * (len(levels) - 1) + 1) / FINER, np.arange(len(levels)), levels)
+        columns = sampled_columns(region, finer)
+        if isinstance(family, SteadyStateFamily):
+            columns = columns_as_rows(sampled_rows(unpatched(family.turned, task.y.values, task.x.values, threads)))
         return _SearchAxes(
-            region, rows_by_collisions(region, family), sampled_columns(region, finer),
+            region, rows_by_collisions(region, family), columns,
             lambda apart, columns: f"{apart} {WORDS}; columns were sampled at {columns} speeds",
         )  # fmt: skip
     region = patched(family, task.x.values, task.y.values, PATCH_TOLERANCE, threads, report_progress)
