@@ -56,6 +56,9 @@ CASES = [
     (("stability", "line.toml", "--speed", "12 kg"), ("--speed = '12 kg': kg is not the unit of a speed",)),
     (("analyze", "line.toml", "--unit", "RPM"), ("unit = 'RPM'", "rpm, Hz")),
     (("stability", "two-shaft-cardan"), ("operation.speed: is not given",)),
+    # proofs
+    (("certify-stability", "line.toml", "--within", "0 s"), ("--within = '0 s': must be a positive time",)),
+    (("certify-stability", "line.toml", "-t", "Shaft 1.damping=150%"), ("Shaft 1.damping=150%", "is not a tolerance")),
     # axes
     ((*CHART, "--x", "spede:1:2:3"), ("spede: is not a parameter", '"speed"')),
     ((*CHART, "--y", "HookeJoint 9.angle:0:0.2:3"), ("HookeJoint 9.angle: is not a parameter",)),
