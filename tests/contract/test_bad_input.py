@@ -56,6 +56,7 @@ from trunnion.driveline import (
     starter,
 )
 from trunnion.errors import InputError
+from trunnion.response.speed_sweep import response_over
 
 TUBE = {"outer_diameter": "76 mm", "length": "1 m", "shear_modulus": "79.3 GPa"}
 
@@ -181,6 +182,12 @@ def long_line(inertias: int) -> Driveline:
     """A chain with a joint at its front."""
     chain = [e for _ in range(inertias) for e in (Shaft(stiffness=1e5, damping=1.0), Disk(inertia=0.1))]
     return Driveline([tn.ConstantSpeed(), *chain[:2], tn.HookeJoint(angle=0.1), *chain[2:]])
+
+
+def shaken_and_steep(inertias: int) -> Driveline:
+    """The same with its joint at 80°, its last disk shaken by three orders."""
+    shaken = [{"order": order, "amplitude": 50.0} for order in (1.5, 3.0, 4.5)]
+    return long_line(inertias).replace("HookeJoint 1", angle=tn.deg(80)).replace(f"Disk {inertias}", excitation=shaken)
 
 
 def meshed_and_free(inertias: int) -> Driveline:
@@ -2366,6 +2373,16 @@ PYTHON = [
         lambda: tn.order_response(meshed_and_free(500), np.linspace(60.0, 90.0, 50)),
         "driveline: has 501 unknowns: its own periodic motion in 30 harmonics at 50 points would take about",
         "ask for fewer points, or join neighbouring parts",
+    ),
+    (
+        lambda: tn.stability(long_line(1900), 150.0),
+        "driveline: has 1900 unknowns: stability would take about",
+        "join neighbouring parts",
+    ),
+    (
+        lambda: response_over(shaken_and_steep(30), 60.0, 300.0),
+        "driveline: has 30 unknowns: its response over a range, at some",
+        "ask for a number of speeds",
     ),
     (lambda: Driveline(3), "elements: must be a list, not of type int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not of type Disk", "tn.Driveline(["),

@@ -12,9 +12,9 @@ from oracles.own_monodromy import Chains, Part
 import trunnion as tn
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import assemble
-from trunnion.floquet.ranges.collisions import exponent_collisions
+from trunnion.floquet.ranges.collisions import Collisions, exponent_collisions
 from trunnion.floquet.ranges.span import Span
-from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in, unstable_ranges
+from trunnion.floquet.ranges.unstable import UnstableRanges, _astray, closed_in, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.results.verdict import Verdict, verdicts
 
@@ -138,3 +138,14 @@ def test_growth_where_exponents_meet_is_that_of_the_multipliers() -> None:
         assert true == pytest.approx(met.growth[i], rel=0.02)
     along = stability_along(assemble(line), met.speed[~met.matters])
     assert np.all(along.verdict == Verdict.STABLE)
+
+
+def test_one_looks_beside_a_meeting_as_closely_as_it_is_narrow() -> None:
+    """Eight places about a narrow one; of a broad one as few as lie within a third of its breadth."""
+    at, nothing = np.full(3, 100.0), np.zeros(3)
+    breadth = np.array([0.1, 1.0, 10.0])
+    met = Collisions(at, nothing, nothing, np.full(3, np.nan), nothing, nothing, breadth)
+    places = [_astray(met.of(np.arange(3) == k)) - 100.0 for k in range(3)]
+    assert [len(one) for one in places] == [8, 4, 2]
+    for one, wide in zip(places[1:], breadth[1:], strict=True):
+        assert np.diff(np.sort([*one, 0.0])).max() <= wide / 3 and np.abs(one).max() == pytest.approx(0.6)

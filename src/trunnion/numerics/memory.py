@@ -22,15 +22,17 @@ def require_memory(needed: float, *, key: str, value: object, remedy: str, eleme
         raise InputError(problem, element=element, key=key, value=value, remedy=remedy)
 
 
-def require_estimate(size: int, what: str, seconds: float, memory: float, *, remedy: str) -> None:
-    """Refuse ``what`` of a driveline with ``size`` unknowns that would take more than ``MOST_SECONDS`` of processor
+def require_estimate(
+    size: int, what: str, seconds: float, memory: float, *, remedy: str, most: float = MOST_SECONDS
+) -> None:
+    """Refuse ``what`` of a driveline with ``size`` unknowns that would take more than ``most`` seconds of processor
     time, or more than ``MOST`` bytes.
 
     Raises
     ------
     InputError : says how long it would take, how much memory, and the remedy.
     """
-    if seconds > MOST_SECONDS or memory > MOST:
+    if seconds > most or memory > MOST:
         problem = (
             f"has {size} unknowns: {what} would take about {seconds / 3600:.2g} h of processor time and "
             f"{size_text(memory)} of memory"

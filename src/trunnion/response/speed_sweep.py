@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -14,9 +14,9 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances
-from trunnion.floquet.ranges.span import SmoothRange, Span
+from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.stability.where_unstable import where_unstable
-from trunnion.numerics.memory import require_memory
+from trunnion.numerics.memory import require_estimate, require_memory
 from trunnion.response.orders.response import (
     completed_response,
     has_rating,
@@ -35,6 +35,7 @@ from trunnion.results.result import Result
 from trunnion.results.stretches import largest_over, stretches_above
 from trunnion.results.variables import Attribute, Variable, attributes
 from trunnion.steady.orders.forced_response import LINEAR_RANGE
+from trunnion.steady.orders.spectrum import response_cost
 
 if TYPE_CHECKING:
     from trunnion.driveline.operation import Operation
@@ -44,6 +45,13 @@ CLUSTER = np.array([-6.0, -3.0, -1.5, -0.75, -0.3, 0.0, 0.3, 0.75, 1.5, 3.0, 6.0
 """Extra speeds about each resonance of the forced response, in half-widths of its peak: what draws it."""
 FEW = 65
 """Speeds of the even grid from which the largest torques are looked for."""
+
+LONG = 16
+"""Unknowns from which on what a search costs is estimated before it begins."""
+MOST_SEARCHED = 600.0
+"""Processor time [s] beyond which a range is not searched, as a number of speeds can be asked for in its place."""
+
+STATE_SPEEDS = "ask for a number of speeds, such as --speed 600rpm:3000rpm:41, or state smaller joint angles"
 
 
 @labelled
@@ -184,7 +192,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     True [40. 70.]
     """
     assembly, even = assemble(line), _even(low, high, points)
-    found = _searched(assembly, even)
+    found = _searched(assembly, _first(assembly, even))
     return even if found is None else _with(even, found.speed)
 
 
@@ -200,10 +208,17 @@ def response_over(
     progress: Callable[[float], None] | None = None,
 ) -> OrderResponse:
     """``order_response`` at the speeds of ``sweep_speeds``, each of them solved once; ``known``: the response where it
-    was searched over this range already, and the ``motions`` that it is about."""
+    was searched over this range already, and the ``motions`` that it is about.
+
+    Raises
+    ------
+    InputError : as of ``order_response``; a long line whose search would take too long, with an estimate.
+    """
     assembly, even = assemble(line), _even(low, high, points)
-    motions = motions or steady_states_of(assembly)
-    found = _searched(assembly, even, motions, known)
+    motions, first = motions or steady_states_of(assembly), _first(assembly, even)
+    if first is not None and known is None:
+        _require_search(assembly, first)
+    found = _searched(assembly, first, motions, known)
     if found is None:
         return order_response(assembly, even, orders, progress=progress)
     speeds, solved = _with(even, found.speed), found.spectrum
@@ -222,21 +237,44 @@ def _with(even: Array, found: Array) -> Array:
     return every[(every >= even[0]) & (every <= even[-1])]
 
 
+def _first(assembly: Assembly, even: Array) -> list[Array] | None:
+    """Speeds to begin with, by piece of the range; None where they cannot be told."""
+    span = Span(assembly, float(even[0]), float(even[-1]))
+    try:
+        met = resonances(span)
+        about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
+        return [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
+    except (InputError, ComputationError):  # said where the response is asked for
+        return None
+
+
+def _require_search(assembly: Assembly, first: list[Array]) -> None:
+    """Refuse to search a range of a long line that begins with the speeds ``first``, by piece, where that would not end
+    or fill the memory."""
+    size, speeds = assembly.topology.size, sum(len(part) for part in first)
+    if size < LONG:
+        return
+    try:
+        cost = response_cost(assembly, float(first[-1][-1]), speeds)
+    except (InputError, ComputationError):  # said where the response is asked for
+        return
+    what = f"its response over a range, at some {speeds} speeds with {cost.side_orders} side orders on either side,"
+    require_estimate(size, what, cost.seconds, cost.memory, most=MOST_SEARCHED, remedy=STATE_SPEEDS)
+
+
 def _searched(
     assembly: Assembly,
-    even: Array,
+    first: list[Array] | None,
     motions: SteadyStatesBySpeed | None = None,
     known: OrderResponse | None = None,
 ) -> OrderResponse | None:
     """The response at all speeds at which the search for the largest torques looked, from those on at which it is
     ``known``; None where there is none."""
-    span = Span(assembly, float(even[0]), float(even[-1]))
+    if first is None:
+        return None
     try:
-        met = resonances(span)
-        about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
-        first = [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
         respond = partial(response_about, assembly, motions=motions)
-        if known is not None and _spans(known.speed, span.pieces):
+        if known is not None and _spans(known.speed, first):
             found = search(assembly, respond, [known.speed], _torques(assembly), known=known).response
             return completed_response(assembly, found.spectrum, np.union1d(found.speed, first[0]), motions=motions)
         return search(assembly, respond, first, _torques(assembly)).response
@@ -244,9 +282,9 @@ def _searched(
         return None
 
 
-def _spans(speeds: Array, pieces: Sequence[SmoothRange]) -> bool:
+def _spans(speeds: Array, first: list[Array]) -> bool:
     """Whether ``speeds`` are those of the only piece, from end to end."""
-    whole = len(pieces) == 1 and speeds[0] == pieces[0].low and speeds[-1] == pieces[0].high
+    whole = len(first) == 1 and speeds[0] == first[0][0] and speeds[-1] == first[0][-1]
     return bool(whole and np.all(np.diff(speeds) > 0))
 
 

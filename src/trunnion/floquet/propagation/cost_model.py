@@ -14,14 +14,23 @@ import numpy as np
 from trunnion.equations.aligned import UnitMasses
 from trunnion.equations.coefficients import Assembly
 from trunnion.numerics.memory import require_estimate
+from trunnion.steady.orders.cost_model import places_left
 
 SHORT = 150
 """Unknowns up to which no line is refused."""
+FEW_HARMONICS = 17
+EIGENVALUES = 1e-9
+"""Seconds of inverting what ``size`` modes make up, over size³."""
 
 
 def by_modes(size: int, harmonics: int, left: int) -> float:
     """All modes of ``size`` unknowns by Hill's blocks of so many harmonics, ``left`` places eliminated as matrices."""
     return 0.005 + 5e-7 * size**2 * harmonics + 1.6e-8 * size * left * harmonics**3
+
+
+def by_modes_of(assembly: Assembly, size: int, phase: float) -> float:
+    """All modes of a line about its rigid shafts, in as many harmonics as joints of some 15° take."""
+    return 2 * by_modes(size, FEW_HARMONICS, places_left(assembly.topology)) + EIGENVALUES * size**3
 
 
 def in_time(size: int, steps: int) -> float:

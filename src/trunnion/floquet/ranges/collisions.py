@@ -52,8 +52,8 @@ WIDEST = 10.0
 class Collisions:
     """Where two exponents meet: speed (meeting,) [rad/s], the ``decay`` of the slower mode [1/s] there, half of the
     stretch [rad/s] over which they can grow, how fast they grow [1/s], NaN where that is not known, half of the stretch
-    [rad/s] over which they do, nearly, 0 where they do not, and the decay of the slowest mode of the straight line
-    [1/s]."""
+    [rad/s] over which they do, nearly, 0 where they do not, the decay of the slowest mode of the straight line [1/s],
+    and the ``breadth`` [rad/s] of the bump in the decay of one that acts on the other: what both are damped by."""
 
     speed: Array
     decay: Array
@@ -61,6 +61,7 @@ class Collisions:
     growth: Array
     half: Array
     slowest: Array
+    breadth: Array
 
     def of(self, which: Flags) -> Collisions:
         """Some of them."""
@@ -130,7 +131,7 @@ def _of_cycles(
     slowest = np.minimum(slowest[place], slowest[place + 1])
     return Collisions(
         speed, np.minimum(decay, beside)[open_ones], np.maximum(own / c, 1e-9 * speed),
-        growth + left_out * fastest[open_ones], half, slowest,
+        growth + left_out * fastest[open_ones], half, slowest, (decay + beside)[open_ones] / c,
     )  # fmt: skip
 
 

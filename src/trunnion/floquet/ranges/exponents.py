@@ -38,6 +38,8 @@ REACH = 2
 MOST_STEPS = 16
 """Between the harmonics of two modes that act on each other, at most."""
 STEPS, PAIR_STEPS, CLOSER_STEPS = 6, 3, 2
+MORE_STEPS, KNOWN = 6, 1e-2
+"""How many more there are where the last one moved an exponent by more than this share of the slower decay."""
 SETTLED = 1e-9
 """Share of |λ| by which the last step may still move it."""
 ASIDE = (0.0, 2e-3 * (1 + 1j), -5e-3 * (1 + 1j))
@@ -116,7 +118,14 @@ def colliding_exponents(
         x = np.zeros((len(some), len(both.harmonics), assembly.topology.size, 2), dtype=complex)
         x[:, int(np.searchsorted(both.harmonics, 0)), :, 0] = shapes[0][some]
         x[:, int(np.searchsorted(both.harmonics, away)), :, 1] = shapes[1][some].conj()
-        found[some], moved[some] = _two(blocks, (starts[0][some] + partner) / 2, x.reshape(len(some), -1, 2))
+        found[some], moved[some], x = _two(blocks, (starts[0][some] + partner) / 2, x.reshape(len(some), -1, 2))
+        for _ in range(MORE_STEPS // CLOSER_STEPS):
+            with np.errstate(invalid="ignore"):
+                poor = moved[some] > KNOWN * np.abs(found[some].real).min(axis=1)
+            if not poor.any():
+                break
+            blocks, at = _Blocks(assembly, both, table[some][poor], statically_twisted), some[poor]
+            found[at], moved[at], x[poor] = _each_closer(blocks, found[at], x[poor])
     return found, moved
 
 
@@ -206,9 +215,9 @@ def _one(blocks: _Blocks, value: Complex, shape: NDArray[Any]) -> Complex:
         return np.where(moved <= SETTLED * np.abs(value), value, np.nan)
 
 
-def _two(blocks: _Blocks, middle: Complex, x: Complex) -> tuple[Complex, Array]:
-    """Two exponents about their ``middle`` (case,), from a plane x (case, m, 2) near that of their motions, and by how
-    much the last step moved either (case,)."""
+def _two(blocks: _Blocks, middle: Complex, x: Complex) -> tuple[Complex, Array, Complex]:
+    """Two exponents about their ``middle`` (case,), from a plane x (case, m, 2) near that of their motions, by how much
+    the last step moved either (case,), and their motions."""
     for _ in range(PAIR_STEPS):
         x = np.linalg.qr(x)[0]
         u = blocks.step_from(middle, x)
@@ -218,15 +227,20 @@ def _two(blocks: _Blocks, middle: Complex, x: Complex) -> tuple[Complex, Array]:
             pair = middle[:, None] - 1 / share
         middle, x = pair.mean(axis=1), u
     # Where a third is near, each by itself comes closer.
-    x, moved = x @ vectors, np.zeros(len(pair))
+    return _each_closer(blocks, pair, x @ vectors)
+
+
+def _each_closer(blocks: _Blocks, pair: Complex, x: Complex) -> tuple[Complex, Array, Complex]:
+    """The same of exponents (case, 2) that are nearly known."""
+    pair, x, moved = pair.copy(), x.copy(), np.zeros(len(pair))
     for k in range(2):
-        pair[:, k], last = _closer(blocks, pair[:, k], x[..., k : k + 1])
+        pair[:, k], last, x[..., k : k + 1] = _closer(blocks, pair[:, k], x[..., k : k + 1])
         moved = np.maximum(moved, last)
-    return pair, moved
+    return pair, moved, x
 
 
-def _closer(blocks: _Blocks, value: Complex, x: Complex) -> tuple[Complex, Array]:
-    """An exponent after a few steps more, and by how much the last moved it."""
+def _closer(blocks: _Blocks, value: Complex, x: Complex) -> tuple[Complex, Array, Complex]:
+    """An exponent after a few steps more, by how much the last moved it, and its motion."""
     moved = np.full(len(value), np.inf)
     for _ in range(CLOSER_STEPS):
         x = x / np.linalg.norm(x, axis=1, keepdims=True)
@@ -234,4 +248,4 @@ def _closer(blocks: _Blocks, value: Complex, x: Complex) -> tuple[Complex, Array
         with np.errstate(divide="ignore", invalid="ignore"):
             change = 1 / (x.conj() * x_next).sum(axis=(1, 2))
         value, moved, x = value - change, np.abs(change), x_next
-    return value, moved
+    return value, moved, x

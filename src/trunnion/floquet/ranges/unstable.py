@@ -31,6 +31,8 @@ SETTLED = 1e-3
 ASTRAY = np.array([-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0]) * 1.5e-3
 """Shares of the speed beside a meeting at which one looks too where more than two modes act on each other, so that its
 place is not known closely."""
+SPARSE = (1, 2, 4)
+"""Every first, second or fourth of them on either side: as few as still lie within a third of the meeting's breadth."""
 BEYOND = 0.04
 """Share of a stretch over which two modes grow by which one looks beyond and within its ends."""
 ENDS = 1e-7
@@ -118,17 +120,23 @@ def _beside_met(
     growth = along.growth_rate[np.searchsorted(along.speed, met.speed)]
     with np.errstate(invalid="ignore"):
         out = growth > -RAISED * np.maximum(met.decay, 0.0)
-    astray = met.speed[np.isnan(met.growth), None] * (
-        1 + ASTRAY
-    )  # growth at a wrong place tells nothing of the right one
+    astray = _astray(met.of(np.isnan(met.growth)))  # growth at a wrong place tells nothing of the right one
     met, known = met.of(out), ((growth > 0) & (met.half > 0))[out]
     away = np.where(known, (1 + BEYOND) * met.half, 0.5 * met.width)
     beside = met.speed[:, None] + away[:, None] * np.array([-1.0, 1.0])
     top = met.speed[known, None] + 0.5 * met.width[known, None] * np.array([-1.0, 1.0])  # the line's is not the pair's
-    along = _looked(along, judge, np.concatenate([beside.ravel(), top.ravel(), astray.ravel()]), ends)
+    along = _looked(along, judge, np.concatenate([beside.ravel(), top.ravel(), astray]), ends)
     ended = along.verdict[np.minimum(np.searchsorted(along.speed, beside), len(along.speed) - 1)] == Verdict.STABLE
     within = (met.speed[:, None] + (1 - BEYOND) * met.half[:, None] * np.array([-1.0, 1.0]))[ended & known[:, None]]
     return _looked(along, judge, within, ends)
+
+
+def _astray(met: Collisions) -> Array:
+    """Speeds beside meetings whose place is not known closely."""
+    count = np.abs(np.rint(ASTRAY / np.abs(ASTRAY).min()))
+    step = np.abs(ASTRAY).min() * met.speed[:, None] * np.array(SPARSE)
+    sparse = np.array(SPARSE)[np.maximum((3 * step <= met.breadth[:, None]).sum(axis=1), 1) - 1]
+    return np.asarray((met.speed[:, None] * (1 + ASTRAY))[count % sparse[:, None] == 0])
 
 
 def _looked(along: StabilityOverSpeed, judge: Judge, at: Array, ends: tuple[float, float]) -> StabilityOverSpeed:

@@ -33,7 +33,7 @@ from trunnion.equations.steady_base import (
 from trunnion.equations.topology import Topology, require_period
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
-from trunnion.floquet.propagation.cost_model import by_shooting, require_time
+from trunnion.floquet.propagation.cost_model import by_modes_of, by_shooting, require_time
 from trunnion.floquet.propagation.floquet_modes import floquet_mode, judged_multipliers, propagated
 from trunnion.floquet.propagation.tree_mode_motion import mode_motion
 from trunnion.floquet.propagation.tree_modes import FloquetModes, floquet_modes
@@ -284,6 +284,7 @@ def _speed_told(found: Stability, topo: Topology, coefficients: LineCoefficients
 
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
+    require_time(assembly, float(table[0, 0]), partial(by_modes_of, assembly), "stability")
     system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
     forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
     turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)

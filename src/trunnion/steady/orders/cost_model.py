@@ -16,10 +16,19 @@ CHECKED = 3.0
 
 def tree_pays(topo: Topology, harmonics: Sequence[int], cases: int) -> bool:
     """Whether elimination along the tree is cheaper than whole matrices, of groups with so many ``harmonics`` each."""
+    return CHECKED + along_tree(topo, harmonics, cases) < by_whole_matrices(topo, harmonics, cases)
+
+
+def along_tree(topo: Topology, harmonics: Sequence[int], cases: int) -> float:
+    """Elimination along the tree, without the check in time."""
     n, left = topo.size, places_left(topo)
-    tree = sum(0.6 + 0.02 * n + cases * (8e-5 * left * h**2 * (1 + h / 100) + 1e-4 * n * h) for h in harmonics)
-    whole = sum(1.2 + cases * 3.5e-5 * (n * h) ** 2 * (1 + n * h / 400) for h in harmonics)
-    return CHECKED + tree < whole
+    return sum(0.6 + 0.02 * n + cases * (8e-5 * left * h**2 * (1 + h / 100) + 1e-4 * n * h) for h in harmonics)
+
+
+def by_whole_matrices(topo: Topology, harmonics: Sequence[int], cases: int) -> float:
+    """Matrices of all harmonics of all unknowns."""
+    n = topo.size
+    return sum(1.2 + cases * 3.5e-5 * (n * h) ** 2 * (1 + n * h / 400) for h in harmonics)
 
 
 def places_left(topo: Topology) -> int:

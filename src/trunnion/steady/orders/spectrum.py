@@ -46,7 +46,7 @@ from trunnion.steady.orders.channels import (
     graph_channels_of_harmonics,
     motion_channels,
 )
-from trunnion.steady.orders.cost_model import places_left, tree_pays
+from trunnion.steady.orders.cost_model import along_tree, by_whole_matrices, places_left, tree_pays
 from trunnion.steady.orders.groups import OWN, CarrierGroup, SideOrders, groups_of, offsets
 from trunnion.steady.orders.sidebands import DECADES, MOST_DECADES, OUTERMOST, side_orders, spreads
 from trunnion.steady.orders.unbalanced import balanced
@@ -109,6 +109,30 @@ def order_spectrum(
     return found
 
 
+@dataclass(frozen=True)
+class ResponseCost:
+    """What the response of a line with angled joints or varying meshes takes at a number of speeds: seconds of
+    processor time, bytes, and side orders on either side; nothing worth naming of other lines."""
+
+    seconds: float = 0.0
+    memory: float = 0.0
+    side_orders: int = 0
+
+
+def response_cost(assembly: Assembly, speed: float, speeds: int) -> ResponseCost:
+    """At so many ``speeds``, about, by the harmonics that one ``speed`` [rad/s] takes.
+
+    Raises
+    ------
+    InputError : as of ``order_spectrum``.
+    """
+    case = _SpectrumProblem(assembly, True, _numbers(assembly, np.array([speed]), None), False, False, None, False)
+    if not case.varies or case.own is not None:
+        return ResponseCost()
+    found = case.solved(slice(0, 1))
+    return ResponseCost(case.seconds(speeds), _room(found, speeds), found.side_orders)
+
+
 def _at_all(case: _SpectrumProblem, speed: Array, progress: Callable[[float], None] | None) -> OrderSpectrum:
     """At every ``speed`` (speed,), batch by batch."""
     parts: list[OrderSpectrum] = []
@@ -146,9 +170,12 @@ def _numbers(assembly: Assembly, speed: Array, table: Array | None) -> Array:
 
 def _require_room(first: OrderSpectrum, speeds: int) -> None:
     """Refuse so many speeds that what the first of them show of the orders would not fit."""
-    numbers = len(first.order) * (first.channels.count + first.channels.points)
-    # Complex, and held twice while the parts are put together.
-    require_memory(32.0 * numbers * speeds, key="speeds", value=speeds, remedy="ask for fewer speeds")
+    require_memory(_room(first, speeds), key="speeds", value=speeds, remedy="ask for fewer speeds")
+
+
+def _room(first: OrderSpectrum, speeds: int) -> float:
+    """Bytes of so many speeds: complex, and held twice while the parts are put together."""
+    return 32.0 * len(first.order) * (first.channels.count + first.channels.points) * speeds
 
 
 @dataclass(frozen=True)
@@ -257,6 +284,12 @@ class _SpectrumProblem:
         # To look around, equations that stand for all speeds are written out once.
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
         return max(1, MOST_NUMBERS // max(most**2, written))
+
+    def seconds(self, cases: int) -> float:
+        """Processor time that so many cases take, about, in the harmonics that are reached by now."""
+        groups, sides, _ = self._plan(self.reach)
+        cost = along_tree if self.along_tree else by_whole_matrices
+        return cost(self.topo, [len(sides.of(group)[0]) for group in groups], cases) / 1000
 
     def solved(self, rows: slice) -> OrderSpectrum:
         """The sum of all responses at some of the cases."""
