@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array, Codes, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances
 from trunnion.floquet.ranges.span import Span
@@ -252,7 +253,7 @@ def _require_search(assembly: Assembly, first: list[Array]) -> None:
     """Refuse to search a range of a long line that begins with the speeds ``first``, by piece, where that would not end
     or fill the memory."""
     size, speeds = assembly.topology.size, sum(len(part) for part in first)
-    if size < LONG:
+    if size < LONG or has_periodic_base(assembly):  # whose motions are refused where they are solved
         return
     try:
         cost = response_cost(assembly, float(first[-1][-1]), speeds)
