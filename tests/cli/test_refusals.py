@@ -23,6 +23,11 @@ RATIO = (
 FREE = 'format = 1\n[[element]]\ntype = "Disk"\ninertia = 1\n' + BARE_JOINT.partition('Speed"\n')[2].replace(
     JOINT, '[[element]]\ntype = "Disk"\ninertia = 1\n' + JOINT
 )
+STAGED = (
+    'format = 1\n[operation]\nspeed = 95\n[[element]]\ntype = "ConstantSpeed"\n[[element]]\ntype = "PiecewiseShaft"\n'
+    "breakpoints = [-0.001, 0.001]\nstiffnesses = [1e4, 5e3, 1e4]\ndamping = 5\n"
+    '[[element]]\ntype = "Disk"\ninertia = 1\nload_torque = 50\n'
+)
 FILES = {
     "empty.toml": b"",
     "binary.toml": b"\x89PNG\r\n\x1a\n\x00\x00",
@@ -30,6 +35,7 @@ FILES = {
     "bare-joint.toml": BARE_JOINT.encode(),
     "ratio.toml": RATIO.encode(),
     "free.toml": FREE.encode(),
+    "staged.toml": STAGED.encode(),
 }
 
 # (arguments, what the line must say)
@@ -59,6 +65,14 @@ CASES = [
     # proofs
     (("certify-stability", "line.toml", "--within", "0 s"), ("--within = '0 s': must be a positive time",)),
     (("certify-stability", "line.toml", "-t", "Shaft 1.damping=150%"), ("Shaft 1.damping=150%", "is not a tolerance")),
+    (
+        ("certify-stability", "staged.toml", "-t", "Disk 1.load_torque=10%", "--speed", "90:100"),
+        ("PiecewiseShaft 1 = -50: has stages, and its load varies", "write a Shaft of its stiffness under load"),
+    ),
+    (
+        ("certify-stability", "ratio.toml", "-t", "Ratio 1.ratio=10%", "--speed", "90:100"),
+        ("Ratio 1.ratio: sets the period", "makes a line of each of its values"),
+    ),
     # axes
     ((*CHART, "--x", "spede:1:2:3"), ("spede: is not a parameter", '"speed"')),
     ((*CHART, "--y", "HookeJoint 9.angle:0:0.2:3"), ("HookeJoint 9.angle: is not a parameter",)),
