@@ -49,7 +49,9 @@ def test_random_trees_against_the_matrices_of_the_period(seed: int) -> None:
     near = np.abs(other.multipliers[:, None] - found.multipliers)
     bound = other.multiplier_error[:, None] + found.multiplier_error
     assert ((near <= bound).sum(axis=1) > 0).all() and ((near <= bound).sum(axis=0) > 0).all()
-    assert found.verdict == other.verdict and found.liouville_defect < 1e-8
+    # Of multipliers as small as their errors the logarithm is not known.
+    relative = (found.multiplier_error / np.abs(found.multipliers)).sum()
+    assert found.verdict == other.verdict and found.liouville_defect < 1e-8 + relative
 
 
 def uniform(inertias: int, damping: float = 0.0, angle: float | None = None) -> tn.Driveline:
