@@ -49,8 +49,8 @@ def test_random_trees_against_the_matrices_of_the_period(seed: int) -> None:
     near = np.abs(other.multipliers[:, None] - found.multipliers)
     bound = other.multiplier_error[:, None] + found.multiplier_error
     assert ((near <= bound).sum(axis=1) > 0).all() and ((near <= bound).sum(axis=0) > 0).all()
-    # Of multipliers as small as their errors the logarithm is not known.
-    relative = (found.multiplier_error / np.abs(found.multipliers)).sum()
+    # The logarithm of a multiplier as small as its error is known to fewer digits: it may cost a millionth each.
+    relative = np.minimum(found.multiplier_error / np.abs(found.multipliers), 1e-6).sum()
     assert found.verdict == other.verdict and found.liouville_defect < 1e-8 + relative
 
 

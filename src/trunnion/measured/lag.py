@@ -9,11 +9,13 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from trunnion.arrays import Array, Complex
+from trunnion.driveline.operating_speed import speed_unit
 from trunnion.errors import ComputationError, InputError
 from trunnion.measured.predicted import PredictedChannels
 from trunnion.measured.run_response import FIRST_GRID, RunResponse, run_response
 from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.results.finding import Finding, Gravity
+from trunnion.results.speeds import show_acceleration
 from trunnion.results.units import figures
 
 TELLS = 0.02
@@ -104,10 +106,12 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
     run = measured_run(data)
     if run is None:
         return
+    unit = data.unit or speed_unit(channels.assembly.line)
+    least, largest_rate = show_acceleration(run.least, unit), show_acceleration(run.largest, unit)
     if not run.one_way:
         yield Finding(
             Gravity.CAUTION,
-            f"The speed goes up and down (from {figures(run.least, 3)} to {figures(run.largest, 3)} rad/s²), and how "
+            f"The speed goes up and down (from {least} to {largest_rate}), and how "
             "the line lags is not counted: the steady response is compared; take a run-up or a run-down by itself.",
         )
         return
@@ -132,8 +136,8 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
     if share.max(initial=0.0) * run.change >= EVEN:
         yield Finding(
             Gravity.CAUTION,
-            f"The acceleration changes from {figures(run.least, 3)} to {figures(run.largest, 3)} rad/s², and the lag "
-            f"is that of {figures(run.acceleration, 3)}; run up evenly, or more slowly.",
+            f"The acceleration changes from {least} to {largest_rate}, and the lag is that of "
+            f"{show_acceleration(run.acceleration, unit)}; run up evenly, or more slowly.",
         )
     unknown = np.divide(
         found.unsure_at(data.speed).max(axis=0), largest, out=np.zeros(largest.shape), where=largest > 0
@@ -141,6 +145,6 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
     if unknown.max(initial=0.0) >= TELLS:
         yield Finding(
             Gravity.CAUTION,
-            "The run begins near a resonance, and how the line moved before is not known: that counts as noise in the "
-            "first windows; begin further away.",
+            "The run begins near a resonance, and how the line moved before is not known: its first windows may be off "
+            f"by up to {figures(100 * float(unknown.max()), 2)} % of the largest amplitude; begin further away.",
         )
