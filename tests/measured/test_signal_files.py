@@ -261,9 +261,7 @@ def test_a_signal_that_is_thinned_while_it_is_read(chunk: int, tmp_path: Path, m
 
 @pytest.mark.slow
 def test_a_minute_of_four_channels_at_200_khz(tmp_path: Path) -> None:
-    """A run-up of 60 s from a binary file, orders of four pickups: 10 s of processor time."""
-    import time
-
+    """A run-up of 60 s from a binary file, orders of four pickups (its time: ``benchmarks/recordings.py``)."""
     rate, seconds = 200_000, 60.0
     at = np.arange(int(rate * seconds)) / rate
     phi = 100.0 * at + 200.0 / seconds * at**2 / 2
@@ -277,10 +275,7 @@ def test_a_minute_of_four_channels_at_200_khz(tmp_path: Path) -> None:
         {"column": k + 1, "name": f"w{k}", "kind": "pulses", "pulses_per_turn": 60, "pitch_error": 0.0}
         for k in range(4)
     ]
-    begin = time.process_time()
     found = tn.track_orders(tn.read_measurement(file, {"channel": wheels}), [1, 2, 4])
-    took = time.process_time() - begin
     for k in range(1, 4):
         got = np.abs(found.amplitude[:, found.row(2), found.column(f"w{k}")])
         assert np.abs(got - 1e-3 * k).max() < 2e-6
-    assert took < 15.0, took  # 10 s on a quiet machine

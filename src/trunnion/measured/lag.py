@@ -15,8 +15,8 @@ from trunnion.measured.predicted import PredictedChannels
 from trunnion.measured.run_response import FIRST_GRID, RunResponse, run_response
 from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.results.finding import Finding, Gravity
-from trunnion.results.speeds import show_acceleration
 from trunnion.results.units import figures
+from trunnion.results.words import Words
 
 TELLS = 0.02
 """Share of an amplitude from which the lag is said, and from which what is not known of it is."""
@@ -106,8 +106,8 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
     run = measured_run(data)
     if run is None:
         return
-    unit = data.unit or speed_unit(channels.assembly.line)
-    least, largest_rate = show_acceleration(run.least, unit), show_acceleration(run.largest, unit)
+    words = Words(data.unit or speed_unit(channels.assembly.line))
+    least, largest_rate = words.acceleration(run.least), words.acceleration(run.largest)
     if not run.one_way:
         yield Finding(
             Gravity.CAUTION,
@@ -137,7 +137,7 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
         yield Finding(
             Gravity.CAUTION,
             f"The acceleration changes from {least} to {largest_rate}, and the lag is that of "
-            f"{show_acceleration(run.acceleration, unit)}; run up evenly, or more slowly.",
+            f"{words.acceleration(run.acceleration)}; run up evenly, or more slowly.",
         )
     unknown = np.divide(
         found.unsure_at(data.speed).max(axis=0), largest, out=np.zeros(largest.shape), where=largest > 0
