@@ -102,7 +102,7 @@ def test_without_limits_nothing_is_satisfied():
 
 def test_limits_judge_what_separation_asks_for():
     found = tn.assess(two_mass(tn.Limit(of="shaft", max_torque=1e4)), (60.0, 140.0))
-    assert "limits of torque or stress to judge it, and these are stated" in found.check("separation of mode 2").because
+    assert "is judged by the limits of torque or stress that are stated" in found.check("separation of mode 2").because
     assert found.verdict is Status.SATISFIED
     assert found.binding is found.checks[0]
     peak = found.check("max torque of shaft")

@@ -160,11 +160,26 @@ def test_what_no_table_covers_is_a_gap() -> None:
     ]
     span = Span(assemble(tn.Driveline(parts)), 10.0, 70.0)
     assert [(gap.low, gap.high) for gap in span.gaps] == [pytest.approx((10.0, 20.0)), pytest.approx((60.0, 70.0))]
-    assert "the table of fan covers" in span.gaps[0].why
+    assert span.gaps[0].why.endswith("covers 190.986 rpm to 572.958 rpm; extend it")
     assert [(piece.low, piece.high) for piece in span.pieces] == [
         pytest.approx((20.0, 30.0)),
         pytest.approx((30.0, 60.0)),
     ]
+
+
+def test_a_table_behind_a_gear_is_said_to_go_over_its_own_speed() -> None:
+    """3 : 1 and a fan known from 20 to 60 rad/s of its own: the input turns from 60 to 180 rad/s."""
+    shaken = [{"order": 4, "speeds": [20.0, 60.0], "amplitudes": [5.0, 4.0]}]
+    parts = [
+        tn.ConstantSpeed(),
+        tn.Shaft(stiffness=1e3, damping=1.0),
+        tn.Disk(name="wheel", inertia=1.0),
+        tn.Ratio(ratio=3.0),
+        tn.Disk(name="fan", inertia=1.0, excitation=shaken),
+    ]
+    (gap,) = Span(assemble(tn.Driveline(parts)), 30.0, 180.0).gaps
+    assert (gap.low, gap.high) == pytest.approx((30.0, 60.0))
+    assert gap.why.endswith("covers 190.986 rpm to 572.958 rpm at its own speed; extend it")
 
 
 def shaken(damping: float) -> tn.Driveline:

@@ -35,6 +35,7 @@ def assumptions(contents: SubmissionContents) -> list[str]:
     return [
         f"Torsion only: rigid inertias, elastic shafts without mass{tubes}{joints}.",
         f"Linear vibration about the steady mean motion{contact}.",
+        "Torques by order act at the mean angle of their inertia, which has the mean twist of the line in it.",
         f"Damping of shafts, couplings and dampers: {'; '.join(_damping(contents)) or 'none is stated'}.",
         *_certainties(contents),
     ]

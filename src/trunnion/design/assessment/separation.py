@@ -32,9 +32,9 @@ WORTH = 0.01
 """Share of a spring's largest torque by one order from which an order counts."""
 RULE = Rule("|kΩ/ω − 1| ≥ 0.10", "API 617/684", "typical", "separation")
 ALL, ONE = "separation of modes", "separation of mode "
-NEEDS = "; a resonance needs "
-"""Between where a mode meets an order and what would judge it."""
-LIMITED = "limits of torque or stress to judge it, and these are stated"
+NEEDS = "; a resonance "
+"""Between where a mode meets an order and what judges it, or would."""
+LIMITED = "is judged by the limits of torque or stress that are stated"
 STEEP = 0.01
 """Share by which a mode may change between two speeds and still be taken as met where an order changes its side."""
 
@@ -66,7 +66,7 @@ def separation(subject: AssessmentInput, case: LoadCaseResponse) -> Iterator[Che
         gain = abs(here) / max(-2 * here.real, 1e-300)
         if without is None:
             without = few(unlimited(case.assembly))
-        needs = f"limits of torque or stress: state them for {without}" if without else LIMITED
+        needs = f"needs limits of torque or stress: state them for {without}" if without else LIMITED
         said = f"{order_name(*order)} {what} {hertz} {shown}, amplification {amplification_words(gain)}{NEEDS}{needs}"
         beside = "met in the range" if met else f"{100 * near:.2g} % apart"
         found = _near(case, f"{ONE}{m + case.first}", Status.EXCEEDED, said, near, float(case.speeds[at]))

@@ -15,10 +15,9 @@ import numpy as np
 
 from trunnion.arrays import Array
 from trunnion.driveline.composite import owners
-from trunnion.driveline.excitation import Excitation
 from trunnion.equations.amplitudes import beyond
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.harmonics import disk_torques
+from trunnion.equations.harmonics import DiskTorque, disk_torques
 from trunnion.equations.mean_clutch import states_a_motion
 from trunnion.equations.stage_laws import has_stages, stage_law
 
@@ -165,12 +164,12 @@ class Span:
                 stage = np.where(own == 0, law.stage(np.zeros(len(speed))), law.stage_under(own))
                 parts.append(stage[:, None].astype(float))
         tables = self._tables(table)
-        parts += [np.searchsorted(points, place)[:, None].astype(float) for _, _, points, place in tables]
+        parts += [np.searchsorted(points, place)[:, None].astype(float) for _, points, place in tables]
         return np.concatenate(parts, axis=1)
 
-    def _tables(self, table: Array) -> Iterator[tuple[Excitation, str, tuple[float, ...], Array]]:
-        """Of every excitation that acts and has a table, its disk, the points and where the rows of ``table`` read it
-        (case,); of those of a disk whose tables have the same points one."""
+    def _tables(self, table: Array) -> Iterator[tuple[DiskTorque, tuple[float, ...], Array]]:
+        """Every excitation that acts and has a table, the points and where the rows of ``table`` read it (case,); of
+        those of a disk whose tables have the same points one."""
         read = {
             (one.element, one.law.axes): one
             for one in reversed(disk_torques(self.assembly))
@@ -178,13 +177,19 @@ class Span:
         }
         for one in reversed(read.values()):
             for points, place in one.places(self.assembly, table):
-                yield one.law, one.name, points, place
+                yield one, points, place
 
     def _uncovered(self, speed: float) -> str:
         """Why nothing can be computed at a speed; empty where it can."""
-        for law, disk, points, place in self._tables(self.table(np.array([speed]))):
+        for one, points, place in self._tables(self.table(np.array([speed]))):
             if beyond(points, place)[0]:
                 line = self.assembly.line
-                (whose,) = owners(zip(line.names, line.elements, strict=True), [disk])
-                return f"the table of {whose} covers {law.covers}; extend it"
+                (whose,) = owners(zip(line.names, line.elements, strict=True), [one.name])
+                return f"the table of {whose} covers {one.law.covers}{self._at_its_own(one)}; extend it"
         return ""
+
+    def _at_its_own(self, torque: DiskTorque) -> str:
+        """Whose speed a table goes over, where that is not the input's."""
+        over_speed = any(over == "speeds" for over, _ in torque.law.axes)
+        turns_alike = np.isclose(abs(float(self.assembly.topology.speed_ratio[torque.station])), 1.0, rtol=1e-12)
+        return " at its own speed" if over_speed and not turns_alike else ""
