@@ -85,7 +85,13 @@ def gather(seen: Overview, measured: MeasuredOrders | None = None) -> Contents:
             "Torque over speed",
             lambda: sweep_of(
                 response_over(
-                    assembly, low, high, points=DRAWN[stated.costly], known=stated.response, motions=stated.motions
+                    assembly,
+                    low,
+                    high,
+                    points=DRAWN[stated.costly],
+                    known=stated.response,
+                    around=stated.__dict__.get("around"),  # where the search took a rough look
+                    motions=stated.motions,
                 )
             ),
         )

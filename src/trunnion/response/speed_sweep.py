@@ -15,7 +15,7 @@ from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances
-from trunnion.floquet.ranges.span import Span
+from trunnion.floquet.ranges.span import SmoothRange, Span
 from trunnion.floquet.stability.where_unstable import where_unstable
 from trunnion.numerics.memory import require_estimate, require_memory
 from trunnion.response.orders.response import (
@@ -27,7 +27,7 @@ from trunnion.response.orders.response import (
     steady_states_of,
 )
 from trunnion.response.orders.result import OrderResponse
-from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search
+from trunnion.response.ranges.largest import SearchedQuantity, first_speeds, search, thinned
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import computed, coordinate, internal, labelled, variable
@@ -205,11 +205,13 @@ def response_over(
     *,
     points: int = 241,
     known: OrderResponse | None = None,
+    around: OrderResponse | None = None,
     motions: SteadyStatesBySpeed | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> OrderResponse:
     """``order_response`` at the speeds of ``sweep_speeds``, each of them solved once; ``known``: the response where it
-    was searched over this range already, and the ``motions`` that it is about.
+    was searched over this range already, and the ``motions`` that it is about; ``around``: what a rough look at the
+    range showed before, of a line that takes long at every speed: then tops alone are looked at besides.
 
     Raises
     ------
@@ -219,7 +221,7 @@ def response_over(
     motions, first = motions or steady_states_of(assembly), _first(assembly, even)
     if first is not None and known is None:
         _require_search(assembly, first)
-    found = _searched(assembly, first, motions, known)
+    found = _searched(assembly, first, motions, known, around)
     if found is None:
         return order_response(assembly, even, orders, progress=progress)
     speeds, solved = _with(even, found.speed), found.spectrum
@@ -268,25 +270,38 @@ def _searched(
     first: list[Array] | None,
     motions: SteadyStatesBySpeed | None = None,
     known: OrderResponse | None = None,
+    around: OrderResponse | None = None,
 ) -> OrderResponse | None:
     """The response at all speeds at which the search for the largest torques looked, from those on at which it is
-    ``known``; None where there is none."""
+    ``known``, and tops that ``around`` shows; None where there is none."""
     if first is None:
         return None
     try:
         respond = partial(response_about, assembly, motions=motions)
-        if known is not None and _spans(known.speed, first):
-            found = search(assembly, respond, [known.speed], _torques(assembly), known=known).response
-            return completed_response(assembly, found.spectrum, np.union1d(found.speed, first[0]), motions=motions)
-        return search(assembly, respond, first, _torques(assembly)).response
+        torques, parts = _torques(assembly), None if known is None else _by_piece(known.speed, first)
+        if known is None or parts is None:
+            return search(assembly, respond, first, torques).response
+        if around is None:
+            found = search(assembly, respond, parts, torques, known=known).response
+            every = np.union1d(found.speed, np.concatenate(first))
+            return completed_response(assembly, found.spectrum, every, motions=motions)
+        pieces = [SmoothRange(part[0], part[-1]) for part in first]
+        tops = np.concatenate([known.speed, *thinned(around, pieces, torques, FEW)])
+        known = completed_response(assembly, known.spectrum, np.unique(tops), motions=motions)
+        parts = _by_piece(known.speed, first)
+        assert parts is not None  # more speeds of the same pieces
+        return search(assembly, respond, parts, torques, known=known).response
     except (InputError, ComputationError):  # said where the response is asked for
         return None
 
 
-def _spans(speeds: Array, first: list[Array]) -> bool:
-    """Whether ``speeds`` are those of the only piece, from end to end."""
-    whole = len(first) == 1 and speeds[0] == first[0][0] and speeds[-1] == first[0][-1]
-    return bool(whole and np.all(np.diff(speeds) > 0))
+def _by_piece(speeds: Array, first: list[Array]) -> list[Array] | None:
+    """Rising ``speeds`` by the pieces that ``first`` are of, ends among them; None where these are others."""
+    parts = [speeds[(speeds >= part[0]) & (speeds <= part[-1])] for part in first]
+    whole = all(
+        len(one) and one[[0, -1]].tolist() == part[[0, -1]].tolist() for one, part in zip(parts, first, strict=True)
+    )
+    return parts if whole and np.array_equal(np.concatenate(parts), np.unique(speeds)) else None
 
 
 def _between(speeds: Array, part: Array) -> Array:

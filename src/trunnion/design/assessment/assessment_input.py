@@ -18,7 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.mean_balance import SAME, mean_speeds, own_speed
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import has_periodic_base
+from trunnion.equations.steady_base import has_periodic_base, refuse_dragged
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances, varies
 from trunnion.floquet.ranges.span import Gap, SmoothRange, Span
@@ -244,13 +244,24 @@ class LoadCaseResponse:
         quantities = [one.quantity for one in self.measures]
         first = self._first_speeds
         if self.costly and not self.rough:
-            rough = replace(self, rough=True)
-            around = search(self.assembly, rough.respond, first, quantities, tolerance=0.01, passed=np.inf)
-            first = thinned(around, pieces, quantities, self.effort.costly)
+            first = thinned(self.around, pieces, quantities, self.effort.costly)
         return search(
             self.assembly, self.respond, first, quantities,
             tolerance=self.effort.tolerance, passed=self.effort.passed, known=self.__dict__.get("first_look"),
         )  # fmt: skip
+
+    @cached_property
+    def around(self) -> OrderResponse:
+        """What a rough look at the whole range shows, of a line that takes long at every speed.
+
+        Raises
+        ------
+        InputError, ComputationError : there is no response.
+        """
+        rough, quantities = replace(self, rough=True), [one.quantity for one in self.measures]
+        return search(
+            self.assembly, rough.respond, self._first_speeds, quantities, tolerance=0.01, passed=np.inf
+        ).response
 
     @cached_property
     def _first_speeds(self) -> list[Array]:
@@ -383,7 +394,7 @@ class LoadCaseResponse:
         angles."""
         return steady_states_of(self.assembly) if self.alike is None else self.alike.motions
 
-    @cached_property
+    @property
     def unstable(self) -> UnstableRanges:
         """Stability over the range, and the speeds at which a disturbance grows.
 
@@ -393,6 +404,22 @@ class LoadCaseResponse:
         """
         if self.alike is not None:
             return self.alike.unstable
+        found = self._stability_over_range
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    @cached_property
+    def _stability_over_range(self) -> UnstableRanges | InputError | ComputationError:
+        """That, or why there is none: many ask, and each would look at the range again."""
+        try:
+            return self._unstable_ranges()
+        except (InputError, ComputationError) as error:
+            return error
+
+    def _unstable_ranges(self) -> UnstableRanges:
+        if self.costly:
+            refuse_dragged(self.assembly)  # before anything is solved
         if not self.parametric:
             return straight_ranges(self.span)
         points = self.effort.costly if self.costly else self.effort.points

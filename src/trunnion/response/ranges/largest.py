@@ -193,14 +193,15 @@ def first_speeds(pieces: Sequence[SmoothRange], met: Resonances, points: int = P
 
 
 def thinned(
-    around: Largest, pieces: Sequence[SmoothRange], quantities: Sequence[SearchedQuantity], points: int
+    around: OrderResponse, pieces: Sequence[SmoothRange], quantities: Sequence[SearchedQuantity], points: int
 ) -> list[Array]:
-    """Speeds to begin with after a rough look: few evenly, and about every top that may be the largest."""
-    x = around.response.speed
+    """Speeds to begin with after a rough look ``around``, by piece: few evenly, and about every top that may be the
+    largest."""
+    x = around.speed
     kept = [np.linspace(pieces[0].low, pieces[-1].high, points)]
-    for quantity, value in zip(quantities, around.value, strict=True):
-        v = quantity.values(around.response)
-        least = min(HIGH_ENOUGH * value, quantity.level)
+    for quantity in quantities:
+        v = quantity.values(around)
+        least = min(HIGH_ENOUGH * float(np.where(np.isfinite(v), v, np.inf).max()), quantity.level)
         inner = np.flatnonzero((v[1:-1] >= v[:-2]) & (v[1:-1] >= v[2:]) & (v[1:-1] >= least)) + 1
         kept += [x[inner], x[inner - 1], x[inner + 1], x[[int(np.argmax(v))]]]
     every = np.concatenate(kept)

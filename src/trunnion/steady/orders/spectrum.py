@@ -63,7 +63,7 @@ FLOOR = 1e-9
 """Share below which outermost harmonics that do not fall any more are rounding."""
 SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
-MOST_NUMBERS = 300_000
+MOST_NUMBERS = 1_500_000
 """Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
 
 
