@@ -9,7 +9,8 @@ results show.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -22,6 +23,9 @@ from trunnion.equations.linear_clutches import stand_ins
 from trunnion.registry import ANALYSES
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.words import Words
+
+_NUMBER = re.compile(r" \d+(-\d+)?$")
+"""Of a throw, or of the crank between two."""
 
 
 class Treatment(Enum):
@@ -67,10 +71,23 @@ def left_out(analysis: str, line: Driveline) -> tuple[Finding, ...]:
         if cell.treatment is Treatment.SAID and not cell.quote:
             places.setdefault(cell.reason, {}).update(dict.fromkeys(feature(key).places(line)))
     return own + tuple(
-        Finding(Gravity.CAUTION, f"{', '.join(where)} {'is' if len(where) == 1 else 'are'} left out: {reason}")
+        Finding(
+            Gravity.CAUTION,
+            f"{', '.join(_together(where, line))} {'is' if len(where) == 1 else 'are'} left out: {reason}",
+        )
         for reason, where in places.items()
         if where
     )
+
+
+def _together(places: Iterable[str], line: Driveline) -> tuple[str, ...]:
+    """The same, those of several parts of one engine as the pattern of their names: "engine.throw *.excitation"."""
+    owned = {name for name, one in line.parts if one.part_of}
+    alike: dict[str, list[str]] = {}
+    for place in places:
+        name, _, key = place.rpartition(".")
+        alike.setdefault(f"{_NUMBER.sub(' *', name)}.{key}" if name in owned else place, []).append(place)
+    return tuple(pattern if len(every) > 1 else every[0] for pattern, every in alike.items())
 
 
 def as_it_operates(line: Driveline) -> tuple[Finding, ...]:

@@ -402,3 +402,12 @@ def test_a_cylinder_out_of_work_in_the_other_way_is_left_out_and_a_line_needs_sp
     rigid = tn.Driveline([engine(gas_torque=GAS, rigid=True), tn.Disk(inertia=2.0, load_torque=30.0)])
     with pytest.raises(tn.InputError, match="has no springs"):
         tn.misfire(rigid, [70.0])
+
+
+def test_what_a_turn_leaves_out_of_its_throws_is_said_once():
+    """Not throw by throw; what belongs to another part by its own name."""
+    ship = [engine(gas_torque=[{"order": 3, "amplitude": 100.0}]), tn.Shaft(stiffness=1e6), tn.Disk(inertia=9.0)]
+    parts = [*ship, tn.HookeJoint(angle=0.1), tn.Shaft(stiffness=1e6), tn.Disk(inertia=3.0, viscous_load=1.0)]
+    said = " ".join(str(one) for one in tn.kinetostatics(tn.Driveline(parts)).findings)
+    assert "engine.throw *.drive_share are left out: the first element drives alone" in said
+    assert "engine.throw *.excitation, engine.throw *.firing_angles are left out" in said and "throw 2" not in said

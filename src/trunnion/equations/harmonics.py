@@ -146,8 +146,8 @@ class DiskTorque(LineHarmonic):
         g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
         return g
 
-    def refuse_change(self) -> None:
-        """Refuse an amplitude by the speed where the speed changes.
+    def refuse_change(self, elsewhere: str = "tn.order_response") -> None:
+        """Refuse an amplitude by the speed where the speed changes; ``elsewhere``: what has it.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class DiskTorque(LineHarmonic):
         if self.law.varies:
             raise InputError(
                 "has an amplitude that depends on the speed, which changes here", element=self.name, key="excitation",
-                remedy="give it an amplitude, or use tn.order_response",
+                remedy=f"give it an amplitude, or use {elsewhere}",
             )  # fmt: skip
 
 

@@ -309,7 +309,7 @@ class LineSystem(Portable):
         refuse_curves(self.assembly.topology, elsewhere)
         refuse_torque_tables(self.assembly.line, elsewhere)
         for one in self.torques:
-            one.refuse_change()
+            one.refuse_change("tn.order_response, or tn.transient with the torque that drives the line")
 
     def _harmonic(self, one: DiskTorque, course: SpeedRamp, row: Array) -> list[float]:
         """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course."""

@@ -28,13 +28,14 @@ Changes = Mapping[int, Array]
 
 
 def is_one_joint(chain: KinematicChain) -> bool:
-    """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio."""
+    """Whether the way to the output has Hooke's and ideal joints only, all of them in front of any ratio but 1, that
+    of a locked converter say."""
     geared = False
     for i in chain.way:
         step = chain.steps[i]
         if step.orders and (geared or not step.cross):
             return False
-        geared = geared or step.link is LinkKind.RATIO
+        geared = geared or (step.link is LinkKind.RATIO and step.ratio != 1)
     return True
 
 
