@@ -274,3 +274,24 @@ def test_what_joints_force_is_told_as_a_part_where_something_else_excites() -> N
     for line, part in ((mill, "their part of the torque"), (alone, "the torque")):
         (told,) = response_findings(assemble(line), tn.resonance_speeds(line), (6.3, 44.0), Words("rpm"))
         assert f": under the loads as described {part} of motor shaft rises to" in told.sentence
+
+
+def test_crossings_that_are_left_out_are_said() -> None:
+    """Those far from the operating speed; here two modes meet forty orders each, and the line turns at the top."""
+    shaken = [{"order": k / 2, "amplitude": 1.0} for k in range(1, 41)]
+    parts = [
+        tn.Disk(name="engine", inertia=1.0, drive_share=1.0, excitation=shaken),
+        tn.Shaft(stiffness=4e5, damping=20.0),
+        tn.Disk(inertia=1.0),
+        tn.Shaft(stiffness=4e5, damping=20.0),
+        tn.Disk(inertia=1.0, viscous_load=0.1),
+    ]
+    line = tn.Driveline(parts, operation=tn.Operation(speed=290.0, speed_range=[60.0, 300.0]))
+    text = tn.report(line).html
+    every = tn.campbell_diagram(line, np.linspace(60.0, 300.0, 201)).crossings
+    assert len(every) > 30
+    assert f"; the 30 nearest to the operating speed of {len(every)}, and trunnion campbell-diagram has all" in text
+    table = text.split("Crossings in the speed range")[1].split("</table>")[0]
+    last = max(one.speed for one in every) * 30 / np.pi
+    assert f"{last:.4g}" in table and f"{min(one.speed for one in every) * 30 / np.pi:.4g}" not in table
+    assert "the prescribed speed" not in text  # the line has none

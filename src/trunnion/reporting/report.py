@@ -126,6 +126,8 @@ def _page(contents: Contents, shown: Mapping[str, ReportPicture], source: Path |
         "elements": tables.elements(seen.line),
         "modes": tables.modes(contents, frequency_unit),
         "crossings": tables.crossings(contents, unit, frequency_unit),
+        "crossings_shown": tables.crossings_shown(contents),
+        "driven": not seen.assembly.topology.free,
         "resonances": tables.resonances(contents, unit),
         "joints": tables.joints(seen.line),
         "irregularity": tables.irregularity(contents),

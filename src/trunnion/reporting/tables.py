@@ -14,6 +14,7 @@ from trunnion.driveline.curve_points import TorquePoint
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Element, Loaded
 from trunnion.driveline.engine import Engine
+from trunnion.driveline.operating_speed import known_speed
 from trunnion.driveline.pressure import PressureCurve
 from trunnion.driveline.quantities import DAMPING, DEGREE, INERTIA, PRESSURE, STIFFNESS, QuantityKind, shown, signs
 from trunnion.driveline.shafts import Shaft
@@ -21,6 +22,7 @@ from trunnion.driveline.sheet import Sheet
 from trunnion.driveline.summary import firing
 from trunnion.reporting.contents import Contents
 from trunnion.reporting.under_load import LoadedMotion
+from trunnion.response.campbell_diagram import Crossing
 from trunnion.results.units import figures, range_words
 from trunnion.results.words import Words
 
@@ -202,8 +204,8 @@ def irregularity(contents: Contents) -> Table | None:
 
 
 def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table:
-    """Where excitations meet the modes of the loaded line in the speed range."""
-    found = contents.campbell.crossings if contents.campbell else ()
+    """Where excitations meet the modes of the loaded line in the speed range, by speed."""
+    found, _ = _met(contents)
     return Table.of(
         {
             f"input speed [{speed_unit}]": c.speed * Words(speed_unit).factor,
@@ -213,8 +215,25 @@ def crossings(contents: Contents, speed_unit: str, frequency_unit: str) -> Table
             f"frequency [{frequency_unit}]": c.frequency * Words(frequency_unit).factor,
             "amplification": c.amplification,
         }
-        for c in found[:MOST_CROSSINGS]
+        for c in found
     )
+
+
+def crossings_shown(contents: Contents) -> str:
+    """Which of the crossings are in the table, where they are not all of them."""
+    found, every = _met(contents)
+    if len(found) == every:
+        return ""
+    return f"; the {len(found)} nearest to the operating speed of {every}, and trunnion campbell-diagram has all"
+
+
+def _met(contents: Contents) -> tuple[list[Crossing], int]:
+    """Crossings for the table, those nearest to the operating speed (or to the end of the range), and how many there
+    are."""
+    found = list(contents.campbell.crossings if contents.campbell else ())
+    at = known_speed(contents.overview.line) or contents.overview.speed_range[1]
+    near = sorted(found, key=lambda one: abs(one.speed - at))[:MOST_CROSSINGS]
+    return sorted(near, key=lambda one: one.speed), len(found)
 
 
 def checks(judged: Assessment) -> Table:
