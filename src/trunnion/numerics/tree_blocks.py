@@ -1,13 +1,12 @@
 """Systems of a tree whose places hold some harmonics each, of which a few entries join different ones.
 
 Where nothing joins them each harmonic is a tree of scalars, which ``condensation`` takes out. What is left are few
-places whose entries are matrices, of all harmonics by all. They are a tree, which is eliminated from its leaves, unless
-entries join places of different branches: then taking one out joins those that it was joined to.
+places whose entries are matrices, of all harmonics by all (``joined_places``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -16,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Complex, Flags, Integers
 from trunnion.numerics.condensation import Condensed, Plan
+from trunnion.numerics.joined_places import JoinedPlaces
 from trunnion.numerics.sparse_matrices import Part, SparseMatrices
 
 BALANCED = 2e-13
@@ -50,15 +50,32 @@ class TreeBlock:
         out[self.row][:, self.far[first]] += product
 
 
-@dataclass(frozen=True)
-class _TakenOut:
-    """One place of what is left, taken out: the inverse of its matrix, and that times the couplings with each of the
-    ``fronts`` from the right and from the left."""
+def joined_places(
+    left: Integers, own: Complex, couplings: Iterable[tuple[int, int, Complex]], blocks: Iterable[TreeBlock]
+) -> JoinedPlaces:
+    """The places ``left`` (m,) of a plan: ``own`` (m, case, h) and ``couplings`` by their numbers among these, of what
+    joins no harmonics, and the ``blocks`` of what does."""
+    number, (cases, count) = {one: k for k, one in enumerate(left.tolist())}, own.shape[1:]
+    diagonals = list(own)
+    joined = {pair: values for a, b, values in couplings for pair in ((a, b), (b, a))}
 
-    fronts: tuple[int, ...]
-    inverse: Complex
-    behind: tuple[Complex, ...]
-    ahead: tuple[Complex, ...]
+    def whole(values: Complex | None) -> Complex:
+        if values is not None and values.ndim > 2:
+            return values
+        made = np.zeros((cases, count, count), dtype=complex)
+        if values is not None:
+            made[:, np.arange(count), np.arange(count)] = values
+        return made
+
+    for block in blocks:
+        a, b = number[block.row], number[block.column]
+        if a == b:
+            one = diagonals[a] = whole(diagonals[a])
+        else:
+            one = joined[a, b] = whole(joined.get((a, b)))
+            joined.setdefault((b, a), np.zeros((cases, count), dtype=complex))
+        one[:, block.far, block.near] += block.values
+    return JoinedPlaces(diagonals, joined)
 
 
 class TreeMatrix:
@@ -90,66 +107,16 @@ class TreeMatrix:
         return Condensed(self.plan, self.own.copy(), self.coupling.copy())
 
     @cached_property
-    def _taken_out(self) -> list[_TakenOut]:
-        """What is left, by its number there, taken out from the last place on."""
-        own, couplings = self._left()
-        found = list[_TakenOut]()
-        with np.errstate(all="ignore"):
-            for k in reversed(range(len(own))):
-                inverse, fronts = _inverse(own[k]), tuple(sorted(a for a, b in couplings if b == k and a < k))
-                behind = tuple(inverse @ couplings[k, a] for a in fronts)
-                ahead = tuple(couplings[a, k] @ inverse for a in fronts)
-                for a in fronts:
-                    for b, part in zip(fronts, behind, strict=True):
-                        less = couplings[a, k] @ part
-                        if a == b:
-                            own[a] -= less
-                        else:
-                            couplings[a, b] = couplings[a, b] - less if (a, b) in couplings else -less
-                found.append(_TakenOut(fronts, inverse, behind, ahead))
-        return found[::-1]
-
-    def _left(self) -> tuple[list[Complex], dict[tuple[int, int], Complex]]:
-        """Matrices (case, h, h) of the places that are left and of their couplings, by their numbers."""
-        condensed, cases, count = self._condensed, *self.own.shape[1:]
-        number, every = {one: k for k, one in enumerate(self.plan.left.tolist())}, np.arange(count)
-
-        def diagonal(values: Complex) -> Complex:
-            made = np.zeros((cases, count, count), dtype=complex)
-            made[:, every, every] = values
-            return made
-
-        own = [diagonal(values) for values in condensed.own]
-        couplings = {}
-        for a, b, values in condensed.couplings():
-            couplings[a, b], couplings[b, a] = diagonal(values), diagonal(values)
-        nothing = np.zeros((cases, count), dtype=complex)
-        for block in self.blocks:
-            a, b = number[block.row], number[block.column]
-            if a != b and (a, b) not in couplings:
-                couplings[a, b], couplings[b, a] = diagonal(nothing), diagonal(nothing)
-            (own[a] if a == b else couplings[a, b])[:, block.far, block.near] += block.values
-        return own, couplings
+    def _joined(self) -> JoinedPlaces:
+        condensed = self._condensed
+        return joined_places(self.plan.left, condensed.own, condensed.couplings(), self.blocks)
 
     def eliminated(self, right: Complex, *, transposed: bool = False) -> Complex:
         """Solutions (n, case, h) under ``right`` (n, case, h), as elimination without exchange of pivots gives them."""
         x = self._condensed.reduced(right.astype(complex))
         if len(self.plan.left):
-            x[self.plan.left] = self._left_solved(x[self.plan.left], transposed)
+            x[self.plan.left] = self._joined.solved(x[self.plan.left], transposed=transposed)
         return self._condensed.expanded(x)
-
-    def _left_solved(self, x: Complex, transposed: bool) -> Complex:
-        """Solutions (m, case, h) of what is left, in place."""
-        with np.errstate(all="ignore"):
-            for k in reversed(range(len(x))):
-                one = self._taken_out[k]
-                for a, part in zip(one.fronts, one.behind if transposed else one.ahead, strict=True):
-                    x[a] -= _applied(part, x[k], transposed)
-            for k, one in enumerate(self._taken_out):
-                x[k] = _applied(one.inverse, x[k], transposed)
-                for a, part in zip(one.fronts, one.ahead if transposed else one.behind, strict=True):
-                    x[k] -= _applied(part, x[a], transposed)
-        return x
 
     def whole(self) -> SparseMatrices:
         """All numbers, unknowns in the order (place, harmonic)."""
@@ -199,22 +166,3 @@ class TreeMatrix:
             acting = np.abs(right).max(axis=2) + np.abs(self.own * x).max(axis=2)
             share = np.where(rest > 0, rest / acting, np.where(np.isnan(rest), np.nan, 0.0))
             return np.asarray(~(share <= BALANCED).all(axis=0))
-
-
-def _applied(matrix: Complex, x: Complex, transposed: bool) -> Complex:
-    """Products (case, h) of matrices (case, h, h) with x (case, h)."""
-    return np.asarray((x[:, None] @ matrix)[:, 0] if transposed else (matrix @ x[..., None])[..., 0])
-
-
-def _inverse(matrix: Complex) -> Complex:
-    """Inverses (case, h, h); NaN where there is none."""
-    try:
-        return np.asarray(np.linalg.inv(matrix))
-    except np.linalg.LinAlgError:
-        found = np.full_like(matrix, np.nan)
-        for one, made in zip(matrix, found, strict=True):
-            try:
-                made[:] = np.linalg.inv(one)
-            except np.linalg.LinAlgError:
-                continue
-        return found

@@ -217,29 +217,31 @@ class HillLine:
     def _seen(self, value: Complex, x: Complex, h: Integers) -> tuple[FollowedModes, Array]:
         """Modes x (n, mode, h), and what they leave over a period, as a share of their states (mode,)."""
         s = value[:, None] + 1j * h * self.rate
-        felt = self.blocks.at(s, h).times(x)
-        left, rate = self._total(felt), (x * s).sum(axis=2)
+        felt = self.blocks.felt(s, h, x)
+        left, rate = self._total(felt), np.einsum("nch,ch->nc", x, s)
         share = self.time * left / np.linalg.norm(rate * self.root[:, None], axis=0)
         if self._rough:
-            left = left + self._total(self._rough.at(s, h).times(x) - felt)
+            left = left + self._total(self._rough.felt(s, h, x) - felt)
         return FollowedModes(value, x.sum(axis=2), rate, left), share
 
     def _total(self, left: Complex) -> Array:
         """Σ_h ‖r_h‖ (mode,) of torques r (n, mode, h), in units of √mass."""
-        return np.asarray(np.sqrt((np.abs(left / self.root[:, None, None]) ** 2).sum(axis=0)).sum(axis=1))
+        over = self.root**-2
+        square = np.einsum("nch,nch,n->ch", left.real, left.real, over)
+        square += np.einsum("nch,nch,n->ch", left.imag, left.imag, over)
+        return np.asarray(np.sqrt(square).sum(axis=1))
 
     def _settled(self, value: Complex, x: Complex, h: Integers, closely: float = SETTLED) -> tuple[Complex, Complex]:
-        value, x = value.copy(), x.copy()
+        value, x = value.copy(), x / _size(x)
         left = np.arange(len(value))
         for _ in range(STEPS):
-            one = x[:, left] / _size(x[:, left])
+            one = x if len(left) == len(value) else np.ascontiguousarray(x[:, left])
             s = value[left, None] + 1j * h * self.rate
-            right = self.blocks.at(s, h, slope=True).times(one)
-            u = self.blocks.at(s, h).eliminated(right)
+            u = self.blocks.stepped(s, h, one)
             with np.errstate(all="ignore"):
-                change = 1 / (one.conj() * u).sum(axis=(0, 2))
-                u = u / _size(u)
-            good = np.isfinite(u).all(axis=(0, 2)) & np.isfinite(change)
+                change, size = 1 / np.einsum("nch,nch->c", one.conj(), u), _size(u)
+                u /= size
+            good = np.isfinite(size[:, 0]) & np.isfinite(change)
             value[left] = np.where(good, value[left] - change, np.nan)
             x[:, left[good]] = u[:, good]
             with np.errstate(invalid="ignore"):
@@ -340,4 +342,5 @@ def _block(matrices: TreeMatrices, beside: dict[tuple[int, int], EntryBeside], p
 
 def _size(x: Complex) -> Array:
     """Euclidean norm of each case (case, 1) of x (n, case, h)."""
-    return np.asarray(np.sqrt((np.abs(x) ** 2).sum(axis=(0, 2)))[:, None])
+    square = np.einsum("nch,nch->c", x.real, x.real) + np.einsum("nch,nch->c", x.imag, x.imag)
+    return np.asarray(np.sqrt(square)[:, None])

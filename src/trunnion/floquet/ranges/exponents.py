@@ -28,7 +28,7 @@ from trunnion.equations.linear import line_matrices
 from trunnion.equations.topology import require_period
 from trunnion.equations.tree_matrices import tree_matrices
 from trunnion.numerics.sparse_matrices import SparseMatrices
-from trunnion.steady.hill.hill import HillBlocks
+from trunnion.steady.hill.hill import HillBlocks, interpolation_nodes, weights_at
 from trunnion.steady.hill.tree_hill import TreeHill
 from trunnion.steady.orders.groups import offsets
 from trunnion.waiting import keep_time
@@ -163,7 +163,14 @@ class _Blocks:
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
         self.tree: TreeHill | None = None
         if _along_tree(assembly):
-            self.tree = TreeHill(assembly.topology, tree_matrices(assembly.topology, co, tau), co.loss, self.step)
+            few = None if co.across else interpolation_nodes(table[:, 0], co)
+            if few is not None:  # matrices at three speeds stand for those at all
+                nodes = np.repeat(table[:1], len(few), axis=0)
+                nodes[:, 0] = few
+                co = assembly.coefficients(nodes, statically_twisted=twisted, any_frequency=True)
+            step = co.speed / float(sides.turns)
+            self.weights = weights_at(few, table[:, 0])
+            self.tree = TreeHill(assembly.topology, tree_matrices(assembly.topology, co, tau), co.loss, step)
             return
         matrices = line_matrices(assembly.topology, co, tau)
         self.blocks = HillBlocks(assembly.topology, matrices, co.loss, self.step)
@@ -194,10 +201,10 @@ class _Blocks:
     def _along_tree(self, tree: TreeHill, value: Complex, x: Complex) -> Complex:
         """``step_from`` of a long line, column by column."""
         s = value[:, None] + 1j * self.harmonics * self.step[:, None]
-        matrix, slope, found = tree.at(s, self.harmonics), tree.at(s, self.harmonics, slope=True), np.empty_like(x)
+        found = np.empty_like(x)
         for k in range(x.shape[2]):
-            one = np.moveaxis(x[..., k].reshape(*s.shape, -1), 2, 0)
-            found[..., k] = np.moveaxis(matrix.eliminated(slope.times(one)), 0, 2).reshape(len(s), -1)
+            one = np.ascontiguousarray(np.moveaxis(x[..., k].reshape(*s.shape, -1), 2, 0))
+            found[..., k] = np.moveaxis(tree.stepped(s, self.harmonics, one, self.weights), 0, 2).reshape(len(s), -1)
         return found
 
 

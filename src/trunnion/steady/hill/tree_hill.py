@@ -18,6 +18,7 @@ from trunnion.equations.topology import Topology
 from trunnion.equations.tree_matrices import TreeMatrices
 from trunnion.numerics.condensation import Plan
 from trunnion.numerics.tree_blocks import TreeBlock, TreeMatrix
+from trunnion.numerics.tree_steps import TreePencil
 from trunnion.steady.hill.hill import interpolated
 from trunnion.steady.hill.straight import about_first, bounded
 
@@ -109,6 +110,30 @@ class TreeHill:
         if self.loss.any() and not slope:
             blocks += self._add_loss(own, coupling, np.sign(s.imag), harmonics, weights)
         return TreeMatrix(self.plan, self.parent, own, coupling, blocks)
+
+    def felt(self, s: Complex, harmonics: Integers, x: Complex) -> Complex:
+        """Ax (n, case, h) of x (n, case, h), of matrices A at s as of ``at``."""
+        if self.loss.any():
+            return self.at(s, harmonics).times(x)
+        blocks = [self._block(one, s, harmonics, None, slope=False) for one in self.varying]
+        return self._pencil(None).times(s, x, blocks)
+
+    def stepped(self, s: Complex, harmonics: Integers, x: Complex, weights: Array | None = None) -> Complex:
+        """A⁻¹A′x (n, case, h) of x (n, case, h), of matrices A at s as of ``at``: a step of inverse iteration."""
+        if self.loss.any():
+            right = self.at(s, harmonics, weights, slope=True).times(x)
+            return self.at(s, harmonics, weights).eliminated(right)
+        blocks, slopes = ([self._block(one, s, harmonics, weights, of) for one in self.varying] for of in (False, True))
+        return self._pencil(weights).stepped(s, x, blocks, slopes)
+
+    def _pencil(self, weights: Array | None) -> TreePencil:
+        """With entries at the nodes, or at the cases that ``weights`` carry to."""
+
+        def every(three: tuple[Array, ...]) -> tuple[Array, Array, Array]:
+            k, c, m = (np.asarray(interpolated(weights, part.T).T) for part in three)
+            return k, c, m
+
+        return TreePencil(self.plan, self.parent, every(self.own), every(self.coupling))
 
     def _block(self, entry: Varying, s: Complex, h: Integers, weights: Array | None, slope: bool) -> TreeBlock:
         meant = h[:, None] - entry.apart  # pairs come by their far harmonic
