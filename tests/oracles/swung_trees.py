@@ -171,6 +171,8 @@ class SwungTree:
         x, drive = self.rigid(speed)
         if start is not None:
             x, drive = start.copy(), torque
+        if self.driven:
+            x[self.n] = speed
         n, size = self.n, 2 * self.n
         unit = np.repeat([1.0, speed], n)
         ahead = np.concatenate([self.numbers[3] * self.turn, np.zeros(n)])

@@ -118,3 +118,31 @@ def test_windows_of_narrow_ranges_of_speeds() -> None:
         for values in suspects(box, speed):
             inside = ((values[:, None] > found.windows[:, 0]) & (values[:, None] < found.windows[:, 1])).any(axis=1)
             assert not (inside & (box.radii(speed, values) > 1 + KNOWN)).any()
+
+
+def test_a_limit_below_a_fold_is_known() -> None:
+    """Where the motion folds back above the first unstable range the limit stands, and what lies in the fold is in no
+    window: there two motions are followed to, from below and from above."""
+    box = random_box(2)
+    found = tn.stable_limit(
+        box.line, box.parameter, [box.speed], low=box.low, high=box.high, between=False, about_steady_state=True
+    )
+    (limit,), (unknown,), (windows,) = found.limit.tolist(), found.unknown, found.windows
+    assert len(unknown) and unknown[0, 0] > found.unstable[0][-1, 1] > limit
+    radii = box.radii(box.speed, np.linspace(box.low, limit * (1 - BESIDE), 60))
+    assert (radii < 1 + KNOWN).all() and box.radii(box.speed, np.array([limit * (1 + BESIDE)]))[0] > 1
+    for low, high in unknown:
+        assert not ((windows[:, 0] < high) & (windows[:, 1] > low)).any()
+    ends = unknown.min() - 0.2, unknown.max() + 0.2
+    met = [_followed(box, end, (unknown.min() + unknown.max()) / 2) for end in ends]
+    assert met[0] is None or met[1] is None or abs(met[0] - met[1]).max() > 1e-3
+    whole = str(found)
+    assert whole.startswith(f"Stable at {box.speed:.6g} rad/s up to inertia of d2 {limit:.6g} kg m²")
+
+
+def _followed(box: Box, begin: float, end: float) -> Array | None:
+    """Start of the motion at one value that is followed from another; None where it ends before."""
+    last = box.at(begin).motion(box.speed)
+    for value in np.linspace(begin, end, 80)[1:]:
+        last = last and box.at(value).motion(box.speed, last.start, last.torque)
+    return last and last.start

@@ -66,6 +66,9 @@ class StableLimit(Result):
     limit: Array = variable("speed", "{self.unit}", "largest stable {self.parameter}")
     kind: Codes = variable("speed", words="codes of LimitKind", more=KINDS)
     unstable: tuple[Array, ...] = internal("of each speed its unstable ranges (ranges, 2), rising", axes="speed")
+    unknown: tuple[Array, ...] = internal(
+        "of each speed the ranges (ranges, 2), rising, in which nothing is known of stability", axes="speed"
+    )
     low: float = attribute("end of the range searched")
     high: float = attribute("end of the range searched")
     complete: bool = attribute("whether every zero of the boundary functions was found")
@@ -85,20 +88,16 @@ class StableLimit(Result):
 
     @property
     def windows(self) -> tuple[Array, ...]:
-        """The stable ranges (ranges, 2) of each speed, those above the limit among them; none where it is unknown."""
-        known = (self.kind != LimitKind.UNKNOWN).tolist()
+        """The stable ranges (ranges, 2) of each speed, those above the limit among them."""
         return tuple(
-            _between(ranges, self.low, self.high) if is_known else np.zeros((0, 2))
-            for ranges, is_known in zip(self.unstable, known, strict=True)
+            _between(np.concatenate(both), self.low, self.high)
+            for both in zip(self.unstable, self.unknown, strict=True)
         )
 
     @property
     def common_windows(self) -> Array:
-        """The ranges (ranges, 2) that are stable at all these speeds; none where one of them is unknown."""
-        if np.any(self.kind == LimitKind.UNKNOWN):
-            return np.zeros((0, 2))
-        every = np.concatenate([*self.unstable, np.zeros((0, 2))])
-        return _between(every[np.argsort(every[:, 0])], self.low, self.high)
+        """The ranges (ranges, 2) that are stable at all these speeds."""
+        return _between(np.concatenate([*self.unstable, *self.unknown]), self.low, self.high)
 
     @property
     def smallest(self) -> float:
@@ -146,9 +145,7 @@ class StableLimit(Result):
         at = self.critical_speed
         if np.any(self.kind == LimitKind.UNKNOWN):
             failed = words.speed(float(self.speed[self.kind == LimitKind.UNKNOWN][0]))
-            said = (
-                f"At {failed} it is not known over the whole range of the {shown.quantity} whether the line is stable"
-            )
+            said = f"At {failed} it is not known up to which {shown.quantity} the line is stable"
         elif at is None:
             said = f"Stable at {span} up to {shown.value(self.high)}, the end of the range"
         elif np.any(self.kind == LimitKind.AT_ONCE):
@@ -168,7 +165,7 @@ class StableLimit(Result):
         """The same at some of the speeds."""
         return replace(
             self, speed=self.speed[places], limit=self.limit[places], kind=self.kind[places], whole=whole, ended="",
-            unstable=tuple(self.unstable[k] for k in places),
+            unstable=tuple(self.unstable[k] for k in places), unknown=tuple(self.unknown[k] for k in places),
             others=tuple(replace(other, reached=other.reached[places]) for other in self.others),
         )  # fmt: skip
 
@@ -255,9 +252,9 @@ class StableLimit(Result):
 
 
 def _between(ranges: Array, low: float, high: float) -> Array:
-    """What of ``low`` to ``high`` is in none of ``ranges`` (ranges, 2), sorted by their low ends."""
+    """What of ``low`` to ``high`` is in none of ``ranges`` (ranges, 2)."""
     left, at = [], low
-    for begin, end in ranges.tolist():
+    for begin, end in sorted(ranges.tolist()):
         if begin > at:
             left.append((at, begin))
         at = max(at, end)

@@ -227,7 +227,8 @@ def _result(
     low, high = float(task.x.values[0]), float(task.x.values[-1])
     unstable = tuple(region.in_x(row.low, row.high) for row in rows)
     at_once = np.array([bool(len(row) and row.clipped[0, 0]) for row in rows])
-    failed = np.array([len(row.unknown) > 0 for row in rows])
+    unknown = tuple(region.in_x(*row.unknown.reshape(-1, 2).T) for row in rows)
+    failed = np.array([_begins_unknown(*both) for both in zip(unstable, unknown, strict=True)])
     some = np.array([len(ranges) > 0 for ranges in unstable])
     kind = np.where(~some, LimitKind.BEYOND, np.where(at_once, LimitKind.AT_ONCE, LimitKind.CROSSING))
     kind = np.where(failed, LimitKind.UNKNOWN, kind).astype(np.int8)
@@ -237,11 +238,16 @@ def _result(
     known = {finding.sentence for finding in said}
     notes = tuple(Finding(Gravity.NOTE, f"{r[0].upper()}{r[1:]}") for r in task.remarks if r not in known)
     return StableLimit(
-        parameter=task.x.label, unit=task.x.unit, speed=speed, limit=limit, kind=kind, unstable=unstable, low=low,
-        high=high, complete=region.by_coefficients and not region.uncovered, search=_search_words(region),
-        others=others[0], others_search=others[1], whole=whole, findings=(*said, *notes),
+        parameter=task.x.label, unit=task.x.unit, speed=speed, limit=limit, kind=kind, unstable=unstable,
+        unknown=unknown, low=low, high=high, complete=region.by_coefficients and not region.uncovered,
+        search=_search_words(region), others=others[0], others_search=others[1], whole=whole, findings=(*said, *notes),
         speed_unit=speed_unit(assembly.line),
     )  # fmt: skip
+
+
+def _begins_unknown(unstable: Array, unknown: Array) -> bool:
+    """Whether something of a row is not known that lies below its first unstable range, or the row has none."""
+    return bool(len(unknown) and (not len(unstable) or unknown[0, 0] < unstable[0, 0]))
 
 
 def _search_words(region: Region) -> str:
