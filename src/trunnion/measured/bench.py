@@ -16,7 +16,7 @@ from trunnion.driveline.arguments import one_number, rising_range, speeds_of, wh
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.inertia_torque import inertia_torque
+from trunnion.equations.inertia_torque import accelerating, inertia_torque
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.measured.run_response import FIRST_GRID, run_response
@@ -74,12 +74,13 @@ class _BenchResponse:
 
     listed: the response at a few speeds, which lists its orders. amplitude: of rotations of the disks, their
     accelerations and torques of the springs, one after another (order, quantity) where the speed stays, else a spline
-    of these over the speed. torque (spring,) [N m]: mean, with what accelerates the inertia behind it.
+    of these over the speed; the last order, 0, is the mean torque. senses (disk,): −1 of disks that turn against the
+    input, whose motion shows in their own sense.
     """
 
     listed: OrderResponse
     amplitude: CubicSpline | Complex
-    torque: Array
+    senses: Array
 
     def motion(self, name: str, kind: str) -> _OrderMotion:
         """Of a disk (its "rotation" or "acceleration") or a spring ("torque")."""
@@ -88,15 +89,13 @@ class _BenchResponse:
             return _OrderMotion(np.zeros(0), np.zeros(0), np.zeros(0, dtype=complex))
         own = {"rotation": 0, "acceleration": len(disks), "torque": 2 * len(disks)}[kind]
         own += self.listed.springs.index(name) if kind == "torque" else disks.index(name)
+        sense = 1.0 if kind == "torque" else self.senses[disks.index(name)]
         if isinstance(self.amplitude, CubicSpline):
-            part: CubicSpline | Complex = CubicSpline(self.amplitude.x, self.amplitude(self.amplitude.x)[:, :, own])
+            values = sense * self.amplitude(self.amplitude.x)[:, :, own]
+            part: CubicSpline | Complex = CubicSpline(self.amplitude.x, values)
         else:
-            part = self.amplitude[:, own]
-        return _OrderMotion(self.listed.order, self.listed.frequency, part)
-
-    def mean(self, spring: str) -> float:
-        """Torque of a spring about which it vibrates [N m]."""
-        return float(self.torque[self.listed.springs.index(spring)])
+            part = sense * self.amplitude[:, own]
+        return _OrderMotion(np.append(self.listed.order, 0.0), np.append(self.listed.frequency, 0.0), part)
 
 
 def measure(
@@ -196,7 +195,7 @@ def measure(
         noise = np.random.default_rng([seed, len(teeth) + place])
         time = np.arange(int(duration * gauge_rate)) / gauge_rate
         motion = response.motion(name, "torque")
-        torque = response.mean(name) + motion.at(time, start_angle + course.angle(time), course.speed(time))[0]
+        torque = motion.at(time, start_angle + course.angle(time), course.speed(time))[0]
         values = torque + gauge_noise * noise.normal(size=len(time))
         label = f"torque of {name}" if name in teeth else name
         channels.append(SampledSignal(values, gauge_rate, label, "torque", name))
@@ -224,21 +223,35 @@ def _course(speeds: object, duration: float) -> _Course:
 
 
 def _bench_response(assembly: Assembly, course: _Course) -> _BenchResponse:
-    motions = steady_states_of(assembly)
     low, high = sorted((course.first, course.first + course.acceleration * course.duration))
     speeds = np.linspace(low, high, FIRST_GRID) if course.acceleration else np.array([course.first])
-    listed = response_about(assembly, speeds, motions)
+    row, ratios = assembly.table(1, low), speed_ratios(assembly)
+    under = accelerating(assembly, row, course.acceleration)
+    carrying = under is not row
+    try:
+        runs = assemble(assembly.packed.line_at(under[0])) if carrying else assembly
+        motions = steady_states_of(runs)
+        listed = response_about(runs, speeds, motions)
+    except InputError:
+        if not carrying:
+            raise
+        # What it cannot carry at a steady speed, with a spring in its free play, say.
+        runs, carrying, motions = assembly, False, steady_states_of(assembly)
+        listed = response_about(runs, speeds, motions)
     inertia = dict(zip(shaft_names(assembly), inertia_torque(assembly).tolist(), strict=True))
-    behind = np.array([inertia.get(name, 0.0) for name in listed.springs])
-    mean = listed.mean_torque.mean(axis=0) + course.acceleration * behind
-    if not course.acceleration:
-        return _BenchResponse(listed, _quantities(listed, listed)[0], mean)
+    behind = np.array([0.0 if carrying else inertia.get(name, 0.0) for name in listed.springs])
+    senses = np.array([np.sign(ratios[name]) or 1.0 for name in listed.inertias])
 
     def respond(speed: Array) -> Complex:
-        return _quantities(response_about(assembly, speed, motions), listed)
+        found = listed if speed is speeds else response_about(runs, speed, motions)
+        mean = np.zeros((len(speed), 1, 2 * len(listed.inertias) + len(listed.springs)), dtype=complex)
+        mean[:, 0, 2 * len(listed.inertias) :] = found.mean_torque + course.acceleration * behind
+        return np.concatenate([_quantities(found, listed), mean], axis=1)
 
-    found = run_response(respond, low, high, course.acceleration, listed.order)
-    return _BenchResponse(listed, CubicSpline(found.speed, found.passing), mean)
+    if not course.acceleration:
+        return _BenchResponse(listed, respond(speeds)[0], senses)
+    found = run_response(respond, low, high, course.acceleration, np.append(listed.order, 0.0))
+    return _BenchResponse(listed, CubicSpline(found.speed, found.passing), senses)
 
 
 def _quantities(found: OrderResponse, listed: OrderResponse) -> Complex:

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
+from math import lcm
 
 import numpy as np
 
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.inertia_torque import accelerating
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
-from trunnion.measured.tracking.places import even_places
+from trunnion.measured.measured_run import measured_run
+from trunnion.measured.tracking.places import even_places, speed_ratios
 from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.response.orders.response import steady_states_of
 from trunnion.steady.orders.amplitudes import OrderSpectrum
@@ -21,6 +25,8 @@ from trunnion.waiting import keep_time
 
 NEAR_ENOUGH = 1e-6
 """Orders that are the same."""
+MOST_TURNS = 60
+"""Turns after which orders are taken to repeat at the latest."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +34,8 @@ class PredictedChannels:
     """Where the channels of a measurement stand in the responses of a line.
 
     columns : of the measurement, those of places of the line, by their kind. even : whether a place turns evenly.
+    senses : −1 of disks that turn against the input, whose motion a pickup shows in their own sense. acceleration : of
+    the input [rad/s²] in the run that was measured, 0 where it goes up and down.
     """
 
     assembly: Assembly
@@ -35,9 +43,23 @@ class PredictedChannels:
     columns: tuple[int, ...]
     places: tuple[int, ...]
     even: tuple[bool, ...]
+    senses: tuple[float, ...]
+    acceleration: float
 
     def at(self, table: Array) -> Complex:
-        """Amplitudes (case, order, channel) of rows of packed numbers (case, column), each at its own speed."""
+        """Amplitudes (case, order, channel) of rows of packed numbers (case, column), each at its own speed.
+
+        Steady ones, under the torques that accelerate the line in the run, where it can carry these.
+        """
+        carrying = accelerating(self.assembly, table, self.acceleration)
+        if carrying is not table:
+            try:
+                return self._steady(carrying)
+            except InputError:
+                pass  # a spring goes into its free play, say, or a machine is asked for more than it has
+        return self._steady(table)
+
+    def _steady(self, table: Array) -> Complex:
         if not has_periodic_base(self.assembly):
             return self.of(order_spectrum(self.assembly, table[:, 0], table=table))
         # Each line moves about a periodic motion of its own, which is found at all its speeds.
@@ -59,14 +81,16 @@ class PredictedChannels:
         turned = 1j * np.multiply.outer(found.speed, self.data.order)
         point = found.amplitude[..., found.channels.point] + found.base
         torque = found.amplitude[..., found.channels.torque]
-        for k, (column, place, even) in enumerate(zip(self.columns, self.places, self.even, strict=True)):
+        for k, (column, place, even, sense) in enumerate(
+            zip(self.columns, self.places, self.even, self.senses, strict=True)
+        ):
             if even:
                 continue
             kind = self.data.kinds[column]
             values = (torque if kind == "torque" else point)[..., place]
             there = rows >= 0
             made[:, there, k] = values[:, rows[there]]
-            made[:, :, k] *= {"acceleration": turned**2, "speed": turned}.get(kind, 1.0)
+            made[:, :, k] *= sense * {"acceleration": turned**2, "speed": turned}.get(kind, 1.0)
         return made
 
     def _rows(self, found: OrderSpectrum) -> Array:
@@ -107,7 +131,10 @@ def predicted_channels(assembly: Assembly, data: MeasuredOrders) -> PredictedCha
         raise InputError(
             "shows no place of the line that moves", key="data", remedy='name places in its channels: at = "hub"'
         )
-    return PredictedChannels(assembly, data, tuple(columns), tuple(places), tuple(even))
+    turns, run = speed_ratios(assembly), measured_run(data)
+    senses = [1.0 if data.kinds[c] == "torque" else float(np.sign(turns[data.places[c]])) or 1.0 for c in columns]
+    acceleration = run.acceleration if run is not None and run.one_way else 0.0
+    return PredictedChannels(assembly, data, tuple(columns), tuple(places), tuple(even), tuple(senses), acceleration)
 
 
 def turned(values: Complex, orders: Array, angle: float) -> Complex:
@@ -122,7 +149,7 @@ def best_angle(measured: Complex, predicted: Complex, weight: Array, orders: Arr
     """
     # |m − p e^{ikα}|² depends on α by −2 Re Σ w m* p e^{ikα}: a sum of cosines, searched finely and then refined.
     known = np.where(weight > 0, weight * np.nan_to_num(measured).conj() * predicted, 0.0).sum(axis=(0, 2))
-    grid = np.linspace(0.0, 2 * np.pi, 64 * max(4, int(np.ceil(orders.max()))), endpoint=False)
+    grid = np.linspace(0.0, period(orders), 64 * turns(orders) * max(4, int(np.ceil(orders.max()))), endpoint=False)
     angle = float(grid[(np.exp(1j * np.multiply.outer(grid, orders)) @ known).real.argmax()])
     for _ in range(20):
         wave = known * np.exp(1j * orders * angle)
@@ -130,7 +157,17 @@ def best_angle(measured: Complex, predicted: Complex, weight: Array, orders: Arr
         if bend >= 0:
             break
         angle -= slope / bend
-    return angle % (2 * np.pi)
+    return float(angle % period(orders))
+
+
+def turns(orders: Array) -> int:
+    """Turns of the input after which all ``orders`` repeat: two of half orders."""
+    return min(lcm(*(Fraction(one).limit_denominator(MOST_TURNS).denominator for one in orders.tolist())), MOST_TURNS)
+
+
+def period(orders: Array) -> float:
+    """The same as an angle [rad]."""
+    return 2 * np.pi * turns(orders)
 
 
 def usable(data: MeasuredOrders, columns: tuple[int, ...]) -> Flags:

@@ -34,6 +34,14 @@ LOWEST = 0.25
 """Share of the last speed of a run-down below which nothing is asked of the line."""
 
 
+class SharpError(ComputationError):
+    """A response that is not smooth over as many speeds as there may be, most of all ``at`` one [rad/s]."""
+
+    def __init__(self, message: str, at: float) -> None:
+        super().__init__(message)
+        self.at = at
+
+
 @dataclass(frozen=True)
 class RunResponse:
     """Amplitudes over the speed of a run.
@@ -128,6 +136,9 @@ def _as_far_as_stated(
     for far in ((*run, *beyond), (*run, beyond[1])):
         try:
             return smooth_response(respond, min(far), max(far), first)
+        except SharpError as error:
+            if low <= error.at <= high:  # so it is without what lies beyond
+                raise
         except (ComputationError, InputError):
             continue  # what a line states over the speed may end with the run, or a resonance beyond it be sharp
     return smooth_response(respond, low, high, first)
@@ -201,7 +212,7 @@ def smooth_response(
 
     Raises
     ------
-    ComputationError : they are not smooth over ``LAST_GRID`` speeds, or infinite.
+    SharpError : they are not smooth over ``LAST_GRID`` speeds, or infinite.
     """
     speed = np.linspace(low, high, first)
     values = respond(speed)
@@ -212,14 +223,25 @@ def smooth_response(
             return speed, values, error
         count = 2 * len(speed) - 1
         if count > LAST_GRID or not np.isfinite(error):
-            raise ComputationError(
+            raise SharpError(
                 f"the response is not smooth over {len(speed)} speeds (error {error:.2g}): a resonance without "
-                "damping; give the line damping, or ask for a smaller range"
+                "damping; give the line damping, or ask for a smaller range",
+                _sharpest(speed, values),
             )
         finer = np.linspace(low, high, count)
         every = np.empty((count, *values.shape[1:]), dtype=complex)
         every[::2], every[1::2] = values, respond(finer[1::2])
         speed, values = finer, every
+
+
+def _sharpest(speed: Array, values: Complex) -> float:
+    """The speed beside which amplitudes (speed, order, channel) bend most, or are not finite."""
+    size = np.abs(values).max(axis=(1, 2))
+    if not np.isfinite(size).all():
+        return float(speed[int(np.argmin(np.isfinite(size)))])
+    scale = np.abs(values).max(axis=(0, 1))
+    bend = np.abs(np.diff(values, 4, axis=0)).max(axis=1) / np.where(scale > 0, scale, 1.0)
+    return float(speed[2 + int(bend.max(axis=1).argmax())])
 
 
 def between(speed: Array, values: Complex) -> float:

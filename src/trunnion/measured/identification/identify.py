@@ -34,7 +34,7 @@ from trunnion.measured.identification.profile import (
 from trunnion.measured.identification.result import Identification, TongueDistance
 from trunnion.measured.identification.sampling import LikelihoodDraws, gaussian_of, likelihood_draws
 from trunnion.measured.overlay import compare_measured
-from trunnion.measured.predicted import turned
+from trunnion.measured.predicted import period, turned
 from trunnion.measured.tracking.result import MeasuredOrders
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.units import figures
@@ -163,7 +163,7 @@ def identify(
         scale=scale,
         probability=float(chi2.sf(best.chi_square, freedom)),
         held_out=tried,
-        begin=float(best.angle % (2 * np.pi)),
+        begin=float(best.angle % period(data.order)),
         residual=_by_channel(misfit, residual),
         channels=tuple(data.channels[c] for c in misfit.channels.columns),
         order=data.order,

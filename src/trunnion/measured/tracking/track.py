@@ -47,7 +47,8 @@ MOST_ORDERS, SHARE = 12, 0.02
 HIGHEST = 24.0
 OVERSAMPLED = 16.0
 """Samples per cycle of the highest order that a sampled signal keeps."""
-SAME_RATIO = 5e-4
+SAME_RATIO, SWING = 5e-4, 0.05
+"""Share within which ratios of speeds are one, and turns by which a shaft may swing at the ends of what is counted."""
 ROW = 5
 """Windows from which a row of them tells how amplitudes bend."""
 SHARP = 2.0
@@ -283,7 +284,7 @@ class _Tracking:
             return abs(stated)
         if train.name == self.main.name:
             return self.ratio
-        return self.ratio * counted_ratio(train, self.main)
+        return self.ratio * counted_ratio(train, self.main)[0]
 
     def result(
         self, orders: Array, unit: str, stretch: MeasuredRamp, progress: Callable[[float], None] | None
@@ -460,8 +461,9 @@ class _Tracking:
         stated = self.places.get(train.at)
         if stated is None or train.name == self.main.name or self.places.get(self.main.at) is None:
             return
-        seen = counted_ratio(train, self.main) * self.ratio
-        if abs(seen / abs(stated) - 1) > SAME_RATIO:
+        seen, same = counted_ratio(train, self.main)
+        seen *= self.ratio
+        if abs(seen / abs(stated) - 1) > same:
             fits = seen * train.pulses_per_turn / abs(stated)
             raise InputError(
                 f"turns {figures(seen, 5)} times a turn of the input, where {train.at} turns {figures(abs(stated), 5)} "
@@ -586,8 +588,9 @@ def between_words(stretch: MeasuredRamp, unit: str) -> str:
     return f"Taken from the {what} between {figures(stretch.first_time, 4)} and {figures(stretch.last_time, 4)} s."
 
 
-def counted_ratio(train: PulseTrain, main: PulseTrain) -> float:
-    """Turns of a train's shaft for one of the main's, a fraction of small numbers where it is near to one."""
+def counted_ratio(train: PulseTrain, main: PulseTrain) -> tuple[float, float]:
+    """Turns of a train's shaft for one of the main's, a fraction of small numbers where it is near to one, and the
+    share within which that is known."""
     first, last = max(train.times[0], main.times[0]), min(train.times[-1], main.times[-1])
     if not last > first:
         raise InputError(
@@ -597,4 +600,6 @@ def counted_ratio(train: PulseTrain, main: PulseTrain) -> float:
     turned = [np.diff(np.interp((first, last), one.times, one.angle))[0] for one in (train, main)]
     ratio = float(turned[0] / turned[1])
     simple = Fraction(ratio).limit_denominator(60)
-    return float(simple) if abs(float(simple) / ratio - 1) < SAME_RATIO else ratio
+    # Within few turns a shaft that swings at a resonance has not made as many as its ratio says.
+    same = max(SAME_RATIO, SWING * TURN / float(np.min(np.abs(turned))))
+    return (float(simple) if abs(float(simple) / ratio - 1) < SAME_RATIO else ratio), same
