@@ -76,7 +76,7 @@ def torques(speeds: Array, line: Driveline | Assembly) -> Array:
 
 def free_line_growth(speeds: Array, line: Driveline) -> Array:
     """Growth rate and spectral radius (2, speed) of a free–free line with joint angles."""
-    found = stability_along(assemble(line), speeds)
+    found = stability_along(assemble(line), speeds, closely=True)
     return np.stack([found.growth_rate, found.radius])
 
 

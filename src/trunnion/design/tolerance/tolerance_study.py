@@ -54,6 +54,12 @@ CLIMBS = 6
 """Steps of the search for the worst corner."""
 STEP = 1e-4
 """Of differences, as a share of a tolerance."""
+PARTS = np.array([0.01, 0.03, 0.1, 0.25, 0.5, 1.0])
+"""Of the way to the corner, near ones first: where the motion is not known it is followed from the one before."""
+STEPS_ASIDE, FARTHEST, DIRECTIONS = 12, 0.25, 16
+"""Steps along single tolerances and in directions drawn by lot; shares of tolerances, halved where none leads on."""
+WAY = 9
+"""Lines between the middle of the tolerances and a line whose motion may have to be followed from there."""
 BINS = 32
 """Classes of a parameter between which the mean growth rate is compared."""
 
@@ -325,32 +331,55 @@ def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth:
     k, start = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
     speed, place, best = float(speeds[k]), shares[start].copy(), float(growth[k, start])
 
-    def rates(points: Array) -> Array:
-        table = tables(lines.assembly, spreads, points, speed)
-        return lines.growth(table, lines.judged(table, 1e-2 * TOLERANCE))
+    def judged(points: Array) -> tuple[Array, Codes]:
+        way = _way_to(lines, place)
+        table = tables(lines.assembly, spreads, np.concatenate([way, points]), speed)
+        found = lines.judged(table, 1e-2 * TOLERANCE)
+        return lines.growth(table, found)[len(way) :], found.verdict[len(way) :]
 
     size = len(spreads)
     for _ in range(0 if time_is_up() else CLIMBS):
         inside = np.clip(place, STEP, 1 - STEP)
         probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
         try:
-            found = rates(probes)
+            found, _ = judged(probes)
         except OutOfTime:  # the fastest so far stands, as the study says that it was ended
             break
         gradient = found[:size] - found[size:]
         corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
-        parts = np.array([1.0, 0.5, 0.25, 0.1, 0.03, 0.01])[:, None]
-        tried = place + parts * (corner - place)
+        tried = place + PARTS[:, None] * (corner - place)
         with to_the_end():
-            reached = rates(tried)
-        top = int(np.nanargmax(reached))
+            reached, _ = judged(tried)
+        # What is not known is no faster line.
+        top = int(np.argmax(np.where(np.isfinite(reached), reached, -np.inf)))
         if not reached[top] > best:
             break
         place, best = tried[top], float(reached[top])
-    table = tables(lines.assembly, spreads, place[None], speed)
+    # Between two multipliers that are equally large the growth rate has an edge, along which no gradient leads.
+    reach, rng = FARTHEST, np.random.default_rng(0)
+    for _ in range(0 if time_is_up() else STEPS_ASIDE):
+        aside = rng.normal(size=(DIRECTIONS, size)) / np.sqrt(size)
+        tried = np.clip(place + reach * np.concatenate([np.eye(size), -np.eye(size), aside]), 0.0, 1.0)
+        try:
+            reached, _ = judged(tried)
+        except OutOfTime:
+            break
+        top = int(np.argmax(np.where(np.isfinite(reached), reached, -np.inf)))
+        if reached[top] > best:
+            place, best = tried[top], float(reached[top])
+        else:
+            reach /= 2
     with to_the_end():
-        verdict = Verdict(int(lines.judged(table, 1e-2 * TOLERANCE).verdict[0]))
-    return Worst(numbers_at(spreads, place), speed, best, verdict)
+        _, verdict = judged(place[None])
+    return Worst(numbers_at(spreads, place), speed, best, Verdict(int(verdict[0])))
+
+
+def _way_to(lines: ManyLines, place: Array) -> Array:
+    """Shares (step, tolerance) from the middle of all tolerances to a place: motions that swing far are not found from
+    rigid shafts, but followed from line to line."""
+    if not isinstance(lines, SteadyStateLines):
+        return np.zeros((0, len(place)))
+    return 0.5 + np.arange(WAY)[:, None] / WAY * (place - 0.5)
 
 
 def _ranking(spreads: tuple[Spread, ...], shares: Array, growth: Array) -> tuple[tuple[str, float], ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.equations.first_order import fastest_cycles, steps_that_see
-from trunnion.numerics.chain.exponential_monodromy import exponential_monodromies
+from trunnion.numerics.chain.exponential_monodromy import SHARE, exponential_monodromies
 from trunnion.results.verdict import Verdict, verdicts
 from trunnion.steady.free.free_balance import FreeBalance
 from trunnion.steady.free.periodic_steady_states import SteadyStateCurve, SteadyStateSlopes, slopes_along
@@ -27,8 +27,11 @@ class SteadyStateMultipliers:
     matrix: Array
 
 
-def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) -> SteadyStateMultipliers:
-    """Of all motions, without what is not a disturbance of them; ``tolerance`` as of ``exponential_monodromies``."""
+def multipliers_about(
+    motions: SteadyStateSlopes, *, tolerance: float = 1e-9, share: float = SHARE
+) -> SteadyStateMultipliers:
+    """Of all motions, without what is not a disturbance of them; ``tolerance`` and ``share`` as of
+    ``exponential_monodromies``."""
     count, size = len(motions.value), 2 * len(motions.solved.balance.turn)
     there = np.flatnonzero(motions.found)
     radius, error = np.full(count, np.nan), np.full(count, np.nan)
@@ -40,6 +43,7 @@ def multipliers_about(motions: SteadyStateSlopes, *, tolerance: float = 1e-9) ->
             size,
             motions.period,
             tolerance=tolerance,
+            share=share,
             least_steps=steps_that_see(fastest_cycles(motions.solved.balance.assembly, motions.period)),
             aside=lambda which, z: motions.beside_neutral(there[which], z),
         )

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 
 TOLERANCE = 1e-7
+CLOSELY = 1e-10
+"""Of radii of which differences are taken."""
 UNDAMPED = 1e-12
 LONG = 40
 """Unknowns from which on modes by Hill's blocks cost no more than the chain kernel, and are known far better."""
@@ -90,11 +92,12 @@ def stability_along(
     statically_twisted: bool = True,
     motions: SteadyStatesBySpeed | None = None,
     table: Array | None = None,
+    closely: bool = False,
 ) -> StabilityOverSpeed:
     """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with angled joints or varying meshes.
 
     ``motions`` : periodic steady states that are known already; ``table`` (speed, column): packed numbers at every
-    speed, where they follow it.
+    speed, where they follow it; ``closely`` : about periodic steady states, radii as close as differences need them.
 
     Raises
     ------
@@ -102,7 +105,7 @@ def stability_along(
     """
     speed = np.asarray(speeds, dtype=float)
     if has_periodic_base(assembly):
-        return _about_steady_states(assembly, speed, motions)
+        return _about_steady_states(assembly, speed, motions, closely)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
     if assembly.topology.size >= LONG:
@@ -143,7 +146,9 @@ def _by_exponentials(assembly: Assembly, table: Array, twisted: bool) -> Stabili
     return _along(table[:, 0], found.radius, found.error, found.critical, code, rates.period)
 
 
-def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesBySpeed | None) -> StabilityOverSpeed:
+def _about_steady_states(
+    assembly: Assembly, speed: Array, solved: SteadyStatesBySpeed | None, closely: bool
+) -> StabilityOverSpeed:
     from trunnion.floquet.propagation.about_steady_states import multipliers_about
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, steady_state_slopes
 
@@ -158,7 +163,9 @@ def _about_steady_states(assembly: Assembly, speed: Array, solved: SteadyStatesB
             element="driveline",
             remedy="ask stability at single speeds",
         )
-    found = multipliers_about(motions)
+    found = multipliers_about(motions, tolerance=CLOSELY, share=0.0) if closely else None
+    if found is None or not np.isfinite(found.radius[motions.found]).all():  # rounding may be larger than that
+        found = multipliers_about(motions)
     return _along(speed, found.radius, found.error, found.critical, found.verdict, motions.period)
 
 

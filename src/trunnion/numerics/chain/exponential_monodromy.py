@@ -56,6 +56,7 @@ def exponential_monodromies(
     period: float,
     *,
     tolerance: float = 1e-9,
+    share: float = SHARE,
     least_steps: int = FIRST_STEPS,
     aside: Callable[[Places, Array], Array] | None = None,
 ) -> Monodromies:
@@ -64,8 +65,8 @@ def exponential_monodromies(
     Parameters
     ----------
     rates : (case numbers, τ (times,)) → A (case, times, size, size), its states in energy-like units.
-    tolerance : difference of radii between N and 2N steps that is small enough, ``SHARE`` of their distance from 1 is
-        as well; the last is sixty times better.
+    tolerance, share : difference of radii between N and 2N steps that is small enough, and the share of their distance
+        from 1 that is as well; the last is sixty times better.
     least_steps : as many as follow the fastest change of A.
     aside : (case numbers, matrices) → matrices without what is not a disturbance, for the radius.
     """
@@ -73,7 +74,7 @@ def exponential_monodromies(
     def march(which: Places, count: int) -> Array:
         return marched(rates, which, size, period, count)
 
-    return step_halving(march, cases, size, tolerance=tolerance, least_steps=least_steps, aside=aside)
+    return step_halving(march, cases, size, tolerance=tolerance, share=share, least_steps=least_steps, aside=aside)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # steps that are far too long overflow, and are halved
@@ -83,6 +84,7 @@ def step_halving(
     size: int,
     *,
     tolerance: float = 1e-9,
+    share: float = SHARE,
     least_steps: int = FIRST_STEPS,
     aside: Callable[[Places, Array], Array] | None = None,
 ) -> Monodromies:
@@ -97,7 +99,7 @@ def step_halving(
         count *= 2
         fine = march(left, count)
         found, off, value = _radius(judged(left, fine), judged(left, coarse))
-        done = np.asarray(off <= np.maximum(tolerance, SHARE * np.abs(1 - found)))
+        done = np.asarray(off <= np.maximum(tolerance, share * np.abs(1 - found)))
         matrix[left], steps[left] = fine, count
         radius[left[done]], error[left[done]], critical[left[done]] = found[done], off[done], value[done]
         left, coarse = left[~done], fine[~done]
