@@ -14,6 +14,8 @@ from trunnion.equations.topology import LinkKind
 from trunnion.floquet.certificate.box_coefficients import NumberRange
 from trunnion.floquet.certificate.judge import judge
 
+STEEPEST = 1.2
+"""Largest angle of a cross [rad]."""
 RADIUS = 1e-9
 """By how much a radius of the integration may stand above 1 and be one within its error."""
 
@@ -72,7 +74,8 @@ def check(seed: int, boxes: int, size: int, simple: bool, points: int = 24) -> t
 
 
 def real_shape(rng: np.random.Generator, line: tn.Driveline) -> Shape:
-    """A chain of the package's, its numbers from its coefficients, its crosses bent up to three times as far."""
+    """A chain of the package's, its numbers from its coefficients, its crosses bent up to three times as far, but no
+    farther than ``STEEPEST``."""
     assembly = assemble(line)
     topo, co = assembly.topology, assembly.coefficients(assembly.table(1, 1.0))
     angles, parts, e, bent = iter([one.angle for one in line.elements if one.kind == "HookeJoint"]), [], 0, 0
@@ -83,7 +86,7 @@ def real_shape(rng: np.random.Generator, line: tn.Driveline) -> Shape:
             e += 1
         elif station.link is LinkKind.JOINT:
             plane = -float(co.shift[0, s])
-            parts.append(Part("hooke", {"angle": next(angles) * rng.uniform(1, 3), "plane": plane}))
+            parts.append(Part("hooke", {"angle": min(next(angles) * rng.uniform(1, 3), STEEPEST), "plane": plane}))
             bent = s
         elif station.link is LinkKind.RATIO:
             assert bent == max(topo.joints)
