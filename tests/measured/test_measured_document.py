@@ -79,7 +79,7 @@ def test_the_command(tmp_path: Path) -> None:
     data += ["--line", str(tmp_path / "thought.toml")]
     over = CliRunner().invoke(app, ["compare-measured", *data, "-o", str(tmp_path / "over.png")])
     assert over.exit_code == 0 and "its peak comes 8.3 % later, 7.7 % larger" in over.stdout, over.output
-    free = ["--free", "Shaft 1.stiffness:10 kN*m/rad:40 kN*m/rad"]
+    free = ["--free", "Shaft 1.stiffness:10000:40 kN*m/rad"]
     better = tmp_path / "better.toml"
     asked = ["identify", *data, *free, "--json", "--write", str(better), "-o", str(tmp_path / "fit.png")]
     fit = CliRunner().invoke(app, asked)

@@ -178,16 +178,24 @@ def compare_measured(
     )  # fmt: skip
 
 
-def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[str, str]]:
+def _bounds(asked: CommandInput, text: str, key: str) -> tuple[str, tuple[float | str, float | str]]:
     parts = text.rsplit(":", 2)
     if len(parts) != 3:
         raise InputError(
             "is not a parameter with bounds", key=key, value=text, remedy='write "tube.stiffness:10kN*m/rad:40kN*m/rad"'
         )
-    return parts[0], (parts[1], parts[2])
+    return parts[0], (_end(parts[1]), _end(parts[2]))
 
 
-def _apart(free: list[tuple[str, tuple[str, str]]]) -> dict[str, tuple[str, str]]:
+def _end(text: str) -> float | str:
+    """A bare number is in SI units, as everywhere at the command line."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _apart(free: list[tuple[str, tuple[float | str, float | str]]]) -> dict[str, tuple[float | str, float | str]]:
     """Bounds by parameter, each named once."""
     for name in (twice for k, (twice, _) in enumerate(free) if twice in dict(free[:k])):
         raise InputError("is named twice", key="--free", value=name, remedy="give it one pair of bounds")
@@ -208,7 +216,7 @@ def identify(
     measurement: Recorded,
     *,
     line: NeededLine,
-    free: Annotated[list[tuple[str, tuple[str, str]]], OptionReader(_bounds, several=True)],
+    free: Annotated[list[tuple[str, tuple[float | str, float | str]]], OptionReader(_bounds, several=True)],
     orders: Annotated[list[float] | None, OptionReader(_orders)],
     reference: str = "",
     calibration: Annotated[Any, OptionReader(_reference_run)],
