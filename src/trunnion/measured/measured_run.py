@@ -13,7 +13,7 @@ from trunnion.measured.tracking.result import MeasuredOrders
 STEADY = 1e-4
 """Share within which speeds are one."""
 PARTS = 4
-"""Parts of a run whose accelerations are compared."""
+"""Parts of a run whose accelerations are compared, fewer where each had fewer than two windows."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +50,8 @@ def measured_run(data: MeasuredOrders) -> MeasuredRun | None:
     if len(time) < 2:
         return MeasuredRun(low, high, data.acceleration, data.acceleration, data.acceleration)
     slopes = [_slope(time, speed)]
-    if len(time) >= 4 * PARTS:
-        slopes += [_slope(*part) for part in zip(*(np.array_split(one, PARTS) for one in (time, speed)), strict=True)]
+    if (parts := min(PARTS, len(time) // 2)) > 1:
+        slopes += [_slope(*part) for part in zip(*(np.array_split(one, parts) for one in (time, speed)), strict=True)]
     if not slopes[0]:
         return None
     return MeasuredRun(low, high, slopes[0], min(slopes), max(slopes))
