@@ -27,6 +27,8 @@ STABILITY = "stability"
 WHOLE = "the same for every speed between; None of a single speed, and where the listed ones alone were asked for"
 UNSEARCHED = "; what lies between these speeds was not searched"
 """Regions of instability may be narrower than the steps of the speed."""
+ROUNDING = 1e-12
+"""Share of the range below which a window is none."""
 
 
 class LimitKind(IntEnum):
@@ -253,11 +255,11 @@ class StableLimit(Result):
 
 def _between(ranges: Array, low: float, high: float) -> Array:
     """What of ``low`` to ``high`` is in none of ``ranges`` (ranges, 2)."""
-    left, at = [], low
+    left, at, rounding = [], low, ROUNDING * (high - low)
     for begin, end in sorted(ranges.tolist()):
-        if begin > at:
+        if begin > at + rounding:
             left.append((at, begin))
         at = max(at, end)
-    if at < high:
+    if at < high - rounding:
         left.append((at, high))
     return np.array(left).reshape(-1, 2)
