@@ -254,6 +254,19 @@ def test_what_is_not_known_of_the_lag_is_said(swept: tn.MeasuredOrders) -> None:
     assert "The speed goes up and down" in cautions(tn.compare_measured(line(), around))
 
 
+def test_torques_that_accelerate_and_are_not_counted_are_said(swept: tn.MeasuredOrders) -> None:
+    """Where an excitation follows the load of its disk; they are counted of the line itself."""
+    words = "The torques that accelerate the line in this run are not counted"
+    assert words not in said(tn.compare_measured(line(), swept))
+    shaken = [{"order": 2, "torques": [-50.0, 50.0], "amplitudes": [0.1, 0.2]}]
+    followed = line().replace("hub", excitation=shaken, load_torque=20.0)
+    assert f"{words}: an excitation follows the load of its disk." in said(tn.compare_measured(followed, swept))
+
+
+def said(found: MeasuredComparison | Identification) -> str:
+    return " ".join(one.sentence for one in found.findings)
+
+
 def recorded_windows() -> tn.MeasuredOrders:
     """A run in more windows."""
     run = tn.measure(line(), (FIRST, LAST), 4.0, {"input": TEETH}, gauges=["tube"], pitch_error=0.0)

@@ -35,9 +35,7 @@ def accelerating(assembly: Assembly, table: Array, acceleration: float) -> Array
     acceleration : of the input [rad/s²], negative in a run-down.
     """
     topo, column = assembly.topology, assembly.packed.column
-    if not acceleration or assembly.stated is not None or any(_by_load(rotor) for _, rotor in topo.rotors):
-        return table
-    if topo.free and not given_shares(topo, column, table).any():
+    if not acceleration or not_accelerated(assembly, table):
         return table
     _, first, of_row = np.unique(table[:, 1:], axis=0, return_index=True, return_inverse=True)
     inertia = assembly.coefficients(table[first], statically_twisted=False, free_play=True).inertia
@@ -49,6 +47,18 @@ def accelerating(assembly: Assembly, table: Array, acceleration: float) -> Array
             done.add(station)
             found[:, at] += torque[:, station]
     return found
+
+
+def not_accelerated(assembly: Assembly, table: Array) -> str:
+    """Why ``accelerating`` leaves a line as it is, as a clause; empty where it does not."""
+    topo = assembly.topology
+    if assembly.stated is not None:
+        return "a torque converter would run at another slip"
+    if any(_by_load(rotor) for _, rotor in topo.rotors):
+        return "an excitation follows the load of its disk"
+    if topo.free and not given_shares(topo, assembly.packed.column, table).any():
+        return "no disk of the line has a drive_share"
+    return ""
 
 
 def _by_load(rotor: Rotor) -> bool:

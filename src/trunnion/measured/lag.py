@@ -16,6 +16,8 @@ from trunnion.results.finding import Finding, Gravity
 from trunnion.results.units import figures
 from trunnion.results.words import Words
 
+WIDE = 0.01
+"""Share by which the speed changes from which a recording counts as a run, in what is said of it."""
 TELLS = 0.02
 """Share of an amplitude from which the lag is said, and from which what is not known of it is."""
 EVEN = 0.005
@@ -64,6 +66,8 @@ def lag_findings(channels: PredictedChannels, found: RunResponse | None) -> Iter
             "the line lags is not counted: the steady response is compared; take a run-up or a run-down by itself.",
         )
         return
+    if run.high - run.low > WIDE * run.high and (why := channels.uncounted):
+        yield Finding(Gravity.NOTE, f"The torques that accelerate the line in this run are not counted: {why}.")
     if found is None:
         yield Finding(
             Gravity.CAUTION,

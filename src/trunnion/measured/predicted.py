@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Array, Complex, Flags
 from trunnion.driveline.refusals import nearest
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.inertia_torque import accelerating
+from trunnion.equations.inertia_torque import accelerating, not_accelerated
 from trunnion.equations.steady_base import has_periodic_base
 from trunnion.errors import InputError
 from trunnion.measured.measured_run import measured_run
@@ -58,6 +58,20 @@ class PredictedChannels:
             except InputError:
                 pass  # a spring goes into its free play, say, or a machine is asked for more than it has
         return self._steady(table)
+
+    @property
+    def uncounted(self) -> str:
+        """Why the torques that accelerate the line are not counted, as a clause; empty where they are."""
+        if not self.acceleration:
+            return ""
+        table = self.assembly.table(len(self.data.speed), self.data.speed)
+        if why := not_accelerated(self.assembly, table):
+            return why
+        try:
+            self._steady(accelerating(self.assembly, table, self.acceleration))
+        except InputError as error:
+            return str(error).splitlines()[0]
+        return ""
 
     def _steady(self, table: Array) -> Complex:
         if not has_periodic_base(self.assembly):
