@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from trunnion.numerics.sparse_matrices import LONG, SparseMatrices
+from trunnion.numerics.sparse_matrices import LONG, Pattern, SparseMatrices
 
 
 def banded(cases: int, size: int, seed: int = 0) -> SparseMatrices:
@@ -15,7 +15,7 @@ def banded(cases: int, size: int, seed: int = 0) -> SparseMatrices:
     row, column = np.nonzero(near <= 3)
     values = rng.normal(size=(cases, len(row))) + 1j * rng.normal(size=(cases, len(row))) + 9.0 * (row == column)
     place = rng.permutation(size)
-    return SparseMatrices(size, place[row], place[column], values)
+    return SparseMatrices(Pattern(size, place[row], place[column]), values)
 
 
 @pytest.mark.parametrize("size", [LONG // 4, 3 * LONG])
@@ -26,7 +26,7 @@ def test_solutions_are_those_of_the_whole_matrices(size: int) -> None:
     assert matrices.dense() @ x == pytest.approx(right, abs=1e-11)
     assert matrices.times(x) == pytest.approx(right, abs=1e-11)
     assert matrices.solved(right[..., 0]) == pytest.approx(x[..., 0], abs=1e-12)
-    alone = SparseMatrices(size, matrices.row, matrices.column, matrices.values[:1])
+    alone = SparseMatrices(matrices.pattern, matrices.values[:1])
     for one, given in zip(alone.solved(right[..., 0]), right[..., 0], strict=True):  # one matrix, four cases
         assert alone.dense()[0] @ one == pytest.approx(given, abs=1e-11)
 

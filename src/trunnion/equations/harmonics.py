@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex
+from trunnion.arrays import Array, Complex, Integers
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.elements import Disk, Rotor
 from trunnion.driveline.excitation import Excitation
@@ -31,7 +31,7 @@ from trunnion.equations.coefficients import Assembly, mesh_harmonics
 from trunnion.equations.graph_matrices import turning_of
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.topology import Mesh, Topology
+from trunnion.equations.topology import LinkKind, Mesh, Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
 
@@ -46,12 +46,13 @@ class BaseOfExcitation:
 
     relative (case, time, station): r from a group's first station; rotation (case, time, station): deviation of the
     base motion from uniform rotation [rad]; turning (case, time, station, n): rotation per rotation of every unknown,
-    of a line that is not a tree.
+    of a line that is not a tree; even: stations that turn evenly with their group, whatever the angles.
     """
 
     relative: Array
     rotation: Array
     turning: Array | None = None
+    even: frozenset[int] = frozenset()
 
 
 def base_of_excitation(
@@ -62,7 +63,17 @@ def base_of_excitation(
     alike = untwisted is coefficients and not any(law.nonuniform for law in coefficients.joints)
     uniform = motion if alike else base_motion(topo, untwisted.straight, tau)
     turning = turning_of(topo, coefficients, tau).value if topo.graph else None
-    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle, turning)
+    return BaseOfExcitation(motion.relative, motion.angle - uniform.angle, turning, _in_front_of_joints(topo))
+
+
+def _in_front_of_joints(topo: Topology) -> frozenset[int]:
+    """Stations that no joint drives."""
+    found: set[int] = set()
+    for s, station in enumerate(topo.stations):
+        before = [one for one, _ in station.of] or [station.before]
+        if s == 0 or station.link is not LinkKind.JOINT and found.issuperset(before):
+            found.add(s)
+    return frozenset(found)
 
 
 @dataclass(frozen=True)
@@ -84,9 +95,11 @@ class LineHarmonic(Harmonic):
         ``running``: how disks run there, as far as it is known already."""
 
     @abstractmethod
-    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
-        """g (case, time, n) [N m] of ``size`` (case,); ``spring``: what a compliance resists its twist with (case,
-        time) [N m/rad]."""
+    def forcing(
+        self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring
+    ) -> tuple[Integers, Complex]:
+        """Unknowns (k,) that it acts on and g (case, time, k) [N m] there, of ``size`` (case,); one time where g does
+        not vary over the turn. ``spring``: what a compliance resists its twist with (case, time) [N m/rad]."""
 
 
 @dataclass(frozen=True)
@@ -136,15 +149,16 @@ class DiskTorque(LineHarmonic):
         speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
         return Running(speed, cache(lambda: -assembly.exciting_load(self.element, table)))
 
-    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
+    def forcing(
+        self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring
+    ) -> tuple[Integers, Complex]:
         s = self.station
+        times = slice(0, 1) if s in base.even and base.turning is None else slice(None)
         sense = float(np.sign(float(topo.speed_ratio[s])))
-        turned = np.exp(1j * self.own_order * sense * base.rotation[..., s])
+        turned = sense * size[:, None] * np.exp(1j * self.own_order * sense * base.rotation[:, times, s])
         if base.turning is not None:
-            return np.asarray((sense * size[:, None] * turned)[..., None] * base.turning[:, :, s])
-        g = np.zeros((*turned.shape, topo.size), dtype=complex)
-        g[..., topo.unknown_of[s]] = base.relative[..., s] * sense * size[:, None] * turned
-        return g
+            return _where_it_acts(turned[..., None] * base.turning[:, :, s])
+        return topo.unknown_of[[s]], (base.relative[:, times, s] * turned)[..., None]
 
     def refuse_change(self, elsewhere: str = "tn.order_response") -> None:
         """Refuse an amplitude by the speed where the speed changes; ``elsewhere``: what has it.
@@ -172,18 +186,22 @@ class MeshError(LineHarmonic):
         own = mesh_harmonics(assembly.packed, self.mesh, "transmission_error", table)[self.number - 1]
         return np.asarray(own.complex_amplitude / self.radius)
 
-    def forcing(self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring) -> Complex:
+    def forcing(
+        self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring
+    ) -> tuple[Integers, Complex]:
         e = self.mesh.compliance
         (far, near), station, torque = topo.ends[e], topo.compliances[e].near, spring(e) * size[:, None]
         if base.turning is not None:
             far_end = topo.reference[topo.compliances[e].far_group]
-            return np.asarray(-torque[..., None] * (base.turning[:, :, far_end] - base.turning[:, :, station]))
-        g = np.zeros((*torque.shape, topo.size), dtype=complex)
-        if far >= 0:
-            g[..., far] -= torque
-        if near >= 0:
-            g[..., near] += base.relative[..., station] * torque
-        return g
+            return _where_it_acts(-torque[..., None] * (base.turning[:, :, far_end] - base.turning[:, :, station]))
+        parts = [(i, part) for i, part in ((far, -torque), (near, base.relative[..., station] * torque)) if i >= 0]
+        return np.array([i for i, _ in parts], dtype=np.int64), np.stack([part for _, part in parts], axis=-1)
+
+
+def _where_it_acts(g: Complex) -> tuple[Integers, Complex]:
+    """The unknowns (k,) on which g (case, time, n) acts at all, and g there."""
+    acted = np.flatnonzero(g.any(axis=(0, 1)))
+    return acted, g[..., acted]
 
 
 def line_harmonics(assembly: Assembly, row: Array | None = None) -> tuple[LineHarmonic, ...]:

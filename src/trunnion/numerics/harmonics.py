@@ -125,14 +125,14 @@ def product_blocks(values: Array, h: int) -> Array:
     return out
 
 
-def hill_matrices(
-    s: Any, harmonics: Integers, parts: Sequence[Complex], places: Integers | None = None
+def hill_blocks(
+    harmonics: Integers, parts: Sequence[Complex], places: Integers | None = None
 ) -> list[tuple[Integers, Integers, Complex]]:
-    """Parts of the matrices of P₀ x + P₁ ẋ + P₂ ẍ … for x = Σ X_h exp(s_h t): blocks Σ_p s_l^p P_p,h−l.
+    """Parts of the matrices of each P in P₀ x + P₁ ẋ + P₂ ẍ … for x = Σ X_h exp(s_h t): blocks P_p,h−l.
 
-    Each (row, column, values) as ``SparseMatrices.added`` takes them, X in the order (h, n). s (case, h) [1/s] of the
-    ``harmonics`` (h,); parts (case, count, n, n): Fourier coefficients of each P, as an FFT orders them. ``places``
-    (…,) of that order that are not 0; by default all.
+    Each (row, column, values), X in the order (h, n), values (p, case, …) of the places (…,). ``parts`` (case, count,
+    n, n): Fourier coefficients of each P, as an FFT orders them. ``places`` (…,) of that order that are not 0; by
+    default all.
     """
     count, n = parts[0].shape[1:3]
     apart = harmonics[:, None] - harmonics[None, :]
@@ -144,10 +144,20 @@ def hill_matrices(
         rows, columns = np.nonzero(place == d)
         # Where no P has a number none is kept.
         far, near = np.nonzero(np.any([part[:, d].any(axis=0) for part in parts], axis=0))
-        v = s[:, columns, None]
-        values = sum(v**p * part[:, d, far, near][:, None] for p, part in enumerate(parts))
-        found.append(((rows[:, None] * n + own[far]), (columns[:, None] * n + own[near]), np.asarray(values)))
+        row, column = rows[:, None] * n + own[far], columns[:, None] * n + own[near]
+        values = np.stack([part[:, d, far, near] for part in parts])[:, :, None]
+        found.append((row, column, np.broadcast_to(values, (*values.shape[:2], *row.shape))))
     return found
+
+
+def hill_matrices(s: Any, harmonics: Integers, parts: Sequence[Complex]) -> list[tuple[Integers, Integers, Complex]]:
+    """Parts of the matrices of P₀ x + P₁ ẋ + P₂ ẍ …, as ``hill_blocks`` has them: Σ_p s_l^p P_p,h−l, as
+    ``SparseMatrices.added`` takes them; s (case, h) [1/s] of the ``harmonics`` (h,)."""
+    n = parts[0].shape[2]
+    return [
+        (row, column, np.asarray(sum(s[:, column // n] ** p * one for p, one in enumerate(values))))
+        for row, column, values in hill_blocks(harmonics, parts)
+    ]
 
 
 def solved(matrix: Any, right: Any) -> Any:

@@ -25,14 +25,52 @@ LONG = 100
 """Unknowns from which on it is."""
 
 
+class Pattern:
+    """Places ``row`` and ``column`` (entry,) of the numbers of matrices (size, size), none twice; what follows from
+    them is found once for all matrices of the pattern."""
+
+    def __init__(self, size: int, row: Integers, column: Integers) -> None:
+        self.size, self.row, self.column = size, row, column
+        self._parts: dict[bytes, tuple[Pattern, Integers]] = {}
+
+    def among(self, kept: Flags) -> tuple[Pattern, Integers]:
+        """That of the rows and columns ``kept`` (size,), and which entries are there."""
+        if (known := self._parts.get(key := kept.tobytes())) is None:
+            place, both = np.cumsum(kept) - 1, np.flatnonzero(kept[self.row] & kept[self.column])
+            row, column = place[self.row[both]], place[self.column[both]]
+            known = self._parts[key] = Pattern(int(kept.sum()), row, column), both
+        return known
+
+    @cached_property
+    def band(self) -> tuple[Integers, int]:
+        """The place of each unknown along the band, and how far from the diagonal the band reaches."""
+        pattern = csr_array((np.ones(len(self.row)), (self.row, self.column)), shape=(self.size, self.size))
+        place = np.empty(self.size, dtype=np.int64)
+        place[reverse_cuthill_mckee(pattern.tocsr())] = np.arange(self.size)
+        return place, int(np.abs(place[self.row] - place[self.column]).max(initial=0))
+
+
 @dataclass(frozen=True, eq=False)
 class SparseMatrices:
-    """Matrices (case, size, size): ``values`` (case, entry) at ``row`` and ``column`` (entry,), no place twice."""
+    """Matrices (case, size, size): ``values`` (case, entry) at the places of a ``pattern``."""
 
-    size: int
-    row: Integers
-    column: Integers
+    pattern: Pattern
     values: NDArray[Any]
+
+    @property
+    def size(self) -> int:
+        """Rows, and columns."""
+        return self.pattern.size
+
+    @property
+    def row(self) -> Integers:
+        """Of every entry (entry,)."""
+        return self.pattern.row
+
+    @property
+    def column(self) -> Integers:
+        """Of every entry (entry,)."""
+        return self.pattern.column
 
     @staticmethod
     def added(size: int, parts: Sequence[Part]) -> SparseMatrices:
@@ -41,10 +79,11 @@ class SparseMatrices:
         values = np.concatenate([part[2].reshape(len(part[2]), -1) for part in parts], axis=1)
         place, of = np.unique(row * size + column, return_inverse=True)
         if len(place) == len(row):
-            return SparseMatrices(size, row, column, values)
+            return SparseMatrices(Pattern(size, row, column), values)
         order = np.argsort(of, kind="stable")
         first = np.searchsorted(of[order], np.arange(len(place)))
-        return SparseMatrices(size, place // size, place % size, np.add.reduceat(values[:, order], first, axis=1))
+        pattern = Pattern(size, place // size, place % size)
+        return SparseMatrices(pattern, np.add.reduceat(values[:, order], first, axis=1))
 
     def dense(self) -> NDArray[Any]:
         """All numbers, (case, size, size)."""
@@ -54,10 +93,8 @@ class SparseMatrices:
 
     def among(self, kept: Flags) -> SparseMatrices:
         """The rows and columns ``kept`` (size,)."""
-        place = np.cumsum(kept) - 1
-        both = kept[self.row] & kept[self.column]
-        row, column = place[self.row[both]], place[self.column[both]]
-        return SparseMatrices(int(kept.sum()), row, column, self.values[:, both])
+        pattern, both = self.pattern.among(kept)
+        return SparseMatrices(pattern, self.values[:, both])
 
     def rows(self, kept: Flags) -> NDArray[Any]:
         """The rows ``kept`` (size,) alone, all numbers of them, (case, kept, size)."""
@@ -68,7 +105,7 @@ class SparseMatrices:
 
     def only(self, kept: Flags) -> SparseMatrices:
         """The entries ``kept`` (entry,)."""
-        return SparseMatrices(self.size, self.row[kept], self.column[kept], self.values[:, kept])
+        return SparseMatrices(Pattern(self.size, self.row[kept], self.column[kept]), self.values[:, kept])
 
     def times(self, x: NDArray[Any]) -> NDArray[Any]:
         """Products (case, size, …) with x (case, size, …), or with the one of all cases (1, size, …)."""
@@ -77,26 +114,18 @@ class SparseMatrices:
         made = [csr_array((v, (self.row, self.column)), shape) @ one for v, one in zip(self.values, every, strict=True)]
         return np.stack(made)
 
-    @cached_property
-    def _band(self) -> tuple[Integers, int]:
-        """The place of each unknown along the band, and how far from the diagonal the band reaches."""
-        pattern = csr_array((np.ones(len(self.row)), (self.row, self.column)), shape=(self.size, self.size))
-        place = np.empty(self.size, dtype=np.int64)
-        place[reverse_cuthill_mckee(pattern.tocsr())] = np.arange(self.size)
-        return place, int(np.abs(place[self.row] - place[self.column]).max(initial=0))
-
     def solved(self, right: NDArray[Any]) -> NDArray[Any]:
         """Solutions (case, size) or (case, size, k) under ``right`` of that shape; NaN where a matrix is singular or
         not finite. One matrix serves any number of cases."""
         alone = len(self.values) == 1 and right.ndim == 2
         columns = right.T[None] if alone else right.reshape(len(right), self.size, -1)
-        wide = self.size < LONG or self._band[1] > NARROW * self.size
+        wide = self.size < LONG or self.pattern.band[1] > NARROW * self.size
         found = solved(self.dense(), columns) if wide else self._by_band(columns)
         return np.ascontiguousarray(found[0].T) if alone else found.reshape(right.shape)
 
     def _by_band(self, right: NDArray[Any]) -> NDArray[Any]:
         """``solved`` of matrices and right sides (case, size, k), as many of them."""
-        place, reach = self._band
+        place, reach = self.pattern.band
         (solve,) = lapack.get_lapack_funcs(("gbsv",), (self.values, right))
         out = np.full(right.shape, np.nan, dtype=np.result_type(self.values, right))
         for values, given, found in zip(self.values, right, out, strict=True):

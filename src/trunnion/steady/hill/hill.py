@@ -12,7 +12,7 @@ sidebands turn its sign, which equations in time cannot do.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import LineMatrices
 from trunnion.equations.topology import Topology
 from trunnion.numerics import harmonics as fourier
-from trunnion.numerics.sparse_matrices import Part, SparseMatrices
+from trunnion.numerics.sparse_matrices import Part, Pattern, SparseMatrices
 from trunnion.steady.hill.straight import SINGULAR
 
 NARROW = 1e-2
@@ -33,6 +33,8 @@ RESIDUAL = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
+MOST_WRITTEN = 4
+"""Matrices that are kept written out for other carriers."""
 
 
 def interpolation_nodes(speed: Array, co: LineCoefficients) -> Array | None:
@@ -89,14 +91,12 @@ class HillBlocks:
         self.topo, self.loss, self.step, self.linearised = topo, loss, step, linearised
         self.times = matrices.mass.shape[1]
         self.mass, self.damping, self.stiffness, self.ratio = (
-            np.fft.fft(part, axis=1) / self.times
-            for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
+            _coefficients(part) for part in (matrices.mass, matrices.damping, matrices.stiffness, matrices.ratio)
         )
-        self.elongations = (
-            None if matrices.elongations is None else np.fft.fft(matrices.elongations, axis=1) / self.times
-        )
+        self.elongations = None if matrices.elongations is None else _coefficients(matrices.elongations)
         parts = [np.abs(part).max(axis=(0, 2, 3)) for part in (self.mass, self.damping, self.stiffness)]
         self.kept = np.any([part > ROUNDING * part.max() for part in parts], axis=0)
+        self._written: dict[bytes, _WrittenOut] = {}
 
     def solve(self, weights: Array | None, carrier: Array, harmonics: Integers, rim: Flags, right: Complex) -> Complex:
         """X (case, h, n) at ``harmonics`` (h,) of G (node, h, n), of the cases that ``weights`` carry to; ``carrier``
@@ -120,13 +120,40 @@ class HillBlocks:
     def matrices(self, s: Complex, harmonics: Integers, at_rest: Iterable[int] = ()) -> SparseMatrices:
         """The matrices (node, h·n, h·n) at s (node, h) [1/s] of the ``harmonics`` (h,); what a free line turns as a
         whole in those ``at_rest``, or oil alone drags along, which nothing resists at rest, is taken to be zero."""
-        parts = (self.stiffness, self.damping, self.mass)
-        found = fourier.hill_matrices(s, harmonics, parts, np.flatnonzero(self.kept))
-        if self.loss.any():
-            apart = (harmonics[:, None] - harmonics[None, :]) % self.times
-            found += self._of_loss(apart, np.sign(s.imag))
-        found += [self._rigid_motion_condition(h) for h in at_rest]
-        return SparseMatrices.added(len(harmonics) * self.topo.size, found)
+        written = self._written_out(harmonics, np.sign(s.imag))
+        found = SparseMatrices(written.pattern, written.at(s))
+        if not (held := [self._rigid_motion_condition(h) for h in at_rest]):
+            return found
+        return SparseMatrices.added(found.size, [(found.row, found.column, found.values), *held])
+
+    def _written_out(self, harmonics: Integers, sign: Array) -> _WrittenOut:
+        """The matrices of ``harmonics`` (h,) whose frequencies have a ``sign`` (node, h): alike for all carriers."""
+        key = (harmonics - harmonics[0]).tobytes() + sign.tobytes() * bool(self.loss.any())
+        if (known := self._written.pop(key, None)) is None:
+            known = self._put_together(harmonics, sign)
+        self._written[key] = known  # the latest comes last
+        for oldest in list(self._written)[:-MOST_WRITTEN]:
+            del self._written[oldest]
+        return known
+
+    def _put_together(self, harmonics: Integers, sign: Array) -> _WrittenOut:
+        apart = (harmonics[:, None] - harmonics[None, :]) % self.times
+        loss = self._of_loss(apart, sign) if self.loss.any() else []
+        size, nodes = len(harmonics) * self.topo.size, len(self.step)
+        parts = fourier.hill_blocks(harmonics, (self.stiffness, self.damping, self.mass), np.flatnonzero(self.kept))
+        row, column = (np.concatenate([part[k].ravel() for part in [*parts, *loss]]) for k in range(2))
+        place, of = np.unique(row * size + column, return_inverse=True)
+        numbers = np.zeros((3, nodes, len(place)), dtype=complex)
+        done = 0
+        for part in parts:
+            entries = of[done : done + part[0].size]
+            numbers[..., entries] += part[2].reshape(3, nodes, -1)
+            done += len(entries)
+        for rows, _, values in loss:
+            entries = of[done : done + rows.size]
+            numbers[0][:, entries] += values.reshape(nodes, -1)  # no part names a place twice
+            done += len(entries)
+        return _WrittenOut(Pattern(size, place // size, place % size), place % size // self.topo.size, numbers)
 
     def _rigid_motion_condition(self, h: int) -> Part:
         n, joined = self.topo.size, self.topo.elongations[list(self.topo.dragged)]
@@ -172,6 +199,30 @@ class HillBlocks:
                 parts |= {(far, near): -loss[:, :, None] * ratio, (near, far): -ratio * loss[:, None, :]}
             put_all(parts)
         return found
+
+
+@dataclass(frozen=True, eq=False)
+class _WrittenOut:
+    """Matrices of a ``pattern`` as functions of s: ``numbers`` (power, node, entry), each multiplied by the s of the
+    harmonic (entry,) in its column."""
+
+    pattern: Pattern
+    harmonic: Integers
+    numbers: Complex
+
+    def at(self, s: Complex) -> Complex:
+        """Their entries (node, entry) at s (node, h) [1/s]."""
+        own = s[:, self.harmonic]
+        stiffness, damping, mass = self.numbers
+        return np.asarray(stiffness + own * (damping + own * mass))
+
+
+def _coefficients(values: Array) -> Complex:
+    """Fourier coefficients (case, h, …) of values (case, time, …) over a period, zero where those are."""
+    some = values.any(axis=(0, 1))
+    found = np.zeros(values.shape, dtype=complex)
+    found[:, :, some] = np.fft.fft(values[:, :, some], axis=1) / values.shape[1]
+    return found
 
 
 def _with_rim(

@@ -64,7 +64,9 @@ FLOOR = 1e-9
 SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
 MOST_NUMBERS = 1_500_000
-"""Complex numbers of a batch of matrices: bounded memory, and steps of progress."""
+"""Complex numbers of a batch of vectors: bounded memory, and steps of progress."""
+MOST_IN_MATRICES = 4 * MOST_NUMBERS
+"""Those of a batch of matrices, zeros counted, which are not held where the rest is a narrow band."""
 
 
 def order_spectrum(
@@ -229,6 +231,7 @@ class _SpectrumProblem:
             from trunnion.steady.orders.steady_state_orders import SteadyStateOrders
 
             self.own = SteadyStateOrders(assembly, motions)
+        self.plans: dict[float, tuple[list[CarrierGroup], SideOrders, int]] = {}
         self.rates = {int(rate * self.turns) for rate in self.topo.rates}
         self.fall: dict[int, float] | None = None
         self.reach: float = ROUGH_REACH if rough else _reach(one.joints)
@@ -259,10 +262,12 @@ class _SpectrumProblem:
 
     def _plan(self, reach: float) -> tuple[list[CarrierGroup], SideOrders, int]:
         """Groups, the side orders of their harmonics, and samples over the period that resolve them."""
-        sides = self._sides(reach)
-        groups = [OWN, *groups_of(self.acting, 1 / self.turns, sides.width)]
-        widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
-        return groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+        if reach not in self.plans:
+            sides = self._sides(reach)
+            groups = [OWN, *groups_of(self.acting, 1 / self.turns, sides.width)]
+            widest = max(int(np.ptp(sides.of(group)[0])) for group in groups) + 1
+            self.plans[reach] = groups, sides, 1 << int(np.ceil(np.log2(max(64, 4 * widest))))
+        return self.plans[reach]
 
     def _sides(self, reach: float) -> SideOrders:
         if self.fall is None:
@@ -283,7 +288,7 @@ class _SpectrumProblem:
             return max(1, MOST_NUMBERS // (most if self.few is not None else max(most, times * n)))
         # To look around, equations that stand for all speeds are written out once.
         written = 0 if self.rough and self.few is not None else 4 * times * n**2
-        return max(1, MOST_NUMBERS // max(most**2, written))
+        return max(1, MOST_IN_MATRICES // max(most**2, written))
 
     def seconds(self, cases: int) -> float:
         """Processor time that so many cases take, about, in the harmonics that are reached by now."""
@@ -487,16 +492,16 @@ class _SpectrumProblem:
             def spring(e: int, turns: Array = nu[:, at, None]) -> Complex:
                 return np.asarray(co.stiffness[:, e, None] * wave[..., e] + 1j * turns * co.damping[:, e, None])
 
-            force = one.forcing(self.topo, size, base, spring)
+            acted, force = one.forcing(self.topo, size, base, spring)
             if isinstance(one, MeshError):
                 error[:, at, one.mesh.compliance] += size
-            if force.shape[1] == 1 and not isinstance(mass, np.ndarray):  # nothing varies over the turn
-                right[:, at] += force[:, 0]
+            if isinstance(mass, np.ndarray):
+                force = force / mass[..., acted]
+            if force.shape[1] == 1:  # nothing varies over the turn
+                right[:, at, acted] += force[:, 0]
                 continue
             near = 4 * np.abs(h - m) < force.shape[1]  # harmonics that the samples resolve
-            acted = np.flatnonzero(force.any(axis=(0, 1)))
-            over = mass[..., acted] if isinstance(mass, np.ndarray) else mass
-            right[:, np.flatnonzero(near)[:, None], acted] += self._harmonics(force[..., acted] / over, h[near] - m)
+            right[:, np.flatnonzero(near)[:, None], acted] += self._harmonics(force, h[near] - m)
         return right, error
 
     def _harmonics(self, values: NDArray[Any], h: Integers) -> Complex:

@@ -97,7 +97,8 @@ def _excited(
             return np.asarray(co.stiffness[:, e, None] * matrices.wave[..., e] + 1j * (nu * co.damping[:, e])[:, None])
 
         turned = np.exp(1j * np.outer(nu / speed, tau))
-        found += (one.forcing(topo, one.size(assembly, table), base, spring) * turned[..., None]).real
+        acted, g = one.forcing(topo, one.size(assembly, table), base, spring)
+        found[..., acted] += (g * turned[..., None]).real
     return found
 
 
