@@ -170,7 +170,7 @@ from trunnion.response.kinetostatics import assembly_sensitivity as assembly_sen
 from trunnion.response.kinetostatics import check_limits as check_limits
 from trunnion.response.kinetostatics import kinetostatics as kinetostatics
 from trunnion.response.kinetostatics import phase_forks as phase_forks
-from trunnion.response.orders.misfire import misfire as misfire
+from trunnion.response.misfire import misfire as misfire
 from trunnion.response.orders.response import order_response as order_response
 from trunnion.response.peaks.certify_peaks import certify_peaks as certify_peaks
 from trunnion.response.speed_sweep import speed_sweep as speed_sweep

@@ -121,7 +121,10 @@ ANALYSES = (
         "order_response",
         "Vibratory torque of every shaft and mesh over speed, order by order, with stress, heat and speed fluctuation.",
         features="linear motion",
-        pictures={"OrderResponse.plot": "trunnion.pictures.orders:order_response"},
+        pictures={
+            "OrderResponse.plot": "trunnion.pictures.orders:order_response",
+            "Misfire.plot": "trunnion.pictures.orders:misfire",
+        },
         command="trunnion.cli.orders:order_response",
         view="orders",
     ),

@@ -234,6 +234,7 @@ OF_A_MOTOR = {"breakdown_torque": 9.0, "breakdown_slip": 0.2, "synchronous_speed
 
 
 PUMP = Disk(inertia=1, name="pump")
+SILENT = Disk(inertia=1, drive_share=1, firing_angles=[0, 1], excitation=[{"order": 2, "amplitude": 1}])
 
 
 def torque(**given):
@@ -707,6 +708,16 @@ PYTHON = [
         lambda: tn.misfire(line(Disk(inertia=1), Shaft(stiffness=1), Disk(inertia=1)), [1.0]),
         "driveline.firing_angles: has no cylinders that could misfire",
         "firing_angles",
+    ),
+    (
+        lambda: tn.misfire(line(SILENT, Shaft(stiffness=1), Disk(inertia=1))),
+        "operation.speed_range: has no range of speeds to search",
+        "speed_range = ",
+    ),
+    (
+        lambda: tn.misfire(line(SILENT, Shaft(stiffness=1), Disk(inertia=1)), speed_range=(20.0, 10.0)),
+        "speed_range = (20.0, 10.0): is not a rising range of speeds",
+        "tn.rpm",
     ),
     (lambda: tn.reciprocating_mass(0, 0.04, 0.15), "mass = 0: must be positive", "kg"),
     (lambda: tn.reciprocating_mass(1, 0.04, 0.03), "rod_length = 0.03: must be longer than the crank", "mm"),

@@ -184,6 +184,78 @@ def test_a_misfire_brings_half_orders_and_the_worst_is_found():
     assert silent.vibratory_torque == pytest.approx(np.full((4, 1), silent.normal[0])), "masses go on moving"
 
 
+BENT = """format = 1
+[operation]
+speed_range = ["900 rpm", "2000 rpm"]
+[[element]]
+type = "Engine"
+name = "engine"
+firing_order = "1-3-2"
+bore = "110 mm"
+stroke = "130 mm"
+rod_length = "220 mm"
+reciprocating_mass = "2.2 kg"
+throw_inertia = "0.05 kg*m^2"
+throw_stiffness = "1.2 MN*m/rad"
+loss_factor = 0.01
+mean_indicated_pressure = ["2 bar", "20 bar"]
+peak_pressure = ["50 bar", "120 bar"]
+charge_pressure = ["1 bar", "2 bar"]
+compression_ratio = 14
+polytropic_exponent = 1.35
+drive_share = 1
+[[element]]
+type = "Shaft"
+name = "coupling"
+stiffness = "9 kN*m/rad"
+damping = "6 N*m*s/rad"
+[[element]]
+type = "HookeJoint"
+angle = "9 deg"
+[[element]]
+type = "Disk"
+name = "middle"
+inertia = "0.6 kg*m^2"
+[[element]]
+type = "Shaft"
+name = "tail"
+stiffness = "60 kN*m/rad"
+damping = "8 N*m*s/rad"
+[[element]]
+type = "Disk"
+name = "screw"
+inertia = "1.5 kg*m^2"
+quadratic_load = "0.008 N*m*s^2/rad^2"
+"""
+
+
+def test_largest_torques_of_a_bent_engine_line_are_searched_between_two_speeds(tmp_path):
+    """Against a grid of its own, closer than the search looks, and closer still about its highest speed."""
+    (tmp_path / "line.toml").write_text(BENT)
+    line = tn.load(tmp_path / "line.toml")
+    found = tn.misfire(line)
+    low, high = line.operation.speed_range
+    assert 0 <= found.missing < 1e-4
+    assert found.response.speed[[0, -1]] == pytest.approx([low, high])
+    number = found.worst[1]
+    seen = {0: found.normal, number: found.vibratory_torque[found.cylinders.index(found.worst)]}
+    for cylinder, largest in seen.items():
+        one = line.replace("engine", misfiring=cylinder) if cylinder else line
+        speeds = np.linspace(low, high, 367)
+        torque = tn.order_response(one, speeds).vibratory_torque
+        for spring in range(len(found.springs)):
+            top = speeds[torque[:, spring].argmax()]
+            near = np.linspace(max(low, top - 0.5), min(high, top + 0.5), 61)
+            by_grid = max(torque[:, spring].max(), tn.order_response(one, near).vibratory_torque[:, spring].max())
+            assert largest[spring] == pytest.approx(by_grid, rel=1e-4), found.springs[spring]
+            assert largest[spring] >= by_grid * (1 - found.missing - 1e-9)
+    assert f"the largest over {found.words.ranges([(low, high)])}, searched: short by" in str(found)
+    within = tn.misfire(line, speed_range=(low, 1.1 * low))
+    assert within.speed.max() <= 1.1 * low and np.all(within.normal <= found.normal * (1 + 1e-4))
+    drawn = found.plot()
+    assert f"cylinder {number} of engine misfiring" in drawn.get_title(loc="left") + drawn.get_title()
+
+
 def test_every_cylinder_is_named_with_what_it_does_most():
     line = engine(excitation=GAS, firing_angles=FOUR)
     found = tn.misfire(line, np.linspace(200.0, 400.0, 61))

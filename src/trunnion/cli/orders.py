@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from trunnion.design.limits.result import StableLimit
     from trunnion.driveline.driveline import Driveline
-    from trunnion.response.orders.misfire import Misfire
+    from trunnion.response.misfire import Misfire
     from trunnion.response.orders.result import OrderResponse
     from trunnion.response.speed_sweep import SpeedSweep
     from trunnion.results.finding import Finding
@@ -161,21 +161,23 @@ def order_response(
 
 
 @Command("torque over speed")
-def misfire(line: Line, *, speeds: CloseSpeeds, cut_out: bool = False, unit: SpeedUnit) -> CommandOutput:
+def misfire(
+    line: Line, *, speeds: SearchedSpeeds, cut_out: bool = False, unit: SpeedUnit, progress: Progress
+) -> CommandOutput:
     """Example: trunnion misfire ship.toml --speed 300rpm:800rpm -o misfire.png
 
     --cut-out/--misfiring  Leave a cylinder no gas torque at all, or that of its compression.
     """
-    result = tn.misfire(line, speeds, cut_out=cut_out).in_unit(unit)
-    seen = result.response.in_unit(unit)
+    over: dict[str, Any] = {"speed_range": speeds} if isinstance(speeds, tuple) else {"speeds": speeds}
+    result = tn.misfire(line, **over, cut_out=cut_out, progress=progress).in_unit(unit)
 
     def more() -> None:
-        output.table(result.table())
+        output.table(result.table(), result.looked_at)
         output.table(result.by_cylinder(), "every cylinder out of work in turn")
         output.findings(result.findings)
 
     return CommandOutput(
-        result, draw=partial(seen.plot, operating=line.operation), table=result.data,
+        result, draw=partial(result.plot, operating=line.operation), table=result.data,
         content=lambda: _misfire_json(result), text=lambda: result.headline, more=more,
     )  # fmt: skip
 

@@ -16,6 +16,7 @@ from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
 from trunnion.pictures.looks import curve
 from trunnion.pictures.picture import Axis, Band, Item, Level, Line, Picture, single
 from trunnion.pictures.shared import over_speed, place_of, printed, stretches
+from trunnion.response.misfire import Misfire
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.speed_sweep import SpeedSweep
 from trunnion.results.speeds import order_name, speed_factor
@@ -92,6 +93,18 @@ def torque_by_order(
     if largest > 0:
         up = up.logarithmic(low / 2, 2 * max([largest, *known.values()]))
     return over_speed(x, unit, up, items, operating, title=result.springs[column])
+
+
+def misfire(result: Misfire, *, unit: str | None = None, operating: Operation | None = None) -> Picture:
+    """With the worst cylinder out of work: the spring whose torque it raises most, as ``order_response``, beside the
+    largest vibratory torque of the line as stated."""
+    spring, unit = result.raised, unit or result.unit
+    drawn = order_response(result.response, spring=spring, unit=unit, operating=operating)
+    usual = float(result.normal[result.springs.index(spring)])
+    level = Level(usual, "stands", f"largest with {result.stated}: {printed(shown(usual, TORQUE, digits=4))}")
+    return drawn.with_panel(
+        items=(*drawn.panel.items, level), title=f"vibratory torque of {spring}, {result.worst_in_words}"
+    )
 
 
 def course(found: ResponseCurve, *, unit: str, operating: Operation | None = None) -> Picture:

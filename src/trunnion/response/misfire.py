@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.driveline import Driveline
+from trunnion.driveline.operation import Operation
 from trunnion.driveline.silent_cylinders import cylinders, silent_cases
+from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
+from trunnion.response.ranges.largest_torques import largest_torques
+from trunnion.response.speed_sweep import response_over
+from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
@@ -24,7 +31,9 @@ class Misfire(Result):
 
     cylinders: tuple[tuple[str, int], ...] = internal("engine or disk, and number of each")
     springs: tuple[str, ...] = coordinate("spring")
-    vibratory_torque: Array = variable("cylinder spring", "N*m", "largest half of peak-to-peak of the speeds asked for")
+    vibratory_torque: Array = variable(
+        "cylinder spring", "N*m", "largest half of peak-to-peak over the range, or of the speeds asked for"
+    )
     speed: Array = variable("cylinder spring", "rad/s", "input speed where it is largest")
     normal: Array = variable("spring", "N*m", "vibratory torque of the line as stated, mostly with all firing")
     unsettled: Integers = variable(
@@ -36,6 +45,10 @@ class Misfire(Result):
     cut_out: bool = attribute("whether nothing is left of its gas torque", default=False)
     stated: str = attribute("cylinders that are out of work already in the line as stated", default="all firing")
     unsettled_as_stated: int = attribute("speeds without a steady state of the line as stated", default=0)
+    missing: float = attribute(
+        "share of a torque by which it may be larger between the speeds looked at; NaN where they were asked for",
+        default=float("nan"),
+    )
 
     @property
     @computed(coordinate("cylinder"), after="springs")
@@ -53,6 +66,11 @@ class Misfire(Result):
         """The cylinder whose misfire raises the torque of any spring most, relative to the line as stated; before
         all others one that meets undamped resonances."""
         return self.cylinders[_worst(self.vibratory_torque, self.normal, self.unsettled)]
+
+    @property
+    def worst_in_words(self) -> str:
+        """ "cylinder 3 of engine misfiring"."""
+        return f"{self._called(*self.worst)} {'cut out' if self.cut_out else 'misfiring'}"
 
     def _called(self, name: str, number: int) -> str:
         """A disk that carries one cylinder is that cylinder."""
@@ -98,6 +116,26 @@ class Misfire(Result):
         return rows
 
     @property
+    def looked_at(self) -> str:
+        """What the largest values are the largest of; empty of one speed."""
+        if not np.isnan(self.missing):
+            over = self.words.ranges([(float(self.response.speed.min()), float(self.response.speed.max()))])
+            return f"the largest over {over}, searched: short by {100 * self.missing:.1g} % at most"
+        if (count := len(self.response.speed)) > 1:
+            return f"the largest of the {count} speeds asked for; between them it may be larger"
+        return ""
+
+    @property
+    def raised(self) -> str:
+        """The spring whose torque the worst cylinder raises most, relative to the line as stated."""
+        row = self.cylinders.index(self.worst)
+        return self.springs[int(np.nan_to_num(_times(self.vibratory_torque[row], self.normal)).argmax())]
+
+    def plot(self, axes: Axes | None = None, *, unit: str | None = None, operating: Operation | None = None) -> Axes:
+        """Torque of the spring that is raised most, by order over speed; see ``pictures.orders.misfire``."""
+        return drawing(self, "plot")(self, axes, unit=unit, operating=operating)
+
+    @property
     def findings(self) -> tuple[Finding, ...]:
         """What the largest torques leave out."""
         found = []
@@ -111,8 +149,8 @@ class Misfire(Result):
     def _lines(self) -> Iterator[str]:
         row = self.cylinders.index(self.worst)
         yield self.headline
-        if (count := len(self.response.speed)) > 1:
-            yield f"  the largest of the {count} speeds asked for; between them it may be larger"
+        if self.looked_at:
+            yield f"  {self.looked_at}"
         for s, spring in enumerate(self.springs):
             yield (
                 f"  {spring}: vibratory torque {self.vibratory_torque[row, s]:.4g} N m at "
@@ -123,7 +161,15 @@ class Misfire(Result):
             yield f"  {one['cylinder']}: {times:.4g} times as much in {one['most in']}"
 
 
-def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *, cut_out: bool = False) -> Misfire:
+def misfire(
+    line: Driveline,
+    speeds: ArrayLike | None = None,
+    load_case: str | None = None,
+    *,
+    cut_out: bool = False,
+    speed_range: tuple[float, float] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Misfire:
     """Put every cylinder of ``line`` out of work in turn and find the worst.
 
     Cylinders are those of an ``Engine`` and the ``firing_angles`` of disks. The gas in one of an engine that misfires
@@ -134,13 +180,16 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
     Parameters
     ----------
     line : with cylinders.
-    speeds : (speed,) input speeds [rad/s].
+    speeds : (speed,) input speeds [rad/s] to look at, instead of a range.
     load_case : name of one of the line's load cases; by default the loads of its disks.
     cut_out : nothing is left of the gas torque, instead of what compression does.
+    speed_range : lowest and highest input speed [rad/s], by default those of ``operation``: the largest torque of every
+        spring between them is searched for with each cylinder out of work, as ``assess`` searches it.
+    progress : called as progress(share done).
 
     Raises
     ------
-    InputError : no engine and no disk has cylinders; as of ``order_response``.
+    InputError : no engine and no disk has cylinders; no speeds and no range; as of ``order_response``.
 
     Examples
     --------
@@ -157,25 +206,76 @@ def misfire(line: Driveline, speeds: ArrayLike, load_case: str | None = None, *,
         remedy = 'add an Engine, or list the excitation of one cylinder and firing_angles = ["0 deg", "180 deg"], say'
         where = {"element": "driveline", "key": "firing_angles"}
         raise InputError("has no cylinders that could misfire", **where, remedy=remedy)
+    over = (0.0, 0.0) if speeds is not None else _range(line, speed_range)
     # the cylinder first: a load on a throw dissolves its Engine, whose compression would be lost
-    lines = [_loaded(line.replace(one.owner, **{key: one.number}), load_case) for one in found_here]
-    before = order_response(_loaded(line, load_case), speeds)
-    if not before.springs:
+    lines = [line, *(line.replace(one.owner, **{key: one.number}) for one in found_here)]
+    assemblies = [assemble(_loaded(one, load_case)) for one in lines]
+    if not assemblies[0].topology.compliances:
         remedy = "add a Shaft or a Coupling; without one nothing vibrates against anything"
         raise InputError("has no springs, whose torque a misfire could raise", element="driveline", remedy=remedy)
-    normal = before.vibratory_torque
-    found = [order_response(one, speeds) for one in lines]
-    torque = np.stack([one.vibratory_torque for one in found])
-    at = np.nan_to_num(torque).argmax(axis=1)
-    largest, usual = (_largest(one, axis) for one, axis in ((torque, 1), (normal, 0)))
-    lost = np.isnan(torque).any(axis=2).sum(axis=1)
-    worst = _worst(largest, usual, lost)
+    looks = []
+    for k, one in enumerate(assemblies):
+        looks.append(_Look.at(one, speeds) if speeds is not None else _Look.over(one, *over))
+        if progress:
+            progress((k + 1) / (len(assemblies) + 1))
+    stated, *silent = looks
+    largest = np.stack([one.torque for one in silent])
+    lost = np.array([one.lost for one in silent])
+    worst = _worst(largest, stated.torque, lost)
+    response = silent[worst].drawn()
     return Misfire(
-        cylinders=tuple((one.owner, one.number) for one in found_here), springs=found[0].springs,
-        vibratory_torque=largest, speed=found[0].speed[at], normal=usual, line=lines[worst], response=found[worst],
-        unit=found[worst].unit, cut_out=cut_out, unsettled=lost, stated=_stated(line),
-        unsettled_as_stated=int(np.isnan(normal).any(axis=1).sum()),
+        cylinders=tuple((one.owner, one.number) for one in found_here), springs=response.springs,
+        vibratory_torque=largest, speed=np.stack([one.speed for one in silent]), normal=stated.torque,
+        line=assemblies[1 + worst].line, response=response, unit=response.unit, cut_out=cut_out, unsettled=lost,
+        stated=_stated(line), unsettled_as_stated=stated.lost, missing=float(np.max([one.missing for one in looks])),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Look:
+    """What a look at one line shows: largest vibratory torque (spring,) [N m], ``speed`` [rad/s] where, at how many
+    speeds there is no steady state, by what share torques may be larger, and the response to draw."""
+
+    torque: Array
+    speed: Array
+    lost: int
+    missing: float
+    drawn: Callable[[], OrderResponse]
+
+    @classmethod
+    def at(cls, assembly: Assembly, speeds: ArrayLike) -> _Look:
+        """At stated speeds."""
+        return cls._of(order_response(assembly, speeds), np.nan, None)
+
+    @classmethod
+    def over(cls, assembly: Assembly, low: float, high: float) -> _Look:
+        """Searched between two speeds."""
+        found = largest_torques(assembly, low, high)
+        largest = found.largest
+        share = np.divide(largest.error, largest.value, out=np.zeros_like(largest.error), where=largest.value > 0)
+        draw = partial(response_over, assembly, low, high, known=largest.response, around=found.around)
+        return cls._of(largest.response, float(share.max(initial=0.0)), draw)
+
+    @classmethod
+    def _of(cls, found: OrderResponse, missing: float, draw: Callable[[], OrderResponse] | None) -> _Look:
+        torque = found.vibratory_torque
+        lost = int(np.isnan(torque).any(axis=1).sum())
+        at = np.nan_to_num(torque).argmax(axis=0)
+        return cls(_largest(torque), found.speed[at], lost, missing, draw or (lambda: found))
+
+
+def _range(line: Driveline, stated: tuple[float, float] | None) -> tuple[float, float]:
+    """The range of speeds [rad/s] to search."""
+    own = None if line.operation is None else line.operation.speed_range
+    found = own if stated is None else stated
+    remedy = 'state speed_range = ["600 rpm", "2000 rpm"] in [operation], say, or pass speeds'
+    if found is None:
+        raise InputError("has no range of speeds to search", element="operation", key="speed_range", remedy=remedy)
+    low, high = (float(one) for one in found)
+    if not 0 < low < high < np.inf:
+        remedy = "pass (tn.rpm(600), tn.rpm(2000)), say"
+        raise InputError("is not a rising range of speeds", key="speed_range", value=found, remedy=remedy)
+    return low, high
 
 
 def _stated(line: Driveline) -> str:
@@ -186,9 +286,9 @@ def _stated(line: Driveline) -> str:
     return " and ".join(silent) or "all firing"
 
 
-def _largest(torque: Array, axis: int) -> Array:
-    """Over the speeds that have a steady state; NaN where none has."""
-    known = np.where(np.isnan(torque), -np.inf, torque).max(axis=axis)
+def _largest(torque: Array) -> Array:
+    """Over the speeds that have a steady state (spring,); NaN where none has."""
+    known = np.where(np.isnan(torque), -np.inf, torque).max(axis=0)
     return np.where(np.isfinite(known), known, np.nan)
 
 
