@@ -1585,6 +1585,37 @@ PYTHON = [
         "leave it out",
     ),
     (
+        lambda: tn.tolerance_study(
+            tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]),
+            {"Shaft 1.stiffness": 0.1}, 10.0, about_steady_state=True,
+        ),
+        "driveline.about_steady_state = True: has straight joints",
+        "leave it out",
+    ),
+    (
+        lambda: tn.tolerance_study(
+            tn.Driveline([
+                tn.ConstantSpeed(), tn.HookeJoint(angle=0.2), with_play(), tn.Disk(inertia=0.3, load_torque=20.0),
+            ]),
+            {"Disk 1.inertia": 0.1}, 30.0, about_steady_state=True,
+        ),
+        "driveline: is judged about its own periodic motion, and it has stages or play besides",
+        "leave about_steady_state out",
+    ),
+    (
+        lambda: tn.sensitivity(
+            tn.Driveline([tn.ConstantSpeed(), tn.Shaft(stiffness=1e4, damping=2.0), tn.Disk(inertia=0.8)]), 10.0,
+            about_steady_state=True,
+        ),
+        "driveline.about_steady_state = True: has straight joints",
+        "leave it out",
+    ),
+    (
+        lambda: tn.sensitivity(free(drive_share=1), 30.0, of=["frequencies"], about_steady_state=True),
+        "about_steady_state = True: belongs to growth rates",
+        "leave it out",
+    ),
+    (
         lambda: tn.stability_chart(
             tn.PeriodicLinearFamily(np.pi, lambda tau, a: (np.eye(1), np.eye(1), np.eye(1)), 1, {"a": 1.0}),
             ("a", 0.0, 1.0, 3), ("a", 0.0, 1.0, 3), about_steady_state=True,

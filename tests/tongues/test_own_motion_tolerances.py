@@ -58,16 +58,24 @@ def _tolerances(line: tn.Driveline, rng: np.random.Generator) -> dict[str, tuple
     return found
 
 
-@pytest.mark.parametrize("seed", [1008, *(pytest.param(k, marks=pytest.mark.slow) for k in (1000, 1003, 1004, 1006))])
-def test_tolerances_of_random_free_lines(seed: int) -> None:
+TOLERATED = [(k, False) for k in (1008, 1000, 1003, 1004, 1006)] + [(k, True) for k in (3002, 3004, 3006, 3008, 3010)]
+"""Seeds, and whether a drive turns the line."""
+QUICK = (1008, 3008)
+
+
+@pytest.mark.parametrize(
+    ("seed", "driven"),
+    [pytest.param(*one, marks=() if one[0] in QUICK else pytest.mark.slow) for one in TOLERATED],
+)
+def test_tolerances_of_random_lines(seed: int, driven: bool) -> None:
     """The share of stable lines is that of as many lines drawn and integrated by themselves, none of which grows faster
     than the worst line found does."""
-    line, rng = random_swung_line(seed, driven=False)
+    line, rng = random_swung_line(seed, driven)
     modes = SwungTree(line).modes()
     i, j = rng.integers(len(modes), size=2)
     speed = float((modes[i] + modes[j]) / 2 * (1 + rng.uniform(-0.01, 0.01)))
     given = _tolerances(line, rng)
-    study = tn.tolerance_study(line, given, [speed], samples=512)
+    study = tn.tolerance_study(line, given, [speed], samples=512, about_steady_state=driven)
     draws = [{path: rng.uniform(low, high) for path, (_, low, high) in given.items()} for _ in range(100)]
     radius = np.array([SwungTree(moved(line, one)).radius(speed) for one in draws])
     share, scatter = float((radius < 1).mean()), 4 * np.sqrt(0.25 / len(draws))
@@ -93,17 +101,23 @@ def test_the_worst_line_where_motions_swing_too_far_to_be_found_alone() -> None:
     assert np.log(worst) * speed / np.pi == pytest.approx(study.worst.growth_rate, rel=1e-4)
 
 
-@pytest.mark.parametrize("seed", [2010, *(pytest.param(k, marks=pytest.mark.slow) for k in (2003, 2004, 2009))])
-def test_slopes_of_random_free_lines(seed: int) -> None:
+SLOPES = [(k, False) for k in (2010, 2003, 2004, 2009)] + [(k, True) for k in (4000, 4001, 4003, 4004, 4005)]
+
+
+@pytest.mark.parametrize(
+    ("seed", "driven"),
+    [pytest.param(*one, marks=() if one[0] in (2010, 4000) else pytest.mark.slow) for one in SLOPES],
+)
+def test_slopes_of_random_lines(seed: int, driven: bool) -> None:
     """Growth rates and their derivatives lie within the errors stated: radii of which differences are taken are known
     as closely as these need."""
-    line, rng = random_swung_line(seed, driven=False)
+    line, rng = random_swung_line(seed, driven)
     tree = SwungTree(line)
     modes = tree.modes()
     i, j = rng.integers(len(modes), size=2)
     speed = float((modes[i] + modes[j]) / 2 * (1 + rng.uniform(-0.03, 0.03)))
     paths = ["j0.angle", "s0.stiffness", "s1.damping", "d1.inertia", "d2.inertia", "s1.fork_offset"]
-    found = tn.sensitivity(line, [speed], paths, of=["growth"])
+    found = tn.sensitivity(line, [speed], paths, of=["growth"], about_steady_state=driven)
     (row,) = [k for k, one in enumerate(found.quantities) if one.kind == "growth rate"]
     start = tree.motion(speed)
     assert start is not None

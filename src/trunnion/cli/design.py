@@ -19,7 +19,7 @@ from trunnion.cli.command_input import (
     NumberBounds,
     OptionReader,
 )
-from trunnion.cli.options import LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit, Unit
+from trunnion.cli.options import AboutSteadyState, LineOfFile, LoadCase, Progress, SpeedEnds, SpeedUnit, Unit
 from trunnion.cli.places import CommandOutput
 from trunnion.cli.readers import (
     file_of_line,
@@ -128,6 +128,7 @@ def sensitivity(
     check: list[str] | None = None,
     tips: str | None = None,
     draw: str | None = None,
+    about_steady_state: AboutSteadyState = False,
     load_case: LoadCase = None,
     asked: Annotated[CommandInput, InputAttribute("itself")],
 ) -> CommandOutput:
@@ -146,7 +147,7 @@ def sensitivity(
     with output.progress("sensitivity") as advance:
         found = tn.sensitivity(
             line, speed, parameter, of=of or KINDS, checks=check or None, tips=found_tips, load_case=load_case,
-            unit=asked.unit, progress=advance,
+            about_steady_state=about_steady_state, unit=asked.unit, progress=advance,
         )  # fmt: skip
     rows = found.data[["quantity_unit", "kind", "method", "value", "derivative"]]
     return CommandOutput(found, draw=partial(found.plot, draw), table=rows)

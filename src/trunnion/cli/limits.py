@@ -128,6 +128,7 @@ def tolerance_study(
     checks: int = 0,
     samples: int = 1 << 14,
     seed: Annotated[int, NumberBounds(0)] = 0,
+    about_steady_state: AboutSteadyState = False,
     unit: SpeedUnit,
     progress: Progress,
 ) -> CommandOutput:
@@ -141,7 +142,8 @@ def tolerance_study(
     """  # fmt: skip
     found = tn.tolerance_study(
         line, dict(tolerance) if tolerance else None, speed,
-        checks=True if checks < 0 else checks, samples=samples, seed=seed, progress=progress,
+        checks=True if checks < 0 else checks, samples=samples, seed=seed,
+        about_steady_state=about_steady_state, progress=progress,
     )  # fmt: skip
     return CommandOutput(found.in_unit(unit))
 

@@ -25,7 +25,7 @@ from trunnion.design.sensitivity.result import (
     SensitivityRows,
 )
 from trunnion.design.sensitivity.tips import tip_slopes
-from trunnion.design.sensitivity.torques import exact_torque_slopes, free_line_growth, slopes, torques
+from trunnion.design.sensitivity.torques import exact_torque_slopes, own_motion_growth, slopes, torques
 from trunnion.driveline.arguments import several, speeds_of
 from trunnion.driveline.converter_balance import refuse_converters
 from trunnion.driveline.driveline import Driveline
@@ -33,15 +33,17 @@ from trunnion.driveline.operating_speed import operating_speed, speed_unit, stat
 from trunnion.driveline.parameters import Parameter
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.released import NOT_ALIKE, refuse_pendulums
-from trunnion.equations.steady_base import has_periodic_base
+from trunnion.equations.steady_base import has_periodic_base, require_own_motion
 from trunnion.errors import ComputationError, InputError
 from trunnion.features import left_out
 from trunnion.floquet.tongues.result import Tongues
 from trunnion.results.finding import Finding, Gravity, by_gravity
 from trunnion.results.words import Words
+from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
 from trunnion.steady.orders.forced_response import shaft_names
 
 KINDS = ("frequencies", "growth", "torques", "checks")
+OWN_MOTION = "Growth rates are those about the line's own periodic motion, without its excitations."
 MOST_CHECKS = 6
 """Checks that are differentiated unless they are named."""
 
@@ -55,6 +57,7 @@ def sensitivity(
     checks: Iterable[str] | None = None,
     tips: Tongues | None = None,
     load_case: str | None = None,
+    about_steady_state: bool = False,
     unit: str | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Sensitivities:
@@ -62,8 +65,8 @@ def sensitivity(
 
     These are exact: natural frequencies and damping ratios, through the modes; growth rates, through the Floquet mode
     and its adjoint; torques and their limits, through the equations of the response; tips, by implicit
-    differentiation. Other checks, and the torques of free–free lines with joint angles, take differences of fourth
-    order.
+    differentiation. Other checks, growth rates about a line's own motion, and the torques of free–free lines with joint
+    angles take differences of fourth order.
 
     Parameters
     ----------
@@ -77,13 +80,15 @@ def sensitivity(
         the description, or else over that of ``speeds``.
     tips : ``tongues`` of this line with the speed along an axis: where they close.
     load_case : name of one of the line's load cases.
+    about_steady_state : growth rates about the line's own periodic motion, as in ``stability``; nothing else is.
     unit : of speeds in print; default the one of the description.
     progress : called as progress(share done).
 
     Raises
     ------
     InputError : no such parameter, check or load case; speeds that are not positive; a line that an analysis asked for
-        refuses, if nothing else was asked for.
+        refuses, if nothing else was asked for; ``about_steady_state`` without growth rates, or with
+        straight joints.
 
     Examples
     --------
@@ -98,13 +103,19 @@ def sensitivity(
 -0.5 % for +1 % of Shaft 1.stiffness
     """
     kinds = _kinds(of)
+    if about_steady_state and "growth" not in kinds:
+        raise InputError(
+            "belongs to growth rates", key="about_steady_state", value=True, remedy='leave it out, or add of=["growth"]'
+        )
     stated = line if load_case is None else line.with_load(load_case)
     refuse_pendulums(stated, NOT_ALIKE)
     refuse_converters(stated, "derivatives do")
     problem = _SensitivityProblem(
         line=stated, at=_speeds(stated, speeds), directions=directions_of(assemble(stated), parameters),
-        load_case=load_case, unit=unit or speed_unit(line),
+        load_case=load_case, unit=unit or speed_unit(line), about_steady_state=about_steady_state,
     )  # fmt: skip
+    if about_steady_state:
+        require_own_motion(problem.assembly, problem.near.row())
     parts: dict[str, Callable[[], Iterator[SensitivityRows]]] = {
         "frequencies": partial(mode_slopes, problem.near, problem.directions),
         "growth": partial(_growth, problem),
@@ -144,6 +155,7 @@ class _SensitivityProblem:
     directions: tuple[Direction, ...]
     load_case: str | None
     unit: str
+    about_steady_state: bool
     progress: Callable[[float], None] = lambda share: None
     findings: list[Finding] = field(default_factory=list)
 
@@ -179,10 +191,12 @@ def _speeds(line: Driveline, speeds: ArrayLike | None) -> Array:
 
 
 def _growth(problem: _SensitivityProblem) -> Iterator[SensitivityRows]:
-    if has_periodic_base(problem.assembly):
+    if problem.about_steady_state or has_periodic_base(problem.assembly):
         # Its periodic steady state follows every parameter, so lines beside it are judged.
         if len(problem.at):
-            here, slope, error = _by_differences(problem, free_line_growth)
+            like = SteadyStatesBySpeed(problem.line)
+            here, slope, error = _by_differences(problem, partial(own_motion_growth, like))
+            problem.findings.append(Finding(Gravity.NOTE, OWN_MOTION))
             for k, speed in enumerate(problem.at.tolist()):
                 yield _stability_rows(problem, speed, DIFFERENCES, "", here[:, k], slope[:, k], error[:, k])
         return

@@ -1,7 +1,7 @@
-"""How torques by all orders, and the growth rate of free–free lines with joint angles, follow parameters.
+"""How torques by all orders, and the growth rate of lines about their own motion, follow parameters.
 
-The torque of a spring is the largest over the cycle, at a speed that is kept. A free–free line with joint angles is
-judged about its own periodic motion, which follows every parameter too: lines beside it are computed and compared.
+The torque of a spring is the largest over the cycle, at a speed that is kept. The periodic motion of a line follows
+every parameter too: lines beside it are computed and compared.
 """
 
 from __future__ import annotations
@@ -18,8 +18,10 @@ from trunnion.design.sensitivity.responses import SpectrumSlope, spectrum_slopes
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import ComputationError, InputError
+from trunnion.floquet.stability.stability import stability
 from trunnion.floquet.stability.stability_over_speed import stability_along
 from trunnion.response.orders.response import order_response
+from trunnion.steady.free.periodic_steady_states import KnownSteadyState, SteadyStatesBySpeed
 from trunnion.steady.orders.amplitudes import OrderSpectrum
 
 LineValues = Callable[[Driveline], Array]
@@ -74,9 +76,21 @@ def torques(speeds: Array, line: Driveline | Assembly) -> Array:
     return np.stack([found.peak_torque, found.vibratory_torque])
 
 
-def free_line_growth(speeds: Array, line: Driveline) -> Array:
-    """Growth rate and spectral radius (2, speed) of a free–free line with joint angles."""
-    found = stability_along(assemble(line), speeds, closely=True)
+def own_motion_growth(like: SteadyStatesBySpeed, speeds: Array, line: Driveline) -> Array:
+    """Growth rate and spectral radius (2, speed) of a line about its own periodic motion; of several that it has the
+    one that goes on from the motion of the line ``like`` it."""
+    solved = SteadyStatesBySpeed(line)
+    if solved.obstacle:
+        each = [stability(line, speed, about_steady_state=True) for speed in speeds.tolist()]
+        return np.array([[one.growth_rate for one in each], [one.spectral_radius for one in each]])
+    for speed, known in like.known.items():
+        if known.settled:
+            beside = solved.balance.solve(np.array([speed]), known.h, known.rows[None])
+            if beside.found[0] and beside.resolved[0]:
+                solved.known[speed] = KnownSteadyState.of(beside, 0)
+    found = stability_along(assemble(line), speeds, about_steady_state=True, motions=solved, closely=True)
+    if line is like.line:
+        like.known.update(solved.known)
     return np.stack([found.growth_rate, found.radius])
 
 

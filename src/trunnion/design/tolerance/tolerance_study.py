@@ -95,6 +95,7 @@ class ToleranceStudy(Result):
     findings: tuple[Finding, ...] = internal("what was left out", default=())
     checks: CheckStudy | None = internal("the same for the checks of ``assess``, if asked for", default=None)
     ended: str = attribute("what ended the study before it was done, as a clause", default="")
+    about_steady_state: bool = attribute("whether about each line's own periodic motion", default=False)
 
     def declared(self) -> Iterator[Variable | Attribute]:
         """Tolerances with their ranking, shares over speed, the worst line."""
@@ -122,6 +123,8 @@ class ToleranceStudy(Result):
             f"[{low:.5g}, {high:.5g}], from {self.samples} lines within {len(self.parameters)} tolerances"
             f"{f'; {self.ended}, which left out the rest' if self.ended else ''}"
         )
+        if self.about_steady_state:
+            yield "  each line is judged about its own periodic motion, without its excitations"
         yield (
             f"  worst line found: {self.worst.verdict}, "
             f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
@@ -151,6 +154,7 @@ def tolerance_study(
     confidence: float = 0.95,
     seed: int = 0,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     threads: int | None = None,
     client: Any = None,
     within: float | None = None,
@@ -171,9 +175,11 @@ def tolerance_study(
     confidence : of the interval of the probability.
     seed : of the scrambles; the same seed gives the same numbers.
     statically_twisted : as in ``stability``.
+    about_steady_state : each line about its own periodic motion, as in ``stability_chart``; the checks judge as
+        ``assess`` does, whatever this says.
     threads : default one per core.
     client : a ``distributed.Client``, whose workers judge the same lines instead, in pieces of 32 768 lines at one
-        speed and of one line by the checks; free–free lines with joint angles are judged here.
+        speed and of one line by the checks; lines about their own motion are judged here.
     within : seconds that it may take; the lines judged until then are counted, and ``ended`` says so.
     progress : called as progress(share done).
 
@@ -205,7 +211,7 @@ def tolerance_study(
     lines = lines_like(
         assembly,
         tables(assembly, spreads, np.array([[0.5], [0.0], [1.0]]) + np.zeros(len(spreads)), float(at[0])),
-        statically_twisted, threads or os.cpu_count() or 1,
+        statically_twisted, threads or os.cpu_count() or 1, about_steady_state=about_steady_state,
     )  # fmt: skip
     shares = sobol(len(spreads), each, seed)
     report_progress = progress or (lambda share: None)
@@ -235,7 +241,7 @@ def tolerance_study(
         undecided=float(undecided.mean()), stable_share=at_each, growth_rate=growth,
         worst=_worst(lines, spreads, shares, growth, at), ranking=_ranking(spreads, shares, growth[fastest]),
         unit=speed_unit(assembly.line), findings=(*taken, *left_out("tolerance_study", assembly.line)), checks=judged,
-        ended=ended,
+        ended=ended, about_steady_state=isinstance(lines, SteadyStateLines),
     )  # fmt: skip
 
 

@@ -47,7 +47,7 @@ OVER_SPEED = ("speed", "radius", "error", "critical", "verdict", "growth_rate")
 
 
 class SpeedBySpeedError(InputError):
-    """A free–free line with joint angles and has stages or play: ``stability`` judges it speed by speed."""
+    """A line is judged about its own motion and has stages or play: ``stability`` judges it speed by speed."""
 
 
 @dataclass(frozen=True)
@@ -90,21 +90,23 @@ def stability_along(
     speeds: ArrayLike,
     *,
     statically_twisted: bool = True,
+    about_steady_state: bool = False,
     motions: SteadyStatesBySpeed | None = None,
     table: Array | None = None,
     closely: bool = False,
 ) -> StabilityOverSpeed:
     """Spectral radius and verdict at every one of ``speeds`` [rad/s], of a line with angled joints or varying meshes.
 
-    ``motions`` : periodic steady states that are known already; ``table`` (speed, column): packed numbers at every
-    speed, where they follow it; ``closely`` : about periodic steady states, radii as close as differences need them.
+    ``about_steady_state`` : as in ``stability``; ``motions`` : periodic steady states that are known already; ``table``
+    (speed, column): packed numbers at every speed, where they follow it; ``closely`` : about periodic steady states,
+    radii as close as differences need them.
 
     Raises
     ------
     InputError : no period; torques that do not balance. NoSharedMotion is one.
     """
     speed = np.asarray(speeds, dtype=float)
-    if has_periodic_base(assembly):
+    if about_steady_state or has_periodic_base(assembly):
         return _about_steady_states(assembly, speed, motions, closely)
     table = assembly.table(len(speed), speed) if table is None else table
     co = assembly.coefficients(table, statically_twisted=statically_twisted)
@@ -158,8 +160,9 @@ def _about_steady_states(
         return _by_modes_of_the_motion(solved, speed)
     motions = steady_state_slopes(assembly.line, speed, solved)
     if motions is None:
+        free = "is free–free and " if assembly.topology.free else ""
         raise SpeedBySpeedError(
-            "is free–free and has stages or play, so that each speed takes its periodic steady state",
+            f"{free}has stages or play, so that each speed takes its periodic steady state",
             element="driveline",
             remedy="ask stability at single speeds",
         )

@@ -1,4 +1,4 @@
-"""Stability of many free–free lines with joint angles that differ in their numbers, each about its own motion."""
+"""Stability of many lines with joint angles that differ in their numbers, each about its own periodic motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,14 @@ import numpy as np
 
 from trunnion.arrays import Array, Places
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.steady_base import has_periodic_base, refuse_dragged, require_steady_base, require_tree
+from trunnion.equations.steady_base import (
+    has_periodic_base,
+    refuse_dragged,
+    require_own_motion,
+    require_steady_base,
+    require_tree,
+)
+from trunnion.equations.topology import require_period
 from trunnion.errors import InputError
 from trunnion.floquet.charts.chart_pixels import Pixels
 from trunnion.floquet.tolerance.many_lines import ManyLines
@@ -42,15 +49,21 @@ class SteadyStateLines(ManyLines):
         return Pixels._make(map(np.concatenate, zip(*parts, strict=True)))
 
 
-def lines_like(assembly: Assembly, table: Array, twisted: bool, threads: int) -> ManyLines:
-    """``ManyLines`` of one line; of a free–free one that has joint angles at any row of ``table``, the first of which
-    is typical, each about its own motion.
+def lines_like(
+    assembly: Assembly, table: Array, twisted: bool, threads: int, *, about_steady_state: bool = False
+) -> ManyLines:
+    """``ManyLines`` of one line; each about its own motion if that is asked for, and of a free–free one that has joint
+    angles at any row of ``table``, the first of which is typical.
 
     Raises
     ------
-    InputError : as ``ManyLines.of``; springs with stages or play in a line that moves about its own motion.
+    InputError : as ``ManyLines.of``; springs with stages or play in a line that is judged about its own motion;
+        straight joints, where that is asked for.
     """
-    if not has_periodic_base(assembly, table):
+    if about_steady_state:
+        require_period(assembly.line, assembly.topology)
+        require_own_motion(assembly, table)
+    elif not has_periodic_base(assembly, table):
         return ManyLines.of(assembly, table[:1], twisted, threads)
     from trunnion.floquet.propagation.about_steady_states import pixels_of_rows
     from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
@@ -63,7 +76,9 @@ def lines_like(assembly: Assembly, table: Array, twisted: bool, threads: int) ->
         raise InputError(
             f"is judged about its own periodic motion, and {solved.obstacle}, so that many lines are not judged "
             "together",
-            element="driveline", remedy="put a ConstantSpeed in front, or ask stability of single lines",
+            element="driveline",
+            remedy="put a ConstantSpeed in front, or ask stability of single lines" if assembly.topology.free
+            else "leave about_steady_state out, or ask stability of single lines",
         )  # fmt: skip
     place = {label: k for k, label in enumerate(assembly.packed.labels)}
     shared = [(k, place[label]) for k, label in enumerate(solved.unexcited.packed.labels) if label in place]
