@@ -14,10 +14,11 @@ import trunnion as tn
 from trunnion.cli.program import app
 from trunnion.equations.coefficients import assemble
 from trunnion.modes.mass_elastic import holzer, masses, springs
+from trunnion.pictures import driveline_sketch
 from trunnion.reporting.overview_assessment import capital
 from trunnion.reporting.page import in_css
 from trunnion.reporting.submission import Submission
-from trunnion.reporting.submission_tables import barred, excitations, holzer_table, misfire_checks, rules
+from trunnion.reporting.submission_tables import barred, excitations, holzer_table, misfire_checks, misfires, rules
 
 TEXT = """
 format = 1
@@ -174,7 +175,7 @@ def test_power_and_heat_by_hand() -> None:
 def test_sheets_and_what_they_say() -> None:
     page = made().html
     assert [page.index(f'id="{name}"') for name in SHEETS] == sorted(page.index(f'id="{name}"') for name in SHEETS)
-    for words in ("TV-2031", "the author", "generator set &lt;&amp; co&gt;", "approved", "cylinder 2 of engine"):
+    for words in ("TV-2031", "the author", "generator set &lt;&amp; co&gt;", "approved", "cylinder 1 of engine"):
         assert words in page
     assert "http" not in page.replace("http-equiv", "") and "<script" not in page
     malfunction = page.split('id="malfunction"')[1].split("</section>")[0]
@@ -404,3 +405,20 @@ def test_a_printed_holzer_table_adds_up() -> None:
     nodes = [printed(row[5]) for row in in_springs.rows if row[5]]
     (at,) = np.flatnonzero(amplitude[1:] * amplitude[:-1] < 0)
     assert nodes == [round(100 * abs(amplitude[at] / (amplitude[at + 1] - amplitude[at])))]
+
+
+def test_of_cylinders_that_do_the_same_the_first_is_named() -> None:
+    """Rounding would name any: ``misfire`` and the sheets name the same one."""
+    contents = made().contents
+    table = misfires(contents)
+    named = {row[table.heads.index("misfiring, worst")] for row in table.rows}
+    assert named == {"cylinder 1 of engine"}
+    assert tn.misfire(contents.seen.line).worst == ("engine", 1)
+
+
+def test_a_tall_sketch_shows_numbers_alone_on_the_first_sheet() -> None:
+    """Its names would be too small to read there; they stand in section 1."""
+    named, alone = (driveline_sketch.draw(made().contents.seen.line, named=named) for named in (True, False))
+    words = [[text.get_text() for text in one.axes[0].texts] for one in (named, alone)]
+    assert "1 engine" in words[0] and "1 engine" not in words[1] and "1" in words[1]
+    assert alone.get_size_inches()[1] < named.get_size_inches()[1]

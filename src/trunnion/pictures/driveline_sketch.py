@@ -34,6 +34,8 @@ from trunnion.pictures.looks import ACCENT, FAINT, INK
 
 WIDTH, WIDEST = 7.4, 9.0
 """Of the figure [inches], and of the page that a short line does not fill, in units of the sketch."""
+LARGER = 1.7
+"""Letters where numbers stand alone, over those of names: such a sketch is shown small."""
 SLANT = 38 * DEGREE
 """Slope of the names."""
 STEEPEST = 30 * DEGREE
@@ -95,29 +97,30 @@ class _Layout:
     floor: dict[int, float]
 
 
-def _layout(line: Driveline, least: float) -> _Layout:
+def _layout(line: Driveline, least: float, *, named: bool = True) -> _Layout:
     places = _places(line)
     x = np.array([p for q in places for p in (q.start[0], q.end[0])])
     scale = WIDTH / max(x.max() - x.min() + 1.6, least)
     size = float(np.clip(SMALL * scale / 0.62, 7.5, SMALL))
     letter = 0.62 * size / 72 / scale  # width of a letter in units of the page
-    names = max(len(q.name) for q in places) + 3
-    places = _places(line, letter)
+    names = max(len(q.name) for q in places) + 3 if named else 0
+    places = _places(line, letter) if named else places
     floor = _floors(places)
     ceiling = max(max(q.start[1], q.end[1]) for q in places)
-    right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places)
-    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + 1.5])
+    right = max(q.start[0] + letter * (len(q.name) + 3) * np.cos(SLANT) for q in places) if named else x.max()
+    high = np.array([max(x.max() + 0.3, right + 0.4), ceiling + (1.5 if named else 2.0)])
     low = np.array([x.min() - 0.3, min(floor.values()) - 0.3 - letter * names * np.sin(SLANT)])
     high[0] = max(high[0], low[0] + least)
-    return _Layout(places, low, high, size, floor)
+    return _Layout(places, low, high, size if named else LARGER * size, floor)
 
 
-def draw(line: Driveline, least: float = WIDEST) -> Figure:
+def draw(line: Driveline, least: float = WIDEST, *, named: bool = True) -> Figure:
     """Sketch ``line``; elements carry the numbers of the table of elements, counted from 1.
 
-    least : width of the page in units of the sketch; a shorter line leaves place beside it.
+    least : width of the page in units of the sketch; a shorter line leaves place beside it. named : names stand beside
+    the numbers.
     """
-    laid = _layout(line, least)
+    laid = _layout(line, least, named=named)
     places, low, high = laid.places, laid.low, laid.high
     scale = WIDTH / (high[0] - low[0])
     figure = new_figure(WIDTH, scale * (high[1] - low[1]), layout=None)
@@ -129,7 +132,7 @@ def draw(line: Driveline, least: float = WIDEST) -> Figure:
     disks = [p.element.moment_of_inertia for p in places if isinstance(p.element, Disk)]
     for number, place in enumerate(places, start=1):
         _DRAW.get(place.element.kind, _joint)(axes, place, disks)
-        _name(axes, place, number, laid.size, laid.floor[place.row])
+        _name(axes, place, number, laid.size, laid.floor[place.row], named=named)
         _numbers(axes, place, laid.size, _between_joints(line.as_stated, number - 1))
     for place, parent in zip(places, line.as_stated.parents, strict=True):
         if parent is not None and places[parent].row != place.row:
@@ -537,13 +540,12 @@ def _floors(places: list[_ElementPlace]) -> dict[int, float]:
     return {r: min(p.lowest for p in places if p.row == r) - 1.05 for r in rows}
 
 
-def _name(axes: Axes, place: _ElementPlace, number: int, size: float, floor: float) -> None:
-    """Number and name, slanted below the row."""
+def _name(axes: Axes, place: _ElementPlace, number: int, size: float, floor: float, *, named: bool) -> None:
+    """Number and name, slanted below the row, or the number alone."""
     middle = place.middle
-    axes.text(
-        middle[0], floor, f"{number} {place.name}", rotation=-np.rad2deg(SLANT), rotation_mode="anchor",
-        fontsize=size, color=INK, ha="left", va="center",
-    )  # fmt: skip
+    slanted = {"rotation": -np.rad2deg(SLANT), "rotation_mode": "anchor", "ha": "left"} if named else {"ha": "center"}
+    text = f"{number} {place.name}" if named else f"{number}"
+    axes.text(middle[0], floor, text, fontsize=size, color=INK, va="center", **slanted)
     below = 0.95 if isinstance(place.element, Rotor) else 0.55 + 0.9 * abs(np.sin(place.direction))
     if middle[1] - below > floor + 0.1:
         axes.plot([middle[0]] * 2, [middle[1] - below, floor + 0.08], color="#c9c9c9", lw=0.6, zorder=0)

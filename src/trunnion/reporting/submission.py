@@ -193,6 +193,9 @@ def _pictures(contents: SubmissionContents) -> dict[str, ReportPicture]:
     drive = seen.line.names[0] if isinstance(seen.line.elements[0], ConstantSpeed) else None
     shown = {
         "sketch": picture(driveline_sketch.draw(seen.line), "Sketch of the driveline, element by element"),
+        "numbered": picture(
+            driveline_sketch.draw(seen.line, named=False), "Sketch of the driveline, elements by their numbers"
+        ),
         "modes": picture(draw(mode_shapes(seen.natural_frequencies, unit=frequencies, drive=drive)), "Mode shapes"),
     }
     if contents.campbell is not None:

@@ -54,6 +54,8 @@ JOINTS = {
     "TripodJoint": "tripod joint", "DoubleCardanJoint": "double Cardan joint",
 }  # fmt: skip
 """Kinds of joints in words."""
+ALIKE = 1e-6
+"""Share by which cylinders that do the same may differ: the first of them is named."""
 BY_STRESS = ("max_stress", "ship_shaft")
 """Limits of a shaft that are none of torque."""
 
@@ -444,7 +446,8 @@ def misfires(contents: SubmissionContents) -> Table:
         found: dict[str, object] = {"spring": spring, f"all firing [{prefix}N m]": contents.firing[s].value / size}
         for how in dict.fromkeys(one.how for one in contents.misfiring):
             of_how = [one for one in contents.misfiring if one.how == how]
-            worst = max(of_how, key=lambda one: one.vibratory[s].value)
+            most = max(one.vibratory[s].value for one in of_how)
+            worst = next(one for one in of_how if not one.vibratory[s].value < most * (1 - ALIKE))
             top = worst.vibratory[s]
             found[f"one {how} [{prefix}N m]"] = top.value / size
             found[f"{how}, worst"] = worst.cylinder
@@ -461,7 +464,7 @@ def misfire_checks(contents: SubmissionContents) -> Table:
     for one in contents.misfiring:
         for check in one.checks:
             known = found.get(check.name)
-            if known is None or _severity(check) < _severity(known[0]):
+            if known is None or _severity(check) < _severity(known[0], ALIKE):
                 found[check.name] = check, str(one)
     ordered = sorted(found.values(), key=lambda one: _severity(one[0]))
     rows = [
@@ -472,9 +475,10 @@ def misfire_checks(contents: SubmissionContents) -> Table:
     return Table(heads, tuple(rows))
 
 
-def _severity(check: Check) -> tuple[bool, float]:
-    """Exceeded first, then by margin; what could not be judged before what is satisfied."""
-    return check.satisfied, check.margin if np.isfinite(check.margin) else -np.inf
+def _severity(check: Check, less: float = 0.0) -> tuple[bool, float]:
+    """Exceeded first, then by margin, of which so much is taken; what could not be judged before what is
+    satisfied."""
+    return check.satisfied, check.margin - less if np.isfinite(check.margin) else -np.inf
 
 
 def _sides(check: Check, words: Words) -> tuple[str, str]:

@@ -24,6 +24,9 @@ from trunnion.results.fields import attribute, computed, coordinate, internal, l
 from trunnion.results.finding import Finding, Gravity
 from trunnion.results.result import Result
 
+ALIKE = 1e-6
+"""Share by which cylinders that do the same may differ: the first of them is named."""
+
 
 @labelled
 class Misfire(Result):
@@ -302,5 +305,5 @@ def _times(torque: Array, normal: Array) -> Array:
 
 
 def _worst(torque: Array, normal: Array, lost: Integers) -> int:
-    times = np.nan_to_num(_times(torque, normal)).max(axis=1)
-    return int(np.where(lost == lost.max(), times, -1.0).argmax())
+    times = np.where(lost == lost.max(), np.nan_to_num(_times(torque, normal)).max(axis=1), -1.0)
+    return int(np.argmax(times >= times.max() * (1 - ALIKE)))
