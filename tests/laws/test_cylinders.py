@@ -457,3 +457,18 @@ def test_a_table_that_is_not_there(tmp_path):
         tn.load(tmp_path / "line.toml")
     with pytest.raises(tn.InputError, match="names a file that is not known here"):
         tn.loads(text)
+
+
+def test_torques_at_an_undamped_resonance_within_the_range_are_without_bound():
+    """Order 0.5, which cancels while all four cylinders fire, meets the mode of a line without damping."""
+    even, half = [f"{k} deg" for k in (0, 180, 360, 540)], [{"order": k / 2, "amplitude": 9.0} for k in (1, 4)]
+    drive = tn.Disk(inertia=1.0, drive_share=1, excitation=half, firing_angles=even, name="engine")
+    line = tn.Driveline([drive, tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0)])
+    met = np.sqrt(2e4) / 0.5
+    found = tn.misfire(line, speed_range=(0.8 * met, 1.3 * met))
+    assert np.all(np.isinf(found.vibratory_torque)) and found.speed == pytest.approx(met, rel=1e-9)
+    assert found.unsettled_as_stated == 0 and np.isfinite(found.normal).all()
+    assert "without bound at" in str(found) and len(found.findings) == 4
+    assert all("torques there are without bound" in one.sentence for one in found.findings)
+    assert tn.order_response(line, [met]).vibratory_torque[0, 0] > 0  # nothing is excited but order 2
+    found.plot()

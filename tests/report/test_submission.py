@@ -413,7 +413,11 @@ def test_of_cylinders_that_do_the_same_the_first_is_named() -> None:
     table = misfires(contents)
     named = {row[table.heads.index("misfiring, worst")] for row in table.rows}
     assert named == {"cylinder 1 of engine"}
-    assert tn.misfire(contents.seen.line).worst == ("engine", 1)
+    found = tn.misfire(contents.seen.line)
+    assert found.worst == ("engine", 1)
+    for s, spring in enumerate(found.springs):
+        sheets = max(case.vibratory[s].value for case in contents.misfiring if case.how == "misfiring")
+        assert found.vibratory_torque[:, s].max() == pytest.approx(sheets, rel=1e-5), spring
 
 
 def test_a_tall_sketch_shows_numbers_alone_on_the_first_sheet() -> None:

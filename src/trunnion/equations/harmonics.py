@@ -35,6 +35,8 @@ from trunnion.equations.topology import LinkKind, Mesh, Topology
 from trunnion.errors import InputError
 from trunnion.laws.harmonic import Harmonic
 
+CANCELLED = 1e-12
+"""Share of what cylinders would do together below which their sum is rounding: angles are read to as much."""
 Spring = Callable[[int], Complex]
 Runnings = dict[int, Running]
 """How disks run, by the place of their element, at the rows of one table."""
@@ -120,7 +122,7 @@ class DiskTorque(LineHarmonic):
 
     @property
     def acts(self) -> bool:
-        return super().acts and not self.prescribed
+        return super().acts and not self.prescribed and self.cylinders != 0
 
     @property
     def own_order(self) -> float:
@@ -249,13 +251,15 @@ def mesh_errors(assembly: Assembly, mesh: Mesh, row: Array) -> tuple[MeshError, 
 
 
 def cylinders(disk: Rotor, law: Excitation) -> complex:
-    """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 1 where it has none."""
+    """Σ_c e^{−ikα_c} over a disk's firing angles, without a cylinder that misfires; 0 where they cancel but for
+    rounding, which would excite a resonance; 1 where it has none."""
     if not isinstance(disk, Disk) or not disk.firing_angles or law.order is None:
         return 1.0
     turned = np.exp(-1j * law.order * np.array(disk.firing_angles))
     if disk.misfiring is not None and law.quadratic_amplitude is None:
         turned = np.delete(turned, disk.misfiring - 1)
-    return complex(turned.sum())
+    total = complex(turned.sum())
+    return total if abs(total) > CANCELLED * len(turned) else 0.0
 
 
 def unexcited(line: Driveline) -> Driveline:

@@ -102,9 +102,8 @@ def misfire(result: Misfire, *, unit: str | None = None, operating: Operation | 
     drawn = order_response(result.response, spring=spring, unit=unit, operating=operating)
     usual = float(result.normal[result.springs.index(spring)])
     level = Level(usual, "stands", f"largest with {result.stated}: {printed(shown(usual, TORQUE, digits=4))}")
-    return drawn.with_panel(
-        items=(*drawn.panel.items, level), title=f"vibratory torque of {spring}, {result.worst_in_words}"
-    )
+    items = (*drawn.panel.items, level) if np.isfinite(usual) else drawn.panel.items
+    return drawn.with_panel(items=items, title=f"vibratory torque of {spring}, {result.worst_in_words}")
 
 
 def course(found: ResponseCurve, *, unit: str, operating: Operation | None = None) -> Picture:

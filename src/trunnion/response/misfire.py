@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -146,6 +146,8 @@ class Misfire(Result):
             if count:
                 what = called if called == self.stated else f"{called} out of work"
                 said = f"With {what} no steady state exists at {count} of the speeds, undamped resonances: left out."
+                if not np.isnan(self.missing):
+                    said = f"With {what} undamped resonances have no steady state: torques there are without bound."
                 found.append(Finding(Gravity.DANGER, said))
         return tuple(found)
 
@@ -156,12 +158,13 @@ class Misfire(Result):
             yield f"  {self.looked_at}"
         for s, spring in enumerate(self.springs):
             yield (
-                f"  {spring}: vibratory torque {self.vibratory_torque[row, s]:.4g} N m at "
-                f"{self.words.speed(float(self.speed[row, s]))}, {self.normal[s]:.4g} N m with {self.stated}"
+                f"  {spring}: vibratory torque {_newton_metres(self.vibratory_torque[row, s])} at "
+                f"{self.words.speed(float(self.speed[row, s]))}, {_newton_metres(self.normal[s])} with {self.stated}"
             )
         for one in self.by_cylinder():
-            times = one[f"times that of {self.stated}"]
-            yield f"  {one['cylinder']}: {times:.4g} times as much in {one['most in']}"
+            times = float(str(one[f"times that of {self.stated}"]))
+            more = "without bound" if np.isinf(times) else f"{times:.4g} times as much"
+            yield f"  {one['cylinder']}: {more} in {one['most in']}"
 
 
 def misfire(
@@ -255,9 +258,12 @@ class _Look:
         """Searched between two speeds."""
         found = largest_torques(assembly, low, high)
         largest = found.largest
-        share = np.divide(largest.error, largest.value, out=np.zeros_like(largest.error), where=largest.value > 0)
+        bounded = np.isfinite(largest.value) & (largest.value > 0)
+        share = np.divide(largest.error, largest.value, out=np.zeros_like(largest.error), where=bounded)
         draw = partial(response_over, assembly, low, high, known=largest.response, around=found.around)
-        return cls._of(largest.response, float(share.max(initial=0.0)), draw)
+        look = cls._of(largest.response, float(share.max(initial=0.0)), draw)
+        torque = np.where(np.isinf(largest.value), np.inf, look.torque)
+        return replace(look, torque=torque, speed=largest.response.speed[largest.at])
 
     @classmethod
     def _of(cls, found: OrderResponse, missing: float, draw: Callable[[], OrderResponse] | None) -> _Look:
@@ -293,6 +299,10 @@ def _largest(torque: Array) -> Array:
     """Over the speeds that have a steady state (spring,); NaN where none has."""
     known = np.where(np.isnan(torque), -np.inf, torque).max(axis=0)
     return np.where(np.isfinite(known), known, np.nan)
+
+
+def _newton_metres(torque: float) -> str:
+    return "without bound" if np.isinf(torque) else f"{torque:.4g} N m"
 
 
 def _loaded(line: Driveline, load_case: str | None) -> Driveline:
