@@ -33,8 +33,8 @@ RESIDUAL = 1e-15
 """Share of what a solution takes to hold below which a change of it is rounding."""
 ROUNDING = 2e-16
 """Fourier coefficients below this share of the largest are left out."""
-MOST_WRITTEN = 4
-"""Matrices that are kept written out for other carriers."""
+MOST_WRITTEN = 4_000_000
+"""Complex numbers of matrices that are kept written out for other carriers, beside the latest."""
 
 
 def interpolation_nodes(speed: Array, co: LineCoefficients) -> Array | None:
@@ -131,9 +131,10 @@ class HillBlocks:
         key = (harmonics - harmonics[0]).tobytes() + sign.tobytes() * bool(self.loss.any())
         if (known := self._written.pop(key, None)) is None:
             known = self._put_together(harmonics, sign)
+        held = [*self._written.values(), known]
+        while len(held) > 1 and sum(one.numbers.size for one in held) > MOST_WRITTEN:
+            del self._written[next(iter(self._written))], held[0]
         self._written[key] = known  # the latest comes last
-        for oldest in list(self._written)[:-MOST_WRITTEN]:
-            del self._written[oldest]
         return known
 
     def _put_together(self, harmonics: Integers, sign: Array) -> _WrittenOut:

@@ -130,7 +130,7 @@ class OrderSpectrum:
     @cached_property
     def families(self) -> list[tuple[list[int], list[int]]]:
         """Columns that are whole multiples of one harmonic at every speed, and which."""
-        return _families(tuple(self.keys))
+        return [(list(columns), list(multiples)) for columns, multiples in _families(tuple(self.keys))]
 
     @property
     def common_turns(self) -> Fraction | None:

@@ -65,7 +65,7 @@ SMALL_ENOUGH = 1e-11
 """Torque of the outermost harmonics, relative to the largest by order, up to which no more are taken."""
 MOST_NUMBERS = 1_500_000
 """Complex numbers of a batch of vectors: bounded memory, and steps of progress."""
-MOST_IN_MATRICES = 4 * MOST_NUMBERS
+MOST_IN_MATRICES = 2 * MOST_NUMBERS
 """Those of a batch of matrices, zeros counted, which are not held where the rest is a narrow band."""
 
 
