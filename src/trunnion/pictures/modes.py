@@ -57,7 +57,7 @@ def _frequency(modes: NaturalFrequencies, mode: int, unit: str) -> str:
     if mode < modes.rigid_motions:
         return "rigid body"
     if mode < modes.still:
-        return "dragged along"
+        return "dragged"
     if modes.overdamped[mode]:
         return "overdamped"
     frequency = float(modes.frequency[mode])
