@@ -119,6 +119,14 @@ def _reports() -> None:
     tn.report(tn.loads(starter("two-shaft")))
 
 
+def _long_lines() -> None:
+    elements: list[Any] = [tn.ConstantSpeed()]
+    for i in range(40):
+        elements += [tn.HookeJoint(angle=0.2)] if i == 20 else []
+        elements += [tn.Shaft(stiffness=1.0, damping=0.01), tn.Disk(inertia=1.0)]
+    tn.stability(tn.Driveline(elements), 0.5)
+
+
 def _motions_with_stages() -> None:
     elements = [
         tn.ConstantSpeed(), tn.Shaft(stiffness=1.0, damping=0.1), tn.Disk(inertia=1.0), tn.HookeJoint(angle=0.2),
@@ -147,6 +155,7 @@ PARTS: dict[str, Callable[[], None]] = {
     "charts of plain lines": _charts_of_plain_lines,
     "charts of loaded lines": _charts_of_loaded_lines,
     "reports and motions": _reports,
+    "long lines": _long_lines,
     "motions with stages": _motions_with_stages,
     "transients": _transients,
 }

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -73,6 +74,13 @@ class Plan:
         left = np.array(sorted({*np.flatnonzero(kept).tolist(), *waiting}), dtype=np.intp)
         edges = tuple((a, b, e) for a in left.tolist() for b, e in beside[a].items() if a < b)
         return Plan(n, tuple(steps), left, edges, count)
+
+    @cached_property
+    def rows(self) -> Integers:
+        """The steps (step, 6): place, two neighbours, where the couplings to them stand, and ``new``; −1 for none."""
+        none = (-1, -1)
+        rows = [(s.place, *(*s.neighbours, *none)[:2], *(*s.edges, *none)[:2], s.new) for s in self.steps]
+        return np.array(rows, dtype=np.int64).reshape(-1, 6)
 
 
 class Condensed:

@@ -2,12 +2,14 @@
 it, u = A(s)⁻¹A′(s)x.
 
 Matrices and solutions of all places are never formed together: place by place the few numbers of one stay near the
-processor, which is most of the time that long lines take.
+processor, which is most of the time that long lines take. Of longer ones all that joins no harmonics is compiled
+(``tree_columns``).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +19,8 @@ from trunnion.numerics.tree_blocks import TreeBlock, joined_places
 
 Three = tuple[Array, Array, Array]
 """K, C and M."""
+COMPILED = 40
+"""Places from which on compiled code pays, were it only for one look at a line."""
 
 
 @dataclass(frozen=True)
@@ -31,13 +35,51 @@ class TreePencil:
 
     def times(self, s: Complex, x: Complex, blocks: list[TreeBlock]) -> Complex:
         """Ax (n, case, h) of x (n, case, h) at s (case, h); ``blocks`` of A join harmonics."""
+        if len(self.parent) >= COMPILED:
+            return self._times_in_columns(s, x, blocks, slope=False)
         return self._times(self.own, self.coupling, (s, s * s), x, blocks)
 
     def stepped(self, s: Complex, x: Complex, blocks: list[TreeBlock], slopes: list[TreeBlock]) -> Complex:
         """u (n, case, h) of x (n, case, h) at s (case, h); ``blocks`` of A and ``slopes`` of A′ join harmonics."""
+        if len(self.parent) >= COMPILED:
+            return self._eliminated_in_columns(s, self._times_in_columns(s, x, slopes, slope=True), blocks)
         own, coupling = ((c, m, np.zeros_like(k)) for k, c, m in (self.own, self.coupling))  # A′ = C + 2sM
         with np.errstate(all="ignore"):
             return self._eliminated(s, self._times(own, coupling, (2 * s, s), x, slopes), blocks)
+
+    def _times_in_columns(self, s: Complex, x: Complex, blocks: list[TreeBlock], *, slope: bool) -> Complex:
+        """As ``times``, or of the ``slope`` A′."""
+        from trunnion.numerics.tree_columns import multiply_columns
+
+        out = np.empty(x.shape, dtype=complex)
+        flat = np.ascontiguousarray(x).reshape(len(x), -1)
+        multiply_columns(self.parent, *self._numbers, slope, s.reshape(-1), flat, out.reshape(flat.shape))
+        for block in blocks:
+            block.add_times(x, out)
+        return out
+
+    def _eliminated_in_columns(self, s: Complex, right: Complex, blocks: list[TreeBlock]) -> Complex:
+        """A⁻¹ of ``right`` (n, case, h), in place."""
+        from trunnion.numerics.tree_columns import condense_columns, expand_columns
+
+        plan, flat = self.plan, right.reshape(len(right), -1)
+        edges = np.array([e for _, _, e in plan.edges], dtype=np.int64)
+        shares = np.empty((len(plan.rows), 2, flat.shape[1]), dtype=complex)
+        pivots, joined = (np.empty((count, flat.shape[1]), dtype=complex) for count in (len(plan.left), len(edges)))
+        condense_columns(plan.rows, plan.left, edges, *self._numbers, s.reshape(-1), flat, shares, pivots, joined)
+        if len(plan.left):
+            number = {place: k for k, place in enumerate(plan.left.tolist())}
+            ends = [(number[a], number[b]) for a, b, _ in plan.edges]
+            couplings = [(a, b, one.reshape(s.shape)) for (a, b), one in zip(ends, joined, strict=True)]
+            places = joined_places(plan.left, pivots.reshape(-1, *s.shape), couplings, blocks)
+            right[plan.left] = places.solved(right[plan.left])
+        expand_columns(plan.rows, shares, flat)
+        return right
+
+    @cached_property
+    def _numbers(self) -> tuple[Array, Array]:
+        """``own`` and ``coupling`` (3, n, 1 or case)."""
+        return np.array(self.own), np.array(self.coupling)
 
     def _times(
         self, own: Three, coupling: Three, powers: tuple[Complex, Complex], x: Complex, blocks: list[TreeBlock]

@@ -253,15 +253,14 @@ class HillLine:
 
     def energies(self, rotation: States, rate: States) -> States:
         """States (2n, m) in units of energy, of rotations and their rates [1/s] (n, m)."""
-        turned = self._to_modes @ (np.concatenate([rotation, rate], axis=1) * self.root[:, None])
+        turned = _turned(self._to_modes, np.concatenate([rotation, rate], axis=1) * self.root[:, None])
         count = rotation.shape[1]
         return np.concatenate([turned[:, :count] * self._frequency[:, None], turned[:, count:]])
 
     def states(self, energies: States) -> tuple[States, States]:
         """Rotations and rates [1/s] (n, m) of ``energies`` (2n, m)."""
         basis = self._modes[1] / self.root[:, None]
-        rotation, rate = basis @ (energies[: self.n] / self._frequency[:, None]), basis @ energies[self.n :]
-        return rotation, rate
+        return _turned(basis, energies[: self.n] / self._frequency[:, None]), _turned(basis, energies[self.n :])
 
     def exponents(self, multiplier: Complex, energies: Complex) -> Complex:
         """Of ``multiplier`` (m,), among all that differ by multiples of i times the rate those at which the states turn
@@ -283,6 +282,13 @@ class HillLine:
         again = self.energies(*carry.carried(*self.states(energies @ mixed), int(np.ceil(SHORTER * steps))))
         off = sure * float(np.linalg.norm(again - later @ mixed))
         return later, off + rounding(steps) * float(np.linalg.norm(later))
+
+
+def _turned(matrix: Array, x: States) -> States:
+    """The product of a real matrix with columns x (n, m), real or complex: without imaginary parts that are zero."""
+    if not np.iscomplexobj(x):
+        return np.asarray(matrix @ x)
+    return np.asarray((matrix @ np.ascontiguousarray(x).view(float)).view(complex))
 
 
 def _within(x: Complex, h: Integers, more: Integers) -> Complex:

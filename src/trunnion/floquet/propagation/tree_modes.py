@@ -93,8 +93,9 @@ class _Basis:
         """Real vectors of all: Re v, Im v of pairs, N (2n, 2n)."""
         return np.concatenate([self.modes.real, self.modes.imag[:, self.pair], self.others], axis=1)
 
-    def completed(self) -> tuple[_Basis, Array]:
-        """With all that they leave, and the inverse of the whole; fewer modes where some depend on the others."""
+    def completed(self) -> tuple[_Basis, Array, Array]:
+        """With all that they leave, the inverse of the whole, and the length of its rows that belong to the modes (m,);
+        fewer modes where some depend on the others."""
         basis = self if len(self.modes) == self.whole.shape[1] else self._independent()
         while True:
             try:
@@ -102,9 +103,10 @@ class _Basis:
             except np.linalg.LinAlgError:
                 basis = basis._independent()
                 continue
-            good = np.linalg.norm(basis.rows(inverse), axis=1) < WORST_CONDITION
+            rows = np.linalg.norm(basis.rows(inverse), axis=1)
+            good = rows < WORST_CONDITION
             if good.all():
-                return basis, inverse
+                return basis, inverse, rows
             basis = basis._of(good)
 
     def _of(self, kept: Flags) -> _Basis:
@@ -154,13 +156,13 @@ def _judged(line: HillLine, found: FollowedModes, aside: Array) -> FloquetModes 
     if len(turned):
         largest = np.take_along_axis(v, np.abs(v).argmax(axis=0)[None], axis=0)[0]
         v = np.where(pair, v, v * (np.abs(largest) / largest))
-    basis, inverse = _Basis(found.value, turned, v, pair, left, np.zeros((2 * line.n, 0))).completed()
-    return _proven(line, basis, inverse, aside)
+    basis, inverse, rows = _Basis(found.value, turned, v, pair, left, np.zeros((2 * line.n, 0))).completed()
+    return _proven(line, basis, inverse, rows, aside)
 
 
-def _proven(line: HillLine, basis: _Basis, inverse: Array, aside: Array) -> FloquetModes | None:
+def _proven(line: HillLine, basis: _Basis, inverse: Array, rows: Array, aside: Array) -> FloquetModes | None:
     m, several = len(basis.pair), np.flatnonzero(basis.pair)
-    rows, d = np.linalg.norm(basis.rows(inverse), axis=1), basis.others.shape[1]
+    d = basis.others.shape[1]
     rigid = line.energies(aside[: line.n], aside[line.n :] * line.speed)
     later, off = line.carried(basis.others) if d else (basis.others, 0.0)
     if not np.isfinite(later).all():
