@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
@@ -13,13 +14,18 @@ from trunnion.waiting import keep_time
 
 Map = Callable[[Array], tuple[Array, Array]]
 """x → P(x) − x, (m,), and its derivative, (m, m); NaN where P cannot be computed."""
+Residual = Callable[[Array], Array]
+"""The same without its derivative."""
+CHORD = 0.2
+"""Factor by which a step with a derivative that was computed before has to lessen the residual for another."""
 Equations = Callable[[Places, Array], tuple[Array, Array]]
 
 
 @dataclass(frozen=True)
 class Root:
-    """Where the iteration ended: x, the residual there and its derivative, the residual's size in units of
-    the scale, the number of iterations, and whether it is small enough."""
+    """Where the iteration ended: x, the residual there and its derivative (that of the point before, where the last
+    step was taken without), the residual's size in units of the scale, the number of iterations, and whether it is
+    small enough."""
 
     x: Array
     residual: Array
@@ -29,16 +35,36 @@ class Root:
     converged: bool
 
 
-def solve(residual: Map, start: Array, scale: Array, *, tolerance: float, most: int = 30) -> Root:
+def solve(
+    residual: Map, start: Array, scale: Array, *, tolerance: float, most: int = 30, alone: Residual | None = None
+) -> Root:
     """Solve r(x) = 0 to |r_i| ≤ tolerance · (scale_i + |x_i|).
 
     A full step is halved up to six times while the residual does not fall. After the tolerance is met one more whole
-    step is tried, which squares the error, or finds rounding there already.
+    step is tried, which squares the error, or finds rounding there already. With ``alone``, the residual without its
+    derivative, which takes far less, steps with the derivative that is known go before, as long as they bring much.
     """
 
     def size_of(r: Array, x: Array) -> float:
         with np.errstate(invalid="ignore"):
             return float(np.max(np.abs(r) / (scale + np.abs(x)))) if np.all(np.isfinite(r)) else np.inf
+
+    def step_from(r: Array) -> Array:
+        return np.asarray(np.linalg.lstsq(slope * scale[None, :], -r, rcond=1e-13)[0] * scale)
+
+    def beyond(x: Array, r: Array, size: float) -> Iterator[Array]:
+        """The farthest point that steps with the known derivative lead to, where they bring much."""
+        reached = None
+        while alone is not None and size > tolerance:
+            keep_time()
+            trial = x + step_from(r)
+            r, before = alone(trial), size
+            size = size_of(r, trial)
+            if not size < CHORD * before:
+                break
+            x = reached = trial
+        if reached is not None:
+            yield reached
 
     x = np.array(start, dtype=float)
     r, slope = residual(x)
@@ -47,12 +73,11 @@ def solve(residual: Map, start: Array, scale: Array, *, tolerance: float, most: 
     for count in range(1, most + 1):
         if not np.isfinite(size):
             break
-        done = size <= tolerance
-        step = np.linalg.lstsq(slope * scale[None, :], -r, rcond=1e-13)[0] * scale
-        for halving in range(1 if done else 7):
+        done, step = size <= tolerance, step_from(r)
+        halved = (x + step / 2**halving for halving in range(1 if done else 7))
+        for trial in halved if done else chain(beyond(x, r, size), halved):
             keep_time()
-            trial = x + step / 2**halving
-            r_new, slope_new = residual(trial)
+            r_new, slope_new = (alone(trial), slope) if done and alone is not None else residual(trial)
             new = size_of(r_new, trial)
             if new < size:
                 break

@@ -34,6 +34,8 @@ from trunnion.systems.system import System
 
 M = TypeVar("M", bound=PeriodMap)
 C = TypeVar("C", bound="ShootingProblem[Any]")
+MANY_STATES = 8
+"""From which on an integrated motion without its tangents takes a fraction of one with them."""
 CHANCES = 2
 """Motions in which a slider is tried as one that sticks: the first may begin before the motion has settled."""
 SETTLING = (0, 50, 500)
@@ -92,6 +94,15 @@ class ShootingProblem(Generic[M]):
         """The map at z."""
         return self.map.at(*map(float, z[self.size :])) if len(z) > self.size else self.map
 
+    def missing(self, z: Array) -> Array:
+        """What is missing to close, in units of the scales; NaN where there is no motion."""
+        n = self.size
+        passage = self._tried(z, tangents=False)
+        if passage is None or not passage.done:
+            return np.full(n + (self.phase is not None), np.nan)
+        left = (passage.state - z[:n]) / self.scale[:n]
+        return left if self.phase is None else np.append(left, self.phase.row @ (z[:n] - self.phase.anchor))
+
     def equations(self, z: Array) -> tuple[Array, Array]:
         """What is missing to close, and its derivative by z, in units of the scales; NaN where there is no motion."""
         n = self.size
@@ -110,13 +121,14 @@ class ShootingProblem(Generic[M]):
             slope = np.vstack([slope, np.append(self.phase.row, np.zeros(len(z) - n))])
         return left, slope
 
-    def _tried(self, z: Array) -> MapEvaluation | None:
+    def _tried(self, z: Array, *, tangents: bool = True) -> MapEvaluation | None:
         """The motion at z, kept as the last one tried; None where z is nowhere."""
         if not np.isfinite(z).all():
             return None
         n = self.size
         try:
-            self.last = self.place(z)(z[:n], by=range(len(z) - n))
+            by = range(len(z) - n) if tangents else ()
+            self.last = self.place(z)(z[:n], tangents=tangents, by=by)
         except InputError:  # a trial value may be no value of this parameter
             return None
         return self.last
@@ -125,12 +137,23 @@ class ShootingProblem(Generic[M]):
         """The orbit near ``guess`` (n + unknown values,)."""
         n, low, high = self.size, *self.within
 
+        def within(z: Array) -> Array:
+            return z if len(z) == n or low < z[n] < high else np.full_like(z, np.nan)
+
         def residual(z: Array) -> tuple[Array, Array]:
-            inside = len(z) == n or low < z[n] < high
-            left, slope = self.equations(z if inside else np.full_like(z, np.nan))
+            left, slope = self.equations(within(z))
             return left * self.scale, slope * self.scale[:, None]
 
-        return solve(residual, guess, self.scale, tolerance=self.tolerance)
+        def alone(z: Array) -> Array:
+            return self.missing(within(z)) * self.scale
+
+        cheap = alone if self.cheaper_alone else None
+        return solve(residual, guess, self.scale, tolerance=self.tolerance, alone=cheap)
+
+    @property
+    def cheaper_alone(self) -> bool:
+        """Whether a motion without its tangents takes so much less that it is worth trying alone."""
+        return False
 
     @once
     def passage(self, point: CurvePoint) -> MapEvaluation:
@@ -192,6 +215,10 @@ class IntegratedShooting(ShootingProblem[IntegratedMap]):
     """The closing of an integrated motion; ``neutral`` of a free–free line, from its system and the start."""
 
     neutral: Callable[[System, Array], NeutralDisturbances] | None = None
+
+    @property
+    def cheaper_alone(self) -> bool:
+        return self.size >= MANY_STATES
 
     def judged(
         self, place: IntegratedMap, x: Array, run: Trajectory, coarse: Trajectory, missed: float
