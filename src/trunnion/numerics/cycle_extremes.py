@@ -71,7 +71,8 @@ def _highest(index: Integers, amplitude: Complex, f: Array) -> Array:
     sizes = np.abs(amplitude)
     highest = f.max(axis=1)
     above = (step / 2) ** 2 / 2 * (index**2 * sizes).sum(axis=1)
-    row, place = np.nonzero((f >= (highest - above)[:, None]) & (above > 0)[:, None])
+    least = np.where(above > 0, highest - above, np.inf)
+    row, place = np.divmod(np.flatnonzero(f >= least[:, None]), f.shape[1])
     here, before, behind = f[row, place], f[row, place - 1], f[row, (place + 1) % f.shape[1]]
     peak = (here >= before) & (here >= behind)
     row, place, here, before, behind = (part[peak] for part in (row, place, here, before, behind))
