@@ -12,6 +12,7 @@ from oracles.own_monodromy import Chains, Part
 import trunnion as tn
 from trunnion.arrays import Array
 from trunnion.equations.coefficients import assemble
+from trunnion.floquet.ranges import growing_pairs
 from trunnion.floquet.ranges.collisions import Collisions, exponent_collisions
 from trunnion.floquet.ranges.span import Span
 from trunnion.floquet.ranges.unstable import UnstableRanges, _astray, closed_in, unstable_ranges
@@ -109,9 +110,12 @@ def test_no_range_of_a_chain_is_lost_by_equations_of_its_own(seed: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(30))
-def test_no_range_of_a_random_chain_is_lost(seed: int) -> None:
-    """8 to 30 inertias: matrices of the period at 1 000 speeds by chance, closer where growth has a top."""
+@pytest.mark.parametrize("long", [growing_pairs.LONG, 8], ids=["all looked at", "pairs followed"])
+@pytest.mark.parametrize("seed", range(45))
+def test_no_range_of_a_random_chain_is_lost(seed: int, long: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """8 to 30 inertias: matrices of the period at 1 000 speeds by chance, closer where growth has a top; also as longer
+    lines are searched."""
+    monkeypatch.setattr(growing_pairs, "LONG", long)
     rng = np.random.default_rng(seed + 1000)
     parts, first = chain(seed, int(rng.integers(8, 31)))
     line, speed = line_of(parts), np.sort(first * 0.5 * 8 ** rng.random(1000))
@@ -124,6 +128,23 @@ def test_no_range_of_a_random_chain_is_lost(seed: int) -> None:
     assert not np.any((along.verdict == Verdict.UNSTABLE) & ~within(along.speed, found, 2e-7))
     assert not np.any((along.verdict == Verdict.STABLE) & within(along.speed, found, -2e-7))
     assert np.nanmax(found.along.growth_rate) > np.nanmax(along.growth_rate) - 0.01 * abs(np.nanmax(along.growth_rate))
+
+
+@pytest.mark.parametrize("seed", [5, 8])
+def test_ends_of_pairs_followed_by_themselves_are_those_of_the_line(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As every speed looked at tells, with fewer looks; just within and beyond every end by matrices of the period."""
+    parts, first = chain(seed, 12)
+    line, low, high = line_of(parts), 0.5 * first, 2.5 * first
+    plain, looks = searched(line, low, high)
+    monkeypatch.setattr(growing_pairs, "LONG", 8)
+    found, fewer = searched(line, low, high)
+    assert len(found.ranges) >= len(plain.ranges) > 0 and fewer < looks
+    starts, ends = np.array(found.ranges).T
+    starts, ends = starts[starts > low], ends[ends < high]
+    along = stability_along(assemble(line), np.concatenate([starts * (1 - 2e-7), ends * (1 + 2e-7)]))
+    assert np.all(along.verdict != Verdict.UNSTABLE)
+    along = stability_along(assemble(line), np.concatenate([starts * (1 + 2e-7), ends * (1 - 2e-7)]))
+    assert np.all(along.verdict == Verdict.UNSTABLE)
 
 
 def test_growth_where_exponents_meet_is_that_of_the_multipliers() -> None:
@@ -144,7 +165,8 @@ def test_one_looks_beside_a_meeting_as_closely_as_it_is_narrow() -> None:
     """Eight places about a narrow one; of a broad one as few as lie within a third of its breadth."""
     at, nothing = np.full(3, 100.0), np.zeros(3)
     breadth = np.array([0.1, 1.0, 10.0])
-    met = Collisions(at, nothing, nothing, np.full(3, np.nan), nothing, nothing, breadth)
+    modes = [np.zeros(3, dtype=np.int64)] * 3
+    met = Collisions(at, nothing, nothing, np.full(3, np.nan), nothing, nothing, breadth, *modes)
     places = [_astray(met.of(np.arange(3) == k)) - 100.0 for k in range(3)]
     assert [len(one) for one in places] == [8, 4, 2]
     for one, wide in zip(places[1:], breadth[1:], strict=True):

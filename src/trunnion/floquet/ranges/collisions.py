@@ -17,10 +17,10 @@ from fractions import Fraction
 
 import numpy as np
 
-from trunnion.arrays import Array, Flags, Places
+from trunnion.arrays import Array, Flags, Integers, Places
 from trunnion.equations.coefficients import joint_laws
 from trunnion.equations.steady_base import has_periodic_base
-from trunnion.floquet.ranges.exponents import REACH, ExponentOrders, colliding_exponents
+from trunnion.floquet.ranges.exponents import REACH, ExponentOrders, KeptTrees, colliding_exponents
 from trunnion.floquet.ranges.resonances import BESIDE, Modes, resonances
 from trunnion.floquet.ranges.span import Span
 from trunnion.steady.orders.groups import offsets
@@ -42,6 +42,8 @@ SAME_SUM = 0.1
 """Share by which joints change the sum of two decays: where it differs by more, other modes than the two were found."""
 SETTLED = 0.05
 """Share of the sum of two decays by which the last step may still move them."""
+MORE_THAN_NODES = 4
+"""Speeds of which three stand for all."""
 NEAR = 3.0
 """Distances of the three speeds by which the meeting may lie beside them and still have the growth that they tell."""
 WIDEST = 10.0
@@ -53,7 +55,8 @@ class Collisions:
     """Where two exponents meet: speed (meeting,) [rad/s], the ``decay`` of the slower mode [1/s] there, half of the
     stretch [rad/s] over which they can grow, how fast they grow [1/s], NaN where that is not known, half of the stretch
     [rad/s] over which they do, nearly, 0 where they do not, the decay of the slowest mode of the straight line [1/s],
-    and the ``breadth`` [rad/s] of the bump in the decay of one that acts on the other: what both are damped by."""
+    the ``breadth`` [rad/s] of the bump in the decay of one that acts on the other: what both are damped by, and which
+    modes of the straight line meet, ``first`` and ``second``, by how many ``step`` of the coefficients' harmonics."""
 
     speed: Array
     decay: Array
@@ -62,6 +65,9 @@ class Collisions:
     half: Array
     slowest: Array
     breadth: Array
+    first: Places
+    second: Places
+    step: Integers
 
     def of(self, which: Flags) -> Collisions:
         """Some of them."""
@@ -98,13 +104,28 @@ def exponent_collisions(span: Span, low: float, high: float, swing: float | None
     sides = ExponentOrders.of(span.assembly)
     rates = {int(rate * sides.turns) for rate in span.assembly.topology.rates}
     every = {step / sides.turns: k for step, k in offsets(rates, ORDERS[min(len(rates), 2) - 1]).items() if step > 0}
-    parts = [_of_cycles(span, modes, sides, cycles, FED * fed**k, left_out) for cycles, k in every.items()]
+    kept = kept_trees(span)
+    parts = [_of_cycles(span, modes, sides, cycles, FED * fed**k, left_out, kept) for cycles, k in every.items()]
     found = Collisions.together(parts)
     return found.of((found.speed >= low) & (found.speed <= high))
 
 
+def kept_trees(span: Span) -> KeptTrees | None:
+    """Blocks that all speeds of a range share, of a line whose numbers do not follow the speed."""
+    if span.put:
+        return None
+    speeds = np.linspace(span.start, span.high, MORE_THAN_NODES)
+    return KeptTrees(span.assembly, span.table(speeds), span.statically_twisted)
+
+
 def _of_cycles(
-    span: Span, modes: Modes, sides: ExponentOrders, cycles: Fraction, share: float, left_out: float
+    span: Span,
+    modes: Modes,
+    sides: ExponentOrders,
+    cycles: Fraction,
+    share: float,
+    left_out: float,
+    kept: KeptTrees | None,
 ) -> Collisions:
     """The same of what excites with so many ``cycles`` per turn and feeds a ``share`` of a frequency; ``left_out``: the
     share by which harmonics that are not looked at shift it."""
@@ -123,7 +144,7 @@ def _of_cycles(
     speed = modes.speed[place] + (modes.speed[1] - modes.speed[0]) * before / (before - after)
     growth, half = np.zeros(0), np.zeros(0)
     if len(speed):
-        speed, growth, half = _followed(span, modes, sides, cycles, (i[pair], j[pair]), speed)
+        speed, growth, half = _followed(span, modes, sides, cycles, (i[pair], j[pair]), speed, kept)
     # Modes that are damped differently grow together over a wider stretch: by the mean of both decays, over √(δ₁δ₂).
     with np.errstate(divide="ignore", invalid="ignore"):
         half = half * np.nan_to_num(np.clip((decay + beside)[open_ones] / (2 * own), 1.0, WIDEST), nan=1.0)
@@ -131,12 +152,19 @@ def _of_cycles(
     slowest = np.minimum(slowest[place], slowest[place + 1])
     return Collisions(
         speed, np.minimum(decay, beside)[open_ones], np.maximum(own / c, 1e-9 * speed),
-        growth + left_out * fastest[open_ones], half, slowest, (decay + beside)[open_ones] / c,
+        growth + left_out * fastest[open_ones], half, slowest, breadth=(decay + beside)[open_ones] / c,
+        first=i[pair], second=j[pair], step=np.full(len(speed), int(cycles * sides.turns), dtype=np.int64),
     )  # fmt: skip
 
 
 def _followed(
-    span: Span, modes: Modes, sides: ExponentOrders, cycles: Fraction, pair: tuple[Places, Places], speed: Array
+    span: Span,
+    modes: Modes,
+    sides: ExponentOrders,
+    cycles: Fraction,
+    pair: tuple[Places, Places],
+    speed: Array,
+    kept: KeptTrees | None,
 ) -> tuple[Array, Array, Array]:
     """Where two exponents meet once joints have angles, from where those of the straight line do; how fast they grow
     there, no less than they do, NaN where that is not known; and over which stretch, were both damped alike.
@@ -151,7 +179,7 @@ def _followed(
         one, two = (modes.at(flat, np.repeat(mode, 3)) for mode in pair)
         found, moved = colliding_exponents(
             span.assembly, sides, span.table(flat), cycles, (one[0], two[0]), (one[1], two[1]),
-            statically_twisted=span.statically_twisted,
+            statically_twisted=span.statically_twisted, kept=kept,
         )  # fmt: skip
         square = -((found[:, 0] - found[:, 1]) ** 2).real.reshape(three.shape)
         low, middle, high = square.T

@@ -15,7 +15,7 @@ the line turns, as that of a monodromy matrix does.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -102,10 +102,11 @@ def colliding_exponents(
     shapes: tuple[NDArray[Any], NDArray[Any]],
     *,
     statically_twisted: bool = True,
+    kept: KeptTrees | None = None,
 ) -> tuple[Complex, Array]:
     """The two exponents (case, 2) that are near λ_i and λ_j* + icΩ, of modes that meet or have met: with
     ``cycles`` c of the coefficients per turn, as of ``floquet_exponents``; and by how much the last step moved either
-    (case,) [1/s].
+    (case,) [1/s]. ``kept``: blocks of the line, where other calls use them too.
     """
     away = -int(cycles * sides.turns)
     path = _path(assembly, sides, away)
@@ -113,7 +114,7 @@ def colliding_exponents(
     found, moved = np.full((len(table), 2), np.nan, dtype=complex), np.full(len(table), np.nan)
     for some in _batches(np.arange(len(table)), both, assembly):
         keep_time()
-        blocks = _Blocks(assembly, both, table[some], statically_twisted)
+        blocks = _Blocks(assembly, both, table[some], statically_twisted, kept)
         partner = starts[1][some].conj() + 1j * float(cycles) * table[some, 0]
         x = np.zeros((len(some), len(both.harmonics), assembly.topology.size, 2), dtype=complex)
         x[:, int(np.searchsorted(both.harmonics, 0)), :, 0] = shapes[0][some]
@@ -124,7 +125,7 @@ def colliding_exponents(
                 poor = moved[some] > KNOWN * np.abs(found[some].real).min(axis=1)
             if not poor.any():
                 break
-            blocks, at = _Blocks(assembly, both, table[some][poor], statically_twisted), some[poor]
+            blocks, at = _Blocks(assembly, both, table[some][poor], statically_twisted, kept), some[poor]
             found[at], moved[at], x[poor] = _each_closer(blocks, found[at], x[poor])
     return found, moved
 
@@ -154,26 +155,58 @@ def _batches(cases: Places, sides: ExponentOrders, assembly: Assembly) -> Iterat
         yield cases[begin : begin + batch_size]
 
 
+def _tree(assembly: Assembly, sides: ExponentOrders, table: Array, twisted: bool) -> tuple[Array | None, TreeHill]:
+    """Blocks along the tree of rows of packed numbers, and the few speeds [rad/s] of theirs that stand for those at
+    all, where nothing else varies."""
+    co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
+    few = None if co.across else interpolation_nodes(table[:, 0], co)
+    if few is not None:
+        nodes = np.repeat(table[:1], len(few), axis=0)
+        nodes[:, 0] = few
+        co = assembly.coefficients(nodes, statically_twisted=twisted, any_frequency=True)
+    tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
+    matrices = tree_matrices(assembly.topology, co, tau)
+    return few, TreeHill(assembly.topology, matrices, co.loss, co.speed / float(sides.turns))
+
+
+@dataclass(frozen=True)
+class KeptTrees:
+    """Blocks of a long line whose numbers stay the same over its speeds, made once for all calls; ``table``: rows of
+    packed numbers at some of the speeds; ``made``: by samples over the period."""
+
+    assembly: Assembly
+    table: Array
+    twisted: bool
+    made: dict[int, tuple[Array | None, TreeHill]] = field(default_factory=dict)
+
+    def of(self, sides: ExponentOrders) -> tuple[Array, TreeHill] | None:
+        """The few speeds that stand for all, and the blocks; None where none do."""
+        if sides.times not in self.made:
+            self.made[sides.times] = _tree(self.assembly, sides, self.table, self.twisted)
+        few, tree = self.made[sides.times]
+        return None if few is None else (few, tree)
+
+
 class _Blocks:
     """A(λ) of some rows of packed numbers and A′(λ), each (case, m, m)."""
 
-    def __init__(self, assembly: Assembly, sides: ExponentOrders, table: Array, twisted: bool = True) -> None:
-        co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
-        tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
+    def __init__(
+        self,
+        assembly: Assembly,
+        sides: ExponentOrders,
+        table: Array,
+        twisted: bool = True,
+        kept: KeptTrees | None = None,
+    ) -> None:
         self.harmonics, self.step = sides.harmonics, table[:, 0] / float(sides.turns)
         self.tree: TreeHill | None = None
         if _along_tree(assembly):
-            few = None if co.across else interpolation_nodes(table[:, 0], co)
-            if few is not None:  # matrices at three speeds stand for those at all
-                nodes = np.repeat(table[:1], len(few), axis=0)
-                nodes[:, 0] = few
-                co = assembly.coefficients(nodes, statically_twisted=twisted, any_frequency=True)
-            step = co.speed / float(sides.turns)
+            few, self.tree = (kept and kept.of(sides)) or _tree(assembly, sides, table, twisted)
             self.weights = weights_at(few, table[:, 0])
-            self.tree = TreeHill(assembly.topology, tree_matrices(assembly.topology, co, tau), co.loss, step)
             return
-        matrices = line_matrices(assembly.topology, co, tau)
-        self.blocks = HillBlocks(assembly.topology, matrices, co.loss, self.step)
+        co = assembly.coefficients(table, statically_twisted=twisted, any_frequency=True)
+        tau = 2 * np.pi * float(sides.turns) * np.arange(sides.times) / sides.times
+        self.blocks = HillBlocks(assembly.topology, line_matrices(assembly.topology, co, tau), co.loss, self.step)
 
     def at(self, value: Complex) -> SparseMatrices:
         """A at λ (case,)."""

@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Array, Flags, Places
 from trunnion.floquet.charts.axes import lowest_speed
 from trunnion.floquet.ranges.collisions import RAISED, Collisions, exponent_collisions
+from trunnion.floquet.ranges.growing_pairs import GrowingPairs
 from trunnion.floquet.ranges.slow_speeds import slow_enough
 from trunnion.floquet.ranges.span import Gap, SmoothRange, Span
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed
@@ -37,6 +38,8 @@ BEYOND = 0.04
 """Share of a stretch over which two modes grow by which one looks beyond and within its ends."""
 ENDS = 1e-7
 """How closely the ends of unstable ranges are located, as a share of the speed."""
+CLOSER, CONFIRMED = 0.05, 0.45
+"""Shares of that to which a pair by itself locates an end, and at which looks on its two sides confirm it."""
 SLOWEST = 20.0
 """Factor below the lowest speed of a chart down to which growth is computed."""
 
@@ -82,9 +85,12 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS, swing: fl
     octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
     met = exponent_collisions(span, low, high, swing)
     met = met.of(met.matters)
+    pairs = GrowingPairs.of(span, met.of(met.raised), CLOSER * ENDS)
     lost = np.array([at for gap in span.lost for at in (gap.low, (gap.low + gap.high) / 2, gap.high)])
-    along = judge(np.unique(np.concatenate([even, octaves, met.speed, lost[(lost >= low) & (lost <= high)]])))
-    along = _beside_met(along, judge, met.of(met.raised), (low, high))
+    lost = np.concatenate([lost[(lost >= low) & (lost <= high)], [low, high], pairs.looked_at])
+    first = np.setdiff1d(np.concatenate([even, octaves, met.speed]), lost)
+    along = judge(np.unique(np.concatenate([first[~pairs.grows(first)], lost])))
+    along = _beside_met(along, judge, met.of(met.raised), (low, high), pairs)
     for _ in range(ROUNDS):
         wanted = _rising(along)
         if not len(wanted):
@@ -111,24 +117,38 @@ def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
 
 
 def _beside_met(
-    along: StabilityOverSpeed, judge: Judge, met: Collisions, ends: tuple[float, float]
+    along: StabilityOverSpeed, judge: Judge, met: Collisions, ends: tuple[float, float], pairs: GrowingPairs
 ) -> StabilityOverSpeed:
     """With two speeds beside every meeting at which growth stands out, of the pair's and of the line's: just beyond the
-    stretch over which the two grow, where that is known, and just within where growth has ended beyond."""
+    stretch over which the two grow, where that is known, and just within where growth has ended beyond; on both sides
+    of where one of the ``pairs`` ceases to grow."""
     if not len(met.speed):
         return along
-    growth = along.growth_rate[np.searchsorted(along.speed, met.speed)]
+    place, looked = _places(along, met.speed)
+    growth = np.where(looked, along.growth_rate[place], np.nan_to_num(met.growth))  # in the stretch of a pair none is
     with np.errstate(invalid="ignore"):
         out = growth > -RAISED * np.maximum(met.decay, 0.0)
     astray = _astray(met.of(np.isnan(met.growth)))  # growth at a wrong place tells nothing of the right one
+    seen = (pairs.joined[..., None] * (1 + CONFIRMED * ENDS * np.array([-1.0, 1.0]))).ravel()
+    out &= ~pairs.followed(met.speed)
     met, known = met.of(out), ((growth > 0) & (met.half > 0))[out]
     away = np.where(known, (1 + BEYOND) * met.half, 0.5 * met.width)
     beside = met.speed[:, None] + away[:, None] * np.array([-1.0, 1.0])
     top = met.speed[known, None] + 0.5 * met.width[known, None] * np.array([-1.0, 1.0])  # the line's is not the pair's
-    along = _looked(along, judge, np.concatenate([beside.ravel(), top.ravel(), astray]), ends)
-    ended = along.verdict[np.minimum(np.searchsorted(along.speed, beside), len(along.speed) - 1)] == Verdict.STABLE
+    along = _looked(along, judge, seen, ends)
+    beside_them = np.concatenate([beside.ravel(), top.ravel(), astray])
+    along = _looked(along, judge, beside_them[~pairs.grows(beside_them)], ends)
+    place, looked = _places(along, beside)
+    looked |= (beside <= ends[0]) | (beside >= ends[1])
+    ended = looked & (along.verdict[place] == Verdict.STABLE)
     within = (met.speed[:, None] + (1 - BEYOND) * met.half[:, None] * np.array([-1.0, 1.0]))[ended & known[:, None]]
-    return _looked(along, judge, within, ends)
+    return _looked(along, judge, within[~pairs.grows(within)], ends)
+
+
+def _places(along: StabilityOverSpeed, speed: Array) -> tuple[Places, Flags]:
+    """Where each ``speed`` stands among those looked at, and whether it does."""
+    place = np.minimum(np.searchsorted(along.speed, speed), len(along.speed) - 1)
+    return place, np.asarray(along.speed[place] == speed)
 
 
 def _astray(met: Collisions) -> Array:
@@ -168,6 +188,7 @@ def closed_in(
 ) -> tuple[StabilityOverSpeed, tuple[tuple[float, float], ...]]:
     """With the ends of what is unstable located, ``closely`` as a share of the speed, and the ranges."""
     change = _changes(along)
+    change = change[along.speed[change + 1] - along.speed[change] > closely * along.speed[change + 1]]
     low, high = along.speed[change], along.speed[change + 1]
     looked_at = [along]
 
@@ -181,7 +202,7 @@ def closed_in(
         bracketed(excess, low, high, closely * high / 2, known)
         for found in looked_at[1:]:
             along = along.beside(found)
-        change = _changes(along)
+    change = _changes(along)
     grows = along.verdict == Verdict.UNSTABLE
     starts, ends = (along.speed[change[grows[change + 1]] + 1].tolist(), along.speed[change[grows[change]]].tolist())
     if len(grows) and grows[0]:
