@@ -7,7 +7,10 @@ import pytest
 
 import trunnion as tn
 from trunnion.design.limits.result import LimitKind
+from trunnion.errors import ComputationError
 from trunnion.modes.bending import tube_critical_speed
+from trunnion.response import speed_sweep
+from trunnion.results.finding import Gravity
 
 LINE = tn.catalogue("two-shaft-cardan", angle=0.3)
 
@@ -36,6 +39,27 @@ def test_sweep_speeds_hold_the_peaks() -> None:
     dense = tn.speed_sweep(LINE, at * np.linspace(0.999, 1.001, 401)).torque_amplitude[:, 0].max()
     assert dense * (1 - 1e-6) <= peak <= dense * (1 + 1e-5)
     assert peak > 100 * np.median(tn.speed_sweep(LINE, speeds).torque_amplitude[:, 0])
+
+
+def test_a_grid_that_knows_no_peaks_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where resonances cannot be looked for: by the speeds, and by the response over the range."""
+
+    def lost(_: object) -> None:
+        raise ComputationError("modes did not settle")
+
+    monkeypatch.setattr(speed_sweep, "resonances", lost)
+    with pytest.warns(tn.InputRemark, match="even grid of 11 from 0.1 rad/s.*modes did not settle"):
+        speeds = tn.sweep_speeds(LINE, 0.1, 1.5, 11)
+    assert speeds.tolist() == np.linspace(0.1, 1.5, 11).tolist()
+    found = speed_sweep.response_over(LINE, 0.1, 1.5, points=11)
+    assert found.speed.tolist() == speeds.tolist()
+    assert any("even grid" in one.sentence and one.gravity == Gravity.CAUTION for one in found.findings)
+
+
+def test_speeds_of_a_line_without_a_response_are_refused() -> None:
+    line = tn.Driveline([tn.Disk(inertia=1.0, load_torque=5.0), tn.Shaft(stiffness=1e4), tn.Disk(inertia=1.0)])
+    with pytest.raises(tn.InputError, match="do not balance"):
+        tn.sweep_speeds(line, 20.0, 100.0)
 
 
 def test_sweeps_and_responses_without_a_steady_state_are_printed_and_drawn() -> None:

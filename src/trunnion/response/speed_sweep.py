@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +15,7 @@ from trunnion.arrays import Array, Codes, Flags
 from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.steady_base import has_periodic_base
-from trunnion.errors import ComputationError, InputError
+from trunnion.errors import ComputationError, InputError, InputRemark
 from trunnion.floquet.ranges.resonances import resonances
 from trunnion.floquet.ranges.span import SmoothRange, Span
 from trunnion.floquet.stability.where_unstable import where_unstable
@@ -174,7 +176,8 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     which a torque of any spring is largest.
 
     An even grid alone would step over the peaks of lightly damped modes. The largest torques over the range are those
-    at these speeds, to 0.1 % (``response.ranges.largest``).
+    at these speeds, to 0.1 % (``response.ranges.largest``). Where they cannot be looked for, the even grid is all there
+    is, which an ``InputRemark`` says, with the reason.
 
     Parameters
     ----------
@@ -182,6 +185,10 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     low : lowest input speed [rad/s].
     high : highest input speed [rad/s].
     points : of the even grid.
+
+    Raises
+    ------
+    InputError : as of ``order_response``.
 
     Examples
     --------
@@ -193,8 +200,13 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     True [40. 70.]
     """
     assembly, even = assemble(line), _even(low, high, points)
-    found = _searched(assembly, _first(assembly, even))
-    return even if found is None else _with(even, found.speed)
+    try:
+        found = _searched(assembly, _first(assembly, even))
+    except (InputError, ComputationError) as error:
+        order_response(assembly, even[[0, -1]])  # what has no response at any speed is refused
+        warnings.warn(InputRemark(_evenly(even, error)), stacklevel=2)
+        return even
+    return _with(even, found.speed)
 
 
 def response_over(
@@ -218,12 +230,18 @@ def response_over(
     InputError : as of ``order_response``; a long line whose search would take too long, with an estimate.
     """
     assembly, even = assemble(line), _even(low, high, points)
-    motions, first = motions or steady_states_of(assembly), _first(assembly, even)
-    if first is not None and known is None:
-        _require_search(assembly, first)
-    found = _searched(assembly, first, motions, known, around)
+    motions = motions or steady_states_of(assembly)
+    try:
+        first = _first(assembly, even)
+        too_long = _too_long(assembly, first) if known is None else None
+        found = None if too_long else _searched(assembly, first, motions, known, around)
+    except (InputError, ComputationError) as error:  # refused by the response too, where it holds of any speed
+        response = order_response(assembly, even, orders, progress=progress)
+        remark = Finding(Gravity.CAUTION, _evenly(even, error))
+        return replace(response, remarks=(remark, *response.remarks))
     if found is None:
-        return order_response(assembly, even, orders, progress=progress)
+        assert too_long is not None
+        raise too_long
     speeds, solved = _with(even, found.speed), found.spectrum
     del found, known
     one_motion_each(assembly, speeds, motions)
@@ -240,59 +258,60 @@ def _with(even: Array, found: Array) -> Array:
     return every[(every >= even[0]) & (every <= even[-1])]
 
 
-def _first(assembly: Assembly, even: Array) -> list[Array] | None:
-    """Speeds to begin with, by piece of the range; None where they cannot be told."""
+def _first(assembly: Assembly, even: Array) -> list[Array]:
+    """Speeds to begin with, by piece of the range."""
     span = Span(assembly, float(even[0]), float(even[-1]))
-    try:
-        met = resonances(span)
-        about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
-        return [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
-    except (InputError, ComputationError):  # said where the response is asked for
-        return None
+    met = resonances(span)
+    about = (met.speed[:, None] + np.maximum(met.width, 1e-9 * met.speed)[:, None] * CLUSTER).ravel()
+    return [np.union1d(part, _between(about, part)) for part in first_speeds(span.pieces, met, FEW)]
 
 
-def _require_search(assembly: Assembly, first: list[Array]) -> None:
-    """Refuse to search a range of a long line that begins with the speeds ``first``, by piece, where that would not end
-    or fill the memory."""
+def _evenly(even: Array, error: InputError | ComputationError) -> str:
+    """That no peaks were looked for, and why."""
+    return (
+        f"speeds are an even grid of {len(even)} from {even[0]:.5g} rad/s to {even[-1]:.5g} rad/s, between which peaks "
+        f"may lie: resonances and largest torques could not be looked for, as {error}"
+    )
+
+
+def _too_long(assembly: Assembly, first: list[Array]) -> InputError | None:
+    """What refuses to search a range of a long line that begins with the speeds ``first``, by piece, where that would
+    not end or fill the memory."""
     size, speeds = assembly.topology.size, sum(len(part) for part in first)
     if size < LONG or has_periodic_base(assembly):  # whose motions are refused where they are solved
-        return
-    try:
-        cost = response_cost(assembly, float(first[-1][-1]), speeds)
-    except (InputError, ComputationError):  # said where the response is asked for
-        return
+        return None
+    cost = response_cost(assembly, float(first[-1][-1]), speeds)
     what = f"its response over a range, at some {speeds} speeds with {cost.side_orders} side orders on either side,"
-    require_estimate(size, what, cost.seconds, cost.memory, most=MOST_SEARCHED, remedy=STATE_SPEEDS)
+    try:
+        require_estimate(size, what, cost.seconds, cost.memory, most=MOST_SEARCHED, remedy=STATE_SPEEDS)
+    except InputError as error:
+        return error
+    return None
 
 
 def _searched(
     assembly: Assembly,
-    first: list[Array] | None,
+    first: list[Array],
     motions: SteadyStatesBySpeed | None = None,
     known: OrderResponse | None = None,
     around: OrderResponse | None = None,
-) -> OrderResponse | None:
+) -> OrderResponse:
     """The response at all speeds at which the search for the largest torques looked, from those on at which it is
-    ``known``, and tops that ``around`` shows; None where there is none."""
-    if first is None:
-        return None
-    try:
-        respond = partial(response_about, assembly, motions=motions)
-        torques, parts = _torques(assembly), None if known is None else _by_piece(known.speed, first)
-        if known is None or parts is None:
-            return search(assembly, respond, first, torques).response
-        if around is None:
-            found = search(assembly, respond, parts, torques, known=known).response
-            every = np.union1d(found.speed, np.concatenate(first))
-            return completed_response(assembly, found.spectrum, every, motions=motions)
-        pieces = [SmoothRange(part[0], part[-1]) for part in first]
-        tops = np.concatenate([known.speed, *thinned(around, pieces, torques, FEW)])
-        known = completed_response(assembly, known.spectrum, np.unique(tops), motions=motions)
-        parts = _by_piece(known.speed, first)
-        assert parts is not None  # more speeds of the same pieces
-        return search(assembly, respond, parts, torques, known=known).response
-    except (InputError, ComputationError):  # said where the response is asked for
-        return None
+    ``known``, and tops that ``around`` shows."""
+    respond = partial(response_about, assembly, motions=motions)
+    torques, parts = _torques(assembly), None if known is None else _by_piece(known.speed, first)
+    if known is None or parts is None:
+        return search(assembly, respond, first, torques).response
+    if around is None:
+        found = search(assembly, respond, parts, torques, known=known).response
+        every = np.union1d(found.speed, np.concatenate(first))
+        return completed_response(assembly, found.spectrum, every, motions=motions)
+    pieces = [SmoothRange(part[0], part[-1]) for part in first]
+    tops = np.concatenate([known.speed, *thinned(around, pieces, torques, FEW)])
+    known = completed_response(assembly, known.spectrum, np.unique(tops), motions=motions)
+    parts = _by_piece(known.speed, first)
+    assert parts is not None  # more speeds of the same pieces
+    return search(assembly, respond, parts, torques, known=known).response
 
 
 def _by_piece(speeds: Array, first: list[Array]) -> list[Array] | None:
