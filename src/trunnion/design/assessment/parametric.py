@@ -4,9 +4,10 @@
 
 The margin is the share that joints and meshes leave of the damping of the straight line, σ over the decay of its
 slowest disturbance: 100 % where they take nothing, 0 on the border of stability. Every resonance that may open is
-looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``); lines with joint angles and with
-play or stages that are free–free, where each speed takes its own periodic motion, are looked at at 25 speeds and at
-named resonances. Where a certificate of a few boxes proves the whole range, the check says so.
+looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
+play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
+resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
+the whole range, the check says so.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -27,16 +28,17 @@ from trunnion.design.assessment.compared import not_reached
 from trunnion.driveline.machines import Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
-from trunnion.floquet.ranges.unstable import UnstableRanges, closed_in
+from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, StabilityOverSpeed, straight_decay
-from trunnion.modes.resonance_speeds import resonance_speeds
 from trunnion.results.counts import counted, listed
 from trunnion.results.verdict import Verdict
-from trunnion.waiting import OutOfTime
+from trunnion.waiting import OutOfTime, keep_time
 
 RULE = Rule("growth rate of every disturbance < 0", "Floquet", "derived", "stability")
 EACH, COARSE = 25, 1e-8
-ROUGHLY = 1e-3
+SPARSE = 9
+"""Even speeds, the error asked of multipliers, and speeds at equal ratios, where each takes tenths of a second."""
+ROUGHLY = 1e-5
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
 BOXES = 6
@@ -190,7 +192,7 @@ def _ranges_of(case: LoadCaseResponse) -> UnstableRanges:
 
 
 def _one_by_one(case: LoadCaseResponse) -> UnstableRanges:
-    """The same at few speeds, each about its periodic steady state, found by shooting."""
+    """The same, each speed about its periodic steady state, found by shooting."""
     # Loaded where needed: it brings the compiler with it.
     from trunnion.floquet.stability.stability import stability
 
@@ -198,6 +200,7 @@ def _one_by_one(case: LoadCaseResponse) -> UnstableRanges:
         radius, growth = np.full(len(speeds), np.nan), np.full(len(speeds), np.nan)
         verdict, period = np.full(len(speeds), int(Verdict.FAILED), dtype=np.int8), 1.0
         for i, speed in enumerate(speeds):
+            keep_time()
             with suppress(ComputationError):
                 found = stability(case.assembly, float(speed), tolerance=COARSE)
                 radius[i], growth[i], verdict[i] = found.spectral_radius, found.growth_rate, int(found.verdict)
@@ -205,7 +208,4 @@ def _one_by_one(case: LoadCaseResponse) -> UnstableRanges:
             speeds, radius, np.zeros(len(speeds)), radius.astype(complex), verdict, growth, period
         )
 
-    low, high = case.span.start, case.high
-    named = [r.speed for r in resonance_speeds(case.assembly).within(low, high) if r.opens] if low < high else []
-    every = np.union1d(np.linspace(low, high, EACH if high > low else 1), named)
-    return UnstableRanges(*closed_in(judge(every), judge, ROUGHLY), 0.0, ())
+    return unstable_ranges(case.span, judge, points=EACH, apart=SPARSE, bound=False, closely=ROUGHLY)

@@ -25,7 +25,8 @@ from trunnion.results.verdict import Verdict
 
 POINTS = 65
 """Speeds of the even grid."""
-PER_OCTAVE = 3
+APART = 25
+"""Speeds at equal ratios, over eight octaves at most."""
 ROUNDS = 12
 SETTLED = 1e-3
 """Share of the fastest growth, or of the slowest decay, that may still be missing."""
@@ -69,20 +70,31 @@ class UnstableRanges:
         return left
 
 
-def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS, swing: float | None = None) -> UnstableRanges:
+def unstable_ranges(
+    span: Span,
+    judge: Judge,
+    *,
+    points: int = POINTS,
+    apart: int = APART,
+    swing: float | None = None,
+    bound: bool = True,
+    closely: float = ENDS,
+) -> UnstableRanges:
     """Of a line that joints or meshes vary; ``judge``: its stability at speeds (speed,); ``swing``: how far the inputs
-    of joints swing at most [rad], where that is known.
+    of joints swing at most [rad], where that is known; ``points``, ``apart``: even speeds, and those at equal ratios,
+    that one begins with; ``bound``: whether slow speeds are left to one about rigid shafts; ``closely``: how ends are
+    located, as a share of the speed.
 
     Raises
     ------
     InputError : as of ``judge``.
     """
-    slow, gaps, start = _slow_end(span)
+    slow, gaps, start = _slow_end(span, bound)
     low, high = max(span.start, start), span.high
     if low >= high:
         low = high
     even = np.linspace(low, high, points)
-    octaves = np.geomspace(max(low, high / 2**8), high, 8 * PER_OCTAVE + 1)
+    octaves = np.geomspace(max(low, high / 2**8), high, apart)
     met = exponent_collisions(span, low, high, swing)
     met = met.of(met.matters)
     pairs = GrowingPairs.of(span, met.of(met.raised), CLOSER * ENDS)
@@ -96,17 +108,22 @@ def unstable_ranges(span: Span, judge: Judge, *, points: int = POINTS, swing: fl
         if not len(wanted):
             break
         along = along.beside(judge(wanted))
-    along, ranges = closed_in(along, judge)
+    for _ in range(ROUNDS):
+        wanted = _beside_top(along)
+        if not len(wanted):
+            break
+        along = along.beside(judge(wanted))
+    along, ranges = closed_in(along, judge, closely)
     inside = np.any([(along.speed > gap.low) & (along.speed < gap.high) for gap in span.lost], axis=0)
     return UnstableRanges(along.of(np.broadcast_to(~inside, along.speed.shape)), ranges, slow, (*gaps, *span.lost))
 
 
-def _slow_end(span: Span) -> tuple[float, tuple[Gap, ...], float]:
+def _slow_end(span: Span, bound: bool) -> tuple[float, tuple[Gap, ...], float]:
     """The bound below which nothing grows, what lies between it and what can be computed, and where to begin."""
     least = lowest_speed(span.assembly) / SLOWEST
     if span.start >= least:
         return 0.0, (), span.start
-    slow = 0.0 if span.put else slow_enough(span.assembly)
+    slow = 0.0 if span.put or not bound else slow_enough(span.assembly)
     if slow >= span.high:
         return slow, (), span.high
     begin = max(least, slow, span.start)
@@ -181,6 +198,21 @@ def _rising(along: StabilityOverSpeed) -> Array:
     near = np.abs(where - x[np.clip(np.searchsorted(x, where), 0, len(x) - 1)])
     before = np.abs(where - x[np.clip(np.searchsorted(x, where) - 1, 0, len(x) - 1)])
     return np.asarray(where[np.minimum(near, before) > ENDS * where])
+
+
+def _beside_top(along: StabilityOverSpeed) -> Array:
+    """Speeds halfway from the fastest growth to its neighbours, where one of them grows so much more slowly that a
+    narrow top between them may be missed."""
+    known = np.isfinite(along.growth_rate)
+    x, v, error = along.speed[known], along.growth_rate[known], along.error[known]
+    if len(x) < 2:
+        return np.zeros(0)
+    k = int(v.argmax())
+    beside = np.array([i for i in (k - 1, k + 1) if 0 <= i < len(x)])
+    least = 4 * SETTLED * abs(v[k]) + 2 * error[k] * x[k] / along.period
+    if (v[k] - v[beside]).max() <= least:
+        return np.zeros(0)
+    return np.asarray((x[k] + x[beside])[np.abs(x[k] - x[beside]) > ENDS * x[k]] / 2)
 
 
 def closed_in(
