@@ -38,6 +38,7 @@ from trunnion.floquet.tolerance.spread import (
 from trunnion.floquet.tolerance.steady_state_lines import SteadyStateLines, lines_like
 from trunnion.numerics.workers import Workers, workers_of_client
 from trunnion.results.chart import require_pixels
+from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, coordinate, internal, labelled, variable
 from trunnion.results.finding import Finding, Gravity
@@ -56,8 +57,11 @@ STEP = 1e-4
 """Of differences, as a share of a tolerance."""
 PARTS = np.array([0.01, 0.03, 0.1, 0.25, 0.5, 1.0])
 """Of the way to the corner, near ones first: where the motion is not known it is followed from the one before."""
-STEPS_ASIDE, FARTHEST, DIRECTIONS = 12, 0.25, 16
+STEPS_ASIDE, FARTHEST, NEAREST, DIRECTIONS = 24, 0.25, 1e-3, 16
 """Steps along single tolerances and in directions drawn by lot; shares of tolerances, halved where none leads on."""
+STARTS, CLOSER, APART = 4, 2, 0.25
+"""Samples from which a search for the fastest line begins, how many of the lines found it looks about more closely, and
+the share of a tolerance by which the samples differ."""
 WAY = 9
 """Lines between the middle of the tolerances and a line whose motion may have to be followed from there."""
 BINS = 32
@@ -66,12 +70,15 @@ BINS = 32
 
 @dataclass(frozen=True)
 class Worst:
-    """The line of fastest growth found within the tolerances: values by parameter, speed, growth rate, verdict."""
+    """The line of fastest growth found within the tolerances: values by parameter, speed, growth rate, verdict; how
+    many samples the search began at, and how many lines it looked at."""
 
     values: dict[str, float]
     speed: float
     growth_rate: float
     verdict: Verdict
+    starts: int = 0
+    looked: int = 0
 
 
 @labelled
@@ -89,7 +96,7 @@ class ToleranceStudy(Result):
     undecided: float = attribute("share of lines whose radius is 1 to within its error")
     stable_share: Array = variable("speed", "1")
     growth_rate: Array = internal(GROWTH, "1/s", "speed sample")
-    worst: Worst = internal("by gradient from the fastest sample")
+    worst: Worst = internal("by a search from the fastest samples")
     ranking: tuple[tuple[str, float], ...] = internal(RANKING)
     unit: str = internal("of speeds in print")
     findings: tuple[Finding, ...] = internal("what was left out", default=())
@@ -126,7 +133,8 @@ class ToleranceStudy(Result):
         if self.about_steady_state:
             yield "  each line is judged about its own periodic motion, without its excitations"
         yield (
-            f"  worst line found: {self.worst.verdict}, "
+            f"  worst line found, searched from {counted(self.worst.starts, 'sample')} over {self.worst.looked} lines "
+            f"more: {self.worst.verdict}, "
             f"{'grows' if self.worst.growth_rate > 0 else 'decays'} by {abs(self.worst.growth_rate):.4g} 1/s at "
             f"{self.words.speed(self.worst.speed)}, with {values_in_words(self.worst.values)}"
         )
@@ -333,51 +341,98 @@ def _require_known(found: Pixels, speed: float) -> None:
 
 
 def _worst(lines: ManyLines, spreads: tuple[Spread, ...], shares: Array, growth: Array, speeds: Array) -> Worst:
-    """Climb from the fastest sample along the gradient: first to the corner it points to, else part of the way."""
-    k, start = np.unravel_index(int(np.nanargmax(growth)), growth.shape)
-    speed, place, best = float(speeds[k]), shares[start].copy(), float(growth[k, start])
-
-    def judged(points: Array) -> tuple[Array, Codes]:
-        way = _way_to(lines, place)
-        table = tables(lines.assembly, spreads, np.concatenate([way, points]), speed)
-        found = lines.judged(table, 1e-2 * TOLERANCE)
-        return lines.growth(table, found)[len(way) :], found.verdict[len(way) :]
-
-    size = len(spreads)
-    for _ in range(0 if time_is_up() else CLIMBS):
-        inside = np.clip(place, STEP, 1 - STEP)
-        probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
-        try:
-            found, _ = judged(probes)
-        except OutOfTime:  # the fastest so far stands, as the study says that it was ended
+    """The fastest line that a search finds: along the gradient from several of the fastest samples, as growth has tops
+    beside each other, and closer about the fastest lines that this leads to."""
+    search, known = WorstSearch(lines, spreads), np.where(np.isfinite(growth), growth, -np.inf)
+    climbed = []
+    for i in _starts(shares, known):
+        k = int(known[:, i].argmax())
+        place, best = search.along_gradient(float(speeds[k]), shares[i].copy(), float(known[k, i]))
+        climbed.append((best, float(speeds[k]), place))
+        if time_is_up():
             break
-        gradient = found[:size] - found[size:]
-        corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
-        tried = place + PARTS[:, None] * (corner - place)
-        with to_the_end():
-            reached, _ = judged(tried)
-        # What is not known is no faster line.
-        top = int(np.argmax(np.where(np.isfinite(reached), reached, -np.inf)))
-        if not reached[top] > best:
-            break
-        place, best = tried[top], float(reached[top])
-    # Between two multipliers that are equally large the growth rate has an edge, along which no gradient leads.
-    reach, rng = FARTHEST, np.random.default_rng(0)
-    for _ in range(0 if time_is_up() else STEPS_ASIDE):
-        aside = rng.normal(size=(DIRECTIONS, size)) / np.sqrt(size)
-        tried = np.clip(place + reach * np.concatenate([np.eye(size), -np.eye(size), aside]), 0.0, 1.0)
-        try:
-            reached, _ = judged(tried)
-        except OutOfTime:
-            break
-        top = int(np.argmax(np.where(np.isfinite(reached), reached, -np.inf)))
-        if reached[top] > best:
-            place, best = tried[top], float(reached[top])
-        else:
-            reach /= 2
+    climbed.sort(key=lambda one: -one[0])
+    found = [(speed, *search.aside(speed, place, best)) for best, speed, place in climbed[:CLOSER]]
+    speed, place, fastest = max(found, key=lambda one: one[2])
     with to_the_end():
-        _, verdict = judged(place[None])
-    return Worst(numbers_at(spreads, place), speed, best, Verdict(int(verdict[0])))
+        _, verdict = search.judged(speed, place, place[None])
+    return Worst(
+        numbers_at(spreads, place), speed, fastest, Verdict(int(verdict[0])), starts=len(climbed), looked=search.looked
+    )
+
+
+def _starts(shares: Array, growth: Array) -> list[int]:
+    """Samples from which a search begins: the fastest at any speed, and others away from each other."""
+    found: list[int] = []
+    for i in np.argsort(-growth.max(axis=0), kind="stable").tolist():
+        if all(np.abs(shares[i] - shares[k]).max() > APART for k in found):
+            found.append(i)
+        if len(found) == STARTS:
+            break
+    return found
+
+
+@dataclass
+class WorstSearch:
+    """Steps from a place within the tolerances (shares of them) to faster lines; ``looked``: lines judged so far."""
+
+    lines: ManyLines
+    spreads: tuple[Spread, ...]
+    looked: int = 0
+
+    def judged(self, speed: float, place: Array, points: Array) -> tuple[Array, Codes]:
+        """Growth and verdict of lines at ``points`` (line, tolerance) about a ``place``; what is not known is no faster
+        line."""
+        way = _way_to(self.lines, place)
+        table = tables(self.lines.assembly, self.spreads, np.concatenate([way, points]), speed)
+        found = self.lines.judged(table, 1e-2 * TOLERANCE)
+        self.looked += len(points)
+        growth = self.lines.growth(table, found)[len(way) :]
+        return np.where(np.isfinite(growth), growth, -np.inf), found.verdict[len(way) :]
+
+    def along_gradient(self, speed: float, place: Array, best: float) -> tuple[Array, float]:
+        """To the corner that the gradient points to, else part of the way."""
+        size = len(self.spreads)
+        for _ in range(0 if time_is_up() else CLIMBS):
+            inside = np.clip(place, STEP, 1 - STEP)
+            probes = np.concatenate([inside + STEP * np.eye(size), inside - STEP * np.eye(size)])
+            try:
+                found, _ = self.judged(speed, place, probes)
+            except OutOfTime:  # the fastest so far stands, as the study says that it was ended
+                break
+            with np.errstate(invalid="ignore"):
+                gradient = found[:size] - found[size:]
+            corner = np.where(gradient > 0, 1.0, np.where(gradient < 0, 0.0, place))
+            tried = place + PARTS[:, None] * (corner - place)
+            with to_the_end():
+                reached, _ = self.judged(speed, place, tried)
+            top = int(np.argmax(reached))
+            if not reached[top] > best:
+                break
+            place, best = tried[top], float(reached[top])
+        return place, best
+
+    def aside(self, speed: float, place: Array, best: float) -> tuple[Array, float]:
+        """Along single tolerances, in directions drawn by lot, and on as the last steps went: between two multipliers
+        that are equally large the growth rate has an edge, along which no gradient leads."""
+        size, reach, rng, before = len(self.spreads), FARTHEST, np.random.default_rng(0), place
+        for _ in range(0 if time_is_up() else STEPS_ASIDE):
+            aside = rng.normal(size=(DIRECTIONS, size)) / np.sqrt(size)
+            on = np.array([[1.0], [2.0], [4.0]]) * (place - before)
+            tried = place + np.concatenate([reach * np.eye(size), -reach * np.eye(size), reach * aside, on])
+            tried = np.clip(tried, 0.0, 1.0)
+            try:
+                reached, _ = self.judged(speed, place, tried)
+            except OutOfTime:
+                break
+            top = int(np.argmax(reached))
+            if reached[top] > best:
+                before, place, best = place, tried[top], float(reached[top])
+            else:
+                reach, before = reach / 2, place
+            if reach < NEAREST:
+                break
+        return place, best
 
 
 def _way_to(lines: ManyLines, place: Array) -> Array:
