@@ -7,7 +7,8 @@ slowest disturbance: 100 % where they take nothing, 0 on the border of stability
 looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
 resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
-the whole range, the check says so.
+the whole range, the check says so. Driven lines are judged about their static twist; where the motion that they really
+make is disturbed otherwise, it decides whether they are stable (``own_growth``).
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -25,6 +26,7 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
+from trunnion.design.assessment.own_growth import OwnGrowth, own_growth
 from trunnion.driveline.machines import Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
@@ -41,6 +43,8 @@ SPARSE = 9
 ROUGHLY = 1e-5
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
+STILL = 1e-3
+"""Share of the growth about a line's own motion below which that about its static twist is none."""
 BOXES = 6
 """Boxes for a proof, each of some hundredths of a second."""
 NAME = "parametric stability"
@@ -75,6 +79,8 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     covered = _covered(case, found)
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
+    swung = own_growth(case, found) if subject.naming else None
+    own = "" if swung is None else f"; {_of_own_motion(subject, swung)}"
     if found.ranges:
         if not case.parametric:
             fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
@@ -84,7 +90,8 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
             why = here + (_resonance(case, float(speeds[at])) if subject.naming else "")
             margin = min(-growth[at] / straight, -1e-12) if straight > 0 else -np.inf
         because = (
-            f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}{gaps}"
+            f"a disturbance doubles every {np.log(2) / worst[0]:.3g} s {why}; unstable {_ranges(subject, found)}"
+            f"{own}{gaps}"
         )
         yield _judged(case, Status.EXCEEDED, because, float(margin), worst, found.ranges, covered)
         return
@@ -94,6 +101,12 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         remedy = "state the damping of the shafts, or damping_ratio = 0.01 of the line, say"
         because = f"{words} at some speeds: {remedy}{case.suffix}"
         yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=worst[2], load_case=case.name)
+        return
+    if swung is not None and swung.unstable:
+        straight = straight_decay(case.assembly, swung.speed)
+        margin = -swung.growth / straight if straight > 0 else -np.inf
+        worst = (swung.growth, swung.speed, worst[2])
+        yield _judged(case, Status.EXCEEDED, own.removeprefix("; ") + case.suffix + gaps, margin, worst, (), covered)
         return
     share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
     because = (
@@ -105,7 +118,21 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     if status is Status.SATISFIED and subject.naming:
         proof = PROVED if _proved(case) else SEARCHED
         because += "; proved for every speed of the range" if proof == PROVED else ""
-    yield replace(_judged(case, status, because + gaps, float(share), worst, (), covered), proof=proof)
+    yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
+
+
+def _of_own_motion(subject: AssessmentInput, swung: OwnGrowth) -> str:
+    """What the motion that joints and loads make the line swing in says beside its static twist."""
+
+    def rate(growth: float) -> str:
+        return f"{'grows' if growth > 0 else 'decays'} by {abs(growth):.3g} 1/s"
+
+    static = "stays as it is" if abs(swung.static) < STILL * abs(swung.growth) else rate(swung.static)
+    return (
+        f"about the motion that its joints and loads make it swing in a disturbance {rate(swung.growth)} at "
+        f"{subject.shown(swung.speed)}, where it {static} about the static twist: stable_windows with "
+        "about_steady_state follows that"
+    )
 
 
 def _constant_power(case: LoadCaseResponse) -> str:
