@@ -18,6 +18,7 @@ from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.unstable import UnstableRanges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along, straight_decay
 from trunnion.results.verdict import Verdict
+from trunnion.waiting import OutOfTime
 
 MOST = 6
 """Speeds of fastest growth that are looked at, beside the ends of what is unstable."""
@@ -46,6 +47,9 @@ def own_growth(case: LoadCaseResponse, found: UnstableRanges) -> OwnGrowth | Non
     try:
         own = stability_along(assembly, along.speed[places], about_steady_state=True)
     except (InputError, ComputationError):
+        return None
+    except OutOfTime as error:
+        case.end(error)
         return None
     growth, static = own.growth_rate, along.growth_rate[places]
     change = np.where(np.isfinite(growth), np.abs(growth - static), 0.0)
