@@ -8,7 +8,7 @@ looked at, and the ends of unstable ranges are located (``floquet.ranges.unstabl
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
 resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
 the whole range, the check says so. Driven lines are judged about their static twist; where the motion that they really
-make is disturbed otherwise, it decides whether they are stable (``own_growth``).
+make is disturbed otherwise, it decides whether they are stable (``steady_state_growth``).
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -26,7 +26,7 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
-from trunnion.design.assessment.own_growth import OwnGrowth, own_growth
+from trunnion.design.assessment.steady_state_growth import SteadyStateGrowth, steady_state_growth
 from trunnion.driveline.machines import Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
@@ -79,8 +79,8 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     covered = _covered(case, found)
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
-    swung = own_growth(case, found) if subject.naming else None
-    own = "" if swung is None else f"; {_of_own_motion(subject, swung)}"
+    swung = steady_state_growth(case, found) if subject.naming else None
+    own = "" if swung is None else f"; {_of_steady_state(subject, swung)}"
     if found.ranges:
         if not case.parametric:
             fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
@@ -121,7 +121,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 
 
-def _of_own_motion(subject: AssessmentInput, swung: OwnGrowth) -> str:
+def _of_steady_state(subject: AssessmentInput, swung: SteadyStateGrowth) -> str:
     """What the motion that joints and loads make the line swing in says beside its static twist."""
 
     def rate(growth: float) -> str:
