@@ -716,8 +716,13 @@ PYTHON = [
     ),
     (
         lambda: tn.misfire(line(SILENT, Shaft(stiffness=1), Disk(inertia=1)), speed_range=(20.0, 10.0)),
-        "speed_range = (20.0, 10.0): is not a rising range of speeds",
-        "tn.rpm",
+        "speed_range = (20.0, 10.0): must be a lowest and a highest speed",
+        "2400 rpm",
+    ),
+    (
+        lambda: tn.misfire(line(SILENT, Shaft(stiffness=1), Disk(inertia=1)), [10.0], speed_range=(10.0, 20.0)),
+        "speed_range = (10.0, 20.0): is a range beside speeds",
+        "leave one of them out",
     ),
     (lambda: tn.reciprocating_mass(0, 0.04, 0.15), "mass = 0: must be positive", "kg"),
     (lambda: tn.reciprocating_mass(1, 0.04, 0.03), "rod_length = 0.03: must be longer than the crank", "mm"),

@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
+from trunnion.driveline.arguments import running_range
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operation import Operation
 from trunnion.driveline.silent_cylinders import cylinders, silent_cases
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.errors import InputError
+from trunnion.floquet.ranges.span import Span
 from trunnion.response.orders.response import order_response
 from trunnion.response.orders.result import OrderResponse
 from trunnion.response.ranges.largest_torques import largest_torques
@@ -123,7 +125,10 @@ class Misfire(Result):
         """What the largest values are the largest of; empty of one speed."""
         if not np.isnan(self.missing):
             over = self.words.ranges([(float(self.response.speed.min()), float(self.response.speed.max()))])
-            return f"the largest over {over}, searched: short by {100 * self.missing:.1g} % at most"
+            if np.isinf(self.missing):
+                return f"the largest found over {over}; the search ended early, and they may be larger"
+            short = "less than 0.01 %" if self.missing < 1e-4 else f"{100 * self.missing:.2g} % at most"
+            return f"the largest over {over}, searched: short by {short}"
         if (count := len(self.response.speed)) > 1:
             return f"the largest of the {count} speeds asked for; between them it may be larger"
         return ""
@@ -173,7 +178,7 @@ def misfire(
     load_case: str | None = None,
     *,
     cut_out: bool = False,
-    speed_range: tuple[float, float] | None = None,
+    speed_range: tuple[float | str, float | str] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Misfire:
     """Put every cylinder of ``line`` out of work in turn and find the worst.
@@ -212,7 +217,12 @@ def misfire(
         remedy = 'add an Engine, or list the excitation of one cylinder and firing_angles = ["0 deg", "180 deg"], say'
         where = {"element": "driveline", "key": "firing_angles"}
         raise InputError("has no cylinders that could misfire", **where, remedy=remedy)
+    if speeds is not None and speed_range is not None:
+        remedy = "leave one of them out"
+        raise InputError("is a range beside speeds", key="speed_range", value=speed_range, remedy=remedy)
     over = (0.0, 0.0) if speeds is not None else _range(line, speed_range)
+    if speeds is None and over[0] == over[1]:
+        speeds = over[:1]
     # the cylinder first: a load on a throw dissolves its Engine, whose compression would be lost
     lines = [line, *(line.replace(one.owner, **{key: one.number}) for one in found_here)]
     assemblies = [assemble(_loaded(one, load_case)) for one in lines]
@@ -256,6 +266,7 @@ class _Look:
     @classmethod
     def over(cls, assembly: Assembly, low: float, high: float) -> _Look:
         """Searched between two speeds."""
+        low = Span(assembly, low, high).start
         found = largest_torques(assembly, low, high)
         largest = found.largest
         bounded = np.isfinite(largest.value) & (largest.value > 0)
@@ -273,18 +284,17 @@ class _Look:
         return cls(_largest(torque), found.speed[at], lost, missing, draw or (lambda: found))
 
 
-def _range(line: Driveline, stated: tuple[float, float] | None) -> tuple[float, float]:
+def _range(line: Driveline, stated: tuple[float | str, float | str] | None) -> tuple[float, float]:
     """The range of speeds [rad/s] to search."""
     own = None if line.operation is None else line.operation.speed_range
     found = own if stated is None else stated
-    remedy = 'state speed_range = ["600 rpm", "2000 rpm"] in [operation], say, or pass speeds'
     if found is None:
+        remedy = 'state speed_range = ["600 rpm", "2000 rpm"] in [operation], say, or pass speeds'
         raise InputError("has no range of speeds to search", element="operation", key="speed_range", remedy=remedy)
-    low, high = (float(one) for one in found)
-    if not 0 < low < high < np.inf:
-        remedy = "pass (tn.rpm(600), tn.rpm(2000)), say"
-        raise InputError("is not a rising range of speeds", key="speed_range", value=found, remedy=remedy)
-    return low, high
+    try:
+        return running_range(found)
+    except InputError as error:
+        raise error.but(key="speed_range") from None
 
 
 def _stated(line: Driveline) -> str:

@@ -116,7 +116,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
     proof = ""
     if status is Status.SATISFIED and subject.naming:
-        proof = PROVED if _proved(case) else SEARCHED
+        proof = PROVED if swung is None and _proved(case) else SEARCHED
         because += "; proved for every speed of the range" if proof == PROVED else ""
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 

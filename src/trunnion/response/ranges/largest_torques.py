@@ -37,6 +37,8 @@ def largest_torques(assembly: Assembly, low: float, high: float) -> LargestTorqu
     InputError, ComputationError : as of ``order_response``.
     """
     span = Span(assembly, low, high)
+    for gap in span.gaps:  # refused as any response there is
+        response_about(assembly, np.array([(gap.low + gap.high) / 2]))
     first = first_speeds(span.pieces, resonances(span))
     torques = [_vibratory_torque(c) for c in range(len(assembly.topology.compliances))]
     if not varies(assembly):
