@@ -472,3 +472,11 @@ def test_torques_at_an_undamped_resonance_within_the_range_are_without_bound():
     assert all("torques there are without bound" in one.sentence for one in found.findings)
     assert tn.order_response(line, [met]).vibratory_torque[0, 0] > 0  # nothing is excited but order 2
     found.plot()
+
+
+def test_a_range_of_one_speed_is_that_speed_and_ends_may_be_texts():
+    line = engine(excitation=GAS, firing_angles=FOUR)
+    one, same = tn.misfire(line, speed_range=(300.0, 300.0)), tn.misfire(line, [300.0])
+    assert one.vibratory_torque == pytest.approx(same.vibratory_torque) and np.isnan(one.missing)
+    written = tn.misfire(line, speed_range=("2000 rpm", "3000 rpm"))
+    assert written.response.speed[[0, -1]] == pytest.approx([tn.rpm(2000), tn.rpm(3000)])
