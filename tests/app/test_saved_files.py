@@ -322,6 +322,100 @@ def test_any_change_reads_as_it_should_and_comments_go_only_with_their_tables(se
     assert places == sorted(places)
 
 
+LISTED = """\
+format = 1   # of the file
+element = [
+  { type = "ConstantSpeed" },
+  # first tube
+  { type = "Shaft", stiffness = "12 kN*m/rad", name = "a } b" },   # drawing 17
+
+  # the flywheel
+  # of the maker
+  { type = "Disk", inertia = "0.4 kg*m^2", excitation = [{ order = 1, amplitude = 2 }, { order = 2, amplitude = 3 }] },
+  { type = "HookeJoint", angle = "12 deg" }, # dry
+  { type = "Disk", inertia = "0.4 kg*m^2" }  # last
+  # end of the list
+]
+
+[operation]
+speed = "1500 rpm"   # from the log
+"""
+LISTED_NOTES = {
+    1: ["# first tube", "# drawing 17"],
+    2: ["# the flywheel", "# of the maker"],
+    3: ["# dry"],
+    4: ["# last"],
+}
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_list_of_one_element_a_line_keeps_its_lines(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    old = tomllib.loads(LISTED)
+    order = [int(k) for k in rng.permutation(5)][: int(rng.integers(1, 6))]
+    data = deepcopy(old)
+    data["element"] = [deepcopy(old["element"][k]) for k in order]
+    touched = [k for k in order if rng.random() < 0.3]
+    for k in touched:
+        data["element"][order.index(k)]["name"] = f"new # {k}"
+    same: list[int | None] = list(order)
+    for _ in range(int(rng.integers(0, 3))):
+        place = int(rng.integers(0, len(same) + 1))
+        data["element"].insert(place, {"type": "Disk", "inertia": 0.1 * place, "curve": [{"speed": 1}]})
+        same.insert(place, None)
+    found = rewritten(LISTED, data, {("element",): same})
+    assert tomllib.loads(found.text) == data
+    assert found.lost == ""
+    lines = LISTED.splitlines()
+    for k, notes in LISTED_NOTES.items():
+        assert all((note in found.text) == (k in order) for note in notes)
+    for k in set(order) - set(touched) - {4}:  # the last one had no comma
+        own = next(line for line in lines if line.lstrip().startswith("{") and f'"{old["element"][k]["type"]}"' in line)
+        assert own in found.text
+    assert "# end of the list\n]" in found.text
+    assert "# of the file" in found.text
+    assert "# from the log" in found.text
+    items = [line for line in found.text.splitlines() if line.startswith("  {")]
+    assert len(items) == len(data["element"])
+
+
+def test_other_lists_of_elements_say_what_they_lose() -> None:
+    """Elements that share a line cannot be told apart by lines; without comments nothing is lost."""
+    file = 'element = [{ type = "Disk", inertia = 1 }, # one\n{ type = "Disk", inertia = 2 }]\n'
+    data = {"element": [{"type": "Disk", "inertia": 2}]}
+    assert rewritten(file, data).lost == "comments between the keys of element could not be kept"
+    found = rewritten(file.replace("# one", ""), data)
+    assert (tomllib.loads(found.text), found.lost) == (data, "")
+
+
+def test_an_element_of_a_list_keeps_the_name_of_its_component() -> None:
+    file = 'element = [\n  { component = "tube" }, # bought\n  { type = "Disk", inertia = 1 },\n]\n'
+
+    def expanded(table: dict[str, object]) -> dict[str, object]:
+        return {"type": "Shaft", "stiffness": 5} if table.get("component") else table
+
+    tube, disk = {"type": "Shaft", "stiffness": 5}, {"type": "Disk", "inertia": 1}
+    heavier = disk | {"inertia": 2}
+    for wanted, same in (
+        ([disk, tube], [1, 0]),
+        ([tube], [0]),
+        ([tube, heavier], [0, 1]),
+        ([disk, heavier, tube], [1, None, 0]),
+    ):
+        found = rewritten(file, {"element": wanted}, {("element",): same}, expanded)
+        assert '{ component = "tube" }, # bought' in found.text
+        assert [expanded(one) for one in tomllib.loads(found.text)["element"]] == wanted
+
+
+def test_listed_lines_end_as_they_did() -> None:
+    file = LISTED.replace("\n", "\r\n")
+    data = tomllib.loads(file)
+    del data["element"][3]
+    text = rewritten(file, data).text
+    assert tomllib.loads(text) == data
+    assert "\n" not in text.replace("\r\n", "")
+
+
 def test_a_line_is_written_over_its_file_and_keeps_its_comments(tmp_path):
     place = tmp_path / "line.toml"
     place.write_text(FILE)

@@ -18,6 +18,8 @@ import tomli_w
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
 
+from trunnion.driveline.inline_lists import relisted
+
 _HEADER = re.compile(r"\s*\[")
 Table = dict[str, Any]
 Same = Mapping[tuple[str | int, ...], Sequence[int | None]]
@@ -219,6 +221,7 @@ class _Change:
     def _keys(self, block: _Block, old: Table, new: Table, path: tuple[str, ...]) -> None:
         """The keys of one block."""
         try:
+            old, new = self._inline_lists(block, old, new, path)
             document = tomlkit.parse(block.body)
             _merge(document, old, new)
             body = tomlkit.dumps(document)
@@ -233,20 +236,50 @@ class _Change:
             self.lost.append(f"[{_dotted(path)}]" if path else "the beginning")
         block.body = _keys(new)
 
+    def _inline_lists(self, block: _Block, old: Table, new: Table, path: tuple[str, ...]) -> tuple[Table, Table]:
+        """Write lists of inline tables with other tables into ``block``; what it holds then, and what it shall hold,
+        ``old`` and ``new`` having been."""
+        held, wanted = dict(old), dict(new)
+        for key, value in new.items():
+            before: Any = old.get(key)
+            if not (_is_tables(value) and _is_tables(before)):
+                continue
+            places = self._places((*path, key), before, value)
+            wanted[key] = [
+                table if place is None else self._kept((*path, key), before[place], table)
+                for place, table in zip(places, value, strict=True)
+            ]
+            if places == list(range(len(before))):
+                continue
+            source = tomlkit.parse(block.body)[key].as_string()
+            made = relisted(source, places, wanted[key], changed=_item_changed, written=_item_written)
+            if made is not None and block.body.count(source) == 1:
+                block.body, held[key] = block.body.replace(source, made), wanted[key]
+            elif "#" in source:
+                self.lost.append(_dotted((*path, key)))
+        return held, wanted
+
+    def _kept(self, path: tuple[str, ...], old: Table, new: Table) -> Table:
+        """``old`` where it stands for ``new``: an element that names its component."""
+        return old if path == ("element",) and self.expand(old) == new else new
+
+    def _places(self, path: tuple[str, ...], old: list[Table], new: list[Table]) -> list[int | None]:
+        """Which of the old tables of a list each of the new ones was."""
+        given = self.same.get(path)
+        if given is None or len(given) != len(new):
+            return _matched(old, new)
+        return [None if place is None or place >= len(old) else place for place in given]
+
     def tables(self, blocks: list[_Block], key: str, old: list[Table], new: list[Table], path: tuple[str, ...]) -> None:
         """A list of tables: those that were there move with their comments, the others are new."""
         listed = [one for block in blocks for one in block.below if one.key == key]
-        given = self.same.get(path)
-        if given is None or len(given) != len(new):
-            given = _matched(old, new)
         made: list[_Block] = []
-        for place, table in zip(given, new, strict=True):
-            if place is None or place >= len(listed):
+        for place, table in zip(self._places(path, old, new), new, strict=True):
+            if place is None:
                 made += _new(key, [table], path[:-1])
                 continue
             block = listed[place]
-            if path != ("element",) or self.expand(old[place]) != table:
-                self.table([block], old[place], table, path)
+            self.table([block], old[place], self._kept(path, old[place], table), path)
             made.append(block)
         _settle(blocks, listed, made)
 
@@ -338,6 +371,21 @@ def _merge_list(owner: Any, old: list[Any], new: list[Any]) -> None:
             _merge(owner[place], before, value)
         else:
             owner[place] = _inline(value)
+
+
+def _item_changed(item: str, table: Table) -> str:
+    """The text of an inline table that shall hold ``table``."""
+    before = tomllib.loads(f"x = {item}")["x"]
+    if before == table:
+        return item
+    document = tomlkit.parse(f"x = {item}")
+    _merge(document["x"], before, table)
+    return document["x"].as_string()  # type: ignore[no-any-return]
+
+
+def _item_written(table: Table) -> str:
+    """The text of a new inline table."""
+    return f"{{ {_inline(table).as_string()[1:-1]} }}"
 
 
 def _alike(one: Any, other: Any) -> bool:

@@ -44,6 +44,8 @@ EXACT_ERROR = 1e-9
 """What the spectral radius of a motion known to rounding may be off by."""
 COARSER = 30.0
 """How much larger than its own the tolerance is against which a motion's error is measured."""
+ROUGHER = 1e4
+"""How much larger than its own the tolerance is with which the derivative of many states is integrated."""
 CLEAR = 1e-6
 """Distance of a spectral radius from 1 at which no error of the integration matters."""
 AT_REST = 1e-7
@@ -105,8 +107,15 @@ class ShootingProblem(Generic[M]):
 
     def equations(self, z: Array) -> tuple[Array, Array]:
         """What is missing to close, and its derivative by z, in units of the scales; NaN where there is no motion."""
+        return self._closing(z, self._tried(z))
+
+    def for_newton(self, z: Array) -> tuple[Array, Array]:
+        """As ``equations``, its derivative to as many digits as Newton's steps need."""
+        return self.equations(z)
+
+    def _closing(self, z: Array, passage: MapEvaluation | None) -> tuple[Array, Array]:
+        """The equations at z, of its motion."""
         n = self.size
-        passage = self._tried(z)
         if passage is None or not passage.done:
             rows = n + (self.phase is not None)
             return np.full(rows, np.nan), np.full((rows, len(z)), np.nan)
@@ -121,14 +130,14 @@ class ShootingProblem(Generic[M]):
             slope = np.vstack([slope, np.append(self.phase.row, np.zeros(len(z) - n))])
         return left, slope
 
-    def _tried(self, z: Array, *, tangents: bool = True) -> MapEvaluation | None:
-        """The motion at z, kept as the last one tried; None where z is nowhere."""
+    def _tried(self, z: Array, *, tangents: bool = True, **how: float) -> MapEvaluation | None:
+        """The motion at z, run as ``how`` says, kept as the last one tried; None where z is nowhere."""
         if not np.isfinite(z).all():
             return None
         n = self.size
         try:
             by = range(len(z) - n) if tangents else ()
-            self.last = self.place(z)(z[:n], tangents=tangents, by=by)
+            self.last = self.place(z)(z[:n], tangents=tangents, by=by, **how)
         except InputError:  # a trial value may be no value of this parameter
             return None
         return self.last
@@ -141,7 +150,7 @@ class ShootingProblem(Generic[M]):
             return z if len(z) == n or low < z[n] < high else np.full_like(z, np.nan)
 
         def residual(z: Array) -> tuple[Array, Array]:
-            left, slope = self.equations(within(z))
+            left, slope = self.for_newton(within(z))
             return left * self.scale, slope * self.scale[:, None]
 
         def alone(z: Array) -> Array:
@@ -219,6 +228,16 @@ class IntegratedShooting(ShootingProblem[IntegratedMap]):
     @property
     def cheaper_alone(self) -> bool:
         return self.size >= MANY_STATES
+
+    def for_newton(self, z: Array) -> tuple[Array, Array]:
+        """Of many states the derivative is that of a motion run with a larger tolerance: its fast disturbances ask for
+        steps several times shorter than the motion itself does."""
+        if not self.cheaper_alone:
+            return super().for_newton(z)
+        rough, motion = self._tried(z, looser=ROUGHER), self._tried(z, tangents=False)
+        if rough is None or motion is None or not rough.done:
+            return self._closing(z, None)
+        return self._closing(z, replace(motion, tangents=rough.tangents, by_values=rough.by_values))
 
     def judged(
         self, place: IntegratedMap, x: Array, run: Trajectory, coarse: Trajectory, missed: float
