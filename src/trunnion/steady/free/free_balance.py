@@ -45,8 +45,9 @@ NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
 CORRECTIONS, MATRICES = 8, 4
 """Newton's steps, and matrices of all unknowns that one takes."""
-LONG = 24
-"""Unknowns from which on steps along the tree cost less than matrices of all unknowns."""
+LONG = 6
+"""Unknowns from which on steps along the tree cost less than matrices of all unknowns: as much at five, half at eight, a
+fifth at sixteen, whatever the harmonics."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -160,7 +161,7 @@ class FreeBalance:
     """Motions of a line by the balance of their harmonics."""
 
     def __init__(self, assembly: Assembly, period: float) -> None:
-        """``period`` [rad of input angle]."""
+        """``assembly`` without exciters, which steps along the tree do not know; ``period`` [rad of input angle]."""
         refuse_dragged(assembly)
         topo = assembly.topology
         self.assembly, self.period, self.turn, self.free = assembly, period, rigid_rotation(topo), topo.free
