@@ -282,7 +282,6 @@ _PASSING = {
     **_ONE_DRIVE,
     **_NO_RATIO,
     **_AT_ONE_SPEED,
-    "excitation that varies with speed or load": "its amplitude would change on the way",
 }
 _NOT_EXACT = {
     **_ONE_DRIVE,

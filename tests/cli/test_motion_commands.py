@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -82,6 +83,27 @@ def test_run_up(run, here):
     expected = tn.run_up(tn.load("line.toml"), tn.rpm(500), tn.rpm(600), acceleration=tn.rpm(400))
     assert [s["peak_torque"] for s in data["shafts"]] == pytest.approx(expected.peak_torque.tolist(), rel=1e-12)
     assert all((here / name).stat().st_size > 500 for name in ("a.csv", "b.png", "c.nc"))
+
+
+@pytest.mark.slow
+def test_run_up_of_an_engine(run, here):
+    """With pressures over the load, oscillating masses, and a ring that oil alone drags along."""
+    example = Path(__file__).parents[2] / "examples" / "six-cylinder-ship.toml"
+    ends = ("--from", "400rpm", "--to", "700rpm", "--acceleration", "50rpm")
+    result = run("run-up", example, *ends, "-o", "a.png", "-o", "b.nc")
+    assert result.exit_code == 0, result.stderr
+    assert "reached 700 rpm" in result.stdout and "the steady response is linear: the swing of" in result.stdout
+    assert (here / "a.png").stat().st_size > 500
+    line = tn.load(example)
+    with xarray.open_dataset(here / "b.nc") as data:
+        ends = data["steady_speed"].values[[0, -1]]
+        steady = tn.order_response(line, ends)
+        np.testing.assert_allclose(data["steady_swing"].values[[0, -1]], steady.vibratory_torque)
+        assert ends == pytest.approx([tn.rpm(400), tn.rpm(700)]) and data.attrs["period"] == 2
+        # At the end of a brisk passage, away from resonances, each shaft of the crank swings nearly as at rest.
+        crank = [str(name).startswith("engine.crank") for name in data["shaft"].values]
+        last = data["swing"].values[-3]
+        np.testing.assert_allclose(last[crank], steady.vibratory_torque[-1][crank], rtol=0.05)
 
 
 FAILED = [

@@ -732,15 +732,32 @@ PYTHON = [
             line(
                 ConstantSpeed(),
                 Shaft(stiffness=1e4, damping=1),
-                Disk(inertia=1, excitation=[{"order": 2, "quadratic_amplitude": 1}]),
+                Disk(inertia=1, excitation=[{"order": 2, "speeds": [90, 105], "amplitudes": [1, 2]}]),
             ),
             100,
             110,
             acceleration=200,
             steady=0,
         ),
-        "Disk 1.excitation: has an amplitude that depends on the speed, which changes here",
-        "tn.order_response",
+        "Disk 1.excitation 1: is a table from 859.437 rpm to 1002.68 rpm, which does not cover 1050.4 rpm",
+        "extend the table",
+    ),
+    (
+        lambda: tn.run_up(
+            line(
+                ConstantSpeed(),
+                Shaft(stiffness=1e4, damping=1),
+                Disk(inertia=1, excitation=[{"order": 2, "quadratic_amplitude": 1}]),
+                tn.SlipClutch(torque=50),
+                Disk(inertia=1),
+            ),
+            100,
+            110,
+            acceleration=200,
+            steady=0,
+        ),
+        "Disk 1.excitation: has an amplitude by its mean speed, which is not that of the whole line",
+        "tn.transient",
     ),
     # limits
     (lambda: Limit(max_torque=1), "limit.of: is missing", 'of = "Shaft 1"'),
@@ -1550,10 +1567,10 @@ PYTHON = [
     ),
     (
         lambda: tn.simulate(
-            free(load_torque=-5.0, excitation=[{"order": 2, "quadratic_amplitude": 0.01}]), 1.0, speed=30.0
+            free(load_torque=-5.0, excitation=[{"order": 2, "speeds": [40, 60], "amplitudes": [1, 2]}]), 1.0, speed=30.0
         ),
-        "engine.excitation: has an amplitude that depends on the speed, which changes here",
-        "give it an amplitude",
+        "engine.excitation 1: is a table from 381.972 rpm to 572.958 rpm, which does not cover 286.48 rpm",
+        "extend the table",
     ),
     (
         lambda: tn.exact_motion(unbalanced(), 1.0, speed=30.0),

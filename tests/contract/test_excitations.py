@@ -334,11 +334,11 @@ LINEAR = (
 """Those that take every structure and every law of the amplitude."""
 DRIVEN = (
     periodic_response, linearity_check, periodic_branch, harmonic_balance, frequency_response, lyapunov_spectrum,
-    lyapunov_sweep, lyapunov_map, poincare_map, bifurcation_diagram, certify_chaos,
+    lyapunov_sweep, lyapunov_map, poincare_map, bifurcation_diagram, certify_chaos, run_up, safe_accelerations,
 )  # fmt: skip
 """Those of driven lines alone."""
 CONSTANT = (
-    run_up, transient, safe_accelerations, exact_motion, piecewise_orbit, piecewise_branch, sweep, certify_peaks,
+    transient, exact_motion, piecewise_orbit, piecewise_branch, sweep, certify_peaks,
 )  # fmt: skip
 """Those of driven lines and constant amplitudes."""
 ELSEWHERE = {"coupling_temperatures", "measure", "compare_measured", "identify"}

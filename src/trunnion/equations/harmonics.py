@@ -147,9 +147,13 @@ class DiskTorque(LineHarmonic):
         disk, or both."""
         return where(self.law, self._running(assembly, table))
 
+    def load(self, assembly: Assembly, table: Array) -> Array:
+        """The mean torque that its disk drives with (case,) [N m]."""
+        return -assembly.exciting_load(self.element, table)
+
     def _running(self, assembly: Assembly, table: Array) -> Running:
         speed = table[:, 0] * abs(float(assembly.topology.speed_ratio[self.station]))
-        return Running(speed, cache(lambda: -assembly.exciting_load(self.element, table)))
+        return Running(speed, cache(lambda: self.load(assembly, table)))
 
     def forcing(
         self, topo: Topology, size: Complex, base: BaseOfExcitation, spring: Spring

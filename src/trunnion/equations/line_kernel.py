@@ -58,7 +58,11 @@ IMPACT = 3 + GUARDS * PER_GUARD
 PER_STAGE = IMPACT + 2
 # Per harmonic torque A cos(order · angle + frequency · t + phase): its station and these numbers.
 AT, AMPLITUDE, ORDER, FREQUENCY, ANGLE = range(5)
-PER_HARMONIC = 5
+# Where A goes with the speed of the mean rotation, a complex number, it has PIECES (else 0) at p[CURVE]: each the speed
+# that it begins at and is counted from, and powers from 0 to 3 of A's real and of its imaginary part. The first holds
+# below where it begins too.
+CURVE, PIECES = 5, 6
+PER_HARMONIC, PER_PIECE = 7, 9
 # Per slider of a clutch: its compliance, the stiffness of its spring, the deflection at which it slips, and the stride
 # of its stages among the regimes. Its deflection is a state behind the rates; it follows the twist where it sticks.
 OF, SPRING, REACH, STEP = range(4)
@@ -193,6 +197,22 @@ def mesh_wave(p, q, theta):
     """Stiffness of the compliance at p[q:] over its mean less 1, its slope and its bend by the mean rotation."""
     at = int(p[q + LAW]) + int(p[q + STAGES]) * PER_STAGE + int(p[q + ERRORS]) * PER_WAVE
     return swing(p, at, int(p[q + WAVES]), theta)
+
+
+@njit(cache=True, nogil=True)
+def amplitude(p, q, speed):
+    """Real and imaginary part of the amplitude of the harmonic at p[q:] at a mean ``speed``."""
+    first, low, high = int(p[q + CURVE]), 0, int(p[q + PIECES])
+    while high - low > 1:
+        middle = (low + high) // 2
+        if p[first + middle * PER_PIECE] <= speed:
+            low = middle
+        else:
+            high = middle
+    at = first + low * PER_PIECE
+    x = speed - p[at]
+    real = p[at + 1] + x * (p[at + 2] + x * (p[at + 3] + x * p[at + 4]))
+    return real, p[at + 5] + x * (p[at + 6] + x * (p[at + 7] + x * p[at + 8]))
 
 
 @njit(cache=True, nogil=True)
@@ -426,9 +446,16 @@ def line(t, y_, p_, k, regime, out_):
         order = p[q + ORDER]
         angle = p[HEAD + s * PER_STATION + MEAN] * theta + d[s]
         argument = p[q + ANGLE] + p[q + FREQUENCY] * t + order * angle
-        push = p[q + AMPLITUDE] * math.cos(argument)
+        if p[q + PIECES] == 0.0:
+            push, slope = p[q + AMPLITUDE] * math.cos(argument), -p[q + AMPLITUDE] * math.sin(argument)
+        else:
+            if k:
+                return 1  # tangents would want its slope by the speed
+            real, other = amplitude(p, q, turning)
+            c, sn = math.cos(argument), math.sin(argument)
+            push, slope = real * c - other * sn, -real * sn - other * c
         torque[i] += r[s] * push
-        by_angle[i] += r1[s] * push - r[s] * r[s] * order * p[q + AMPLITUDE] * math.sin(argument)
+        by_angle[i] += r1[s] * push + r[s] * r[s] * order * slope
     for h in range(int(p[APPLIED])):
         q = int(p[APPLIED_AT]) + h * PER_APPLIED
         s = int(p[q + PLACE])

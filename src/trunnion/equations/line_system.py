@@ -213,13 +213,15 @@ class LineSystem(Portable):
         applied: Array | None = None,
         programs: Array | None = None,
         lags: int = 0,
+        amplitudes: Mapping[int, Array] | None = None,
     ) -> Array:
         """What the compiled right-hand side reads, from one row of packed numbers and the input's course.
 
         ``drive`` [N m] at the input is given by a free line's drives beyond the balance of its loads. On a course of
         their own, drives with a share follow its speed and acceleration. ``known`` : ``untwisted`` of rows, this being
         number ``case``, where they are at hand. ``applied`` : torques from outside as the kernel reads them, one a row;
-        ``programs`` : of their formulas, which stand behind them. ``lags`` : how many of them lag.
+        ``programs`` : of their formulas, which stand behind them. ``lags`` : how many of them lag. ``amplitudes`` : of
+        harmonic torques by their place, as of ``amplitudes_by_speed``; those of others are of the course's speed.
         """
         topo, core = self.assembly.topology, kernel()
         co, on = known or self.untwisted(row[None]), course or SpeedRamp(float(row[0]))
@@ -240,7 +242,8 @@ class LineSystem(Portable):
             stations[:, place] = part * sense
         for station, lost in topo.lost:
             stations[station, core.LOAD] -= lost * sense[station]
-        harmonics = [self._harmonic(one, on, row) for one in self.torques]
+        given = amplitudes or {}
+        harmonics = [self._harmonic(one, None if h in given else on, row) for h, one in enumerate(self.torques)]
         clutches = placed_clutches(self.assembly, row)
         strides = slider_strides(laws, len(friction_sliders) + len(clutches))
         friction = [
@@ -262,6 +265,10 @@ class LineSystem(Portable):
             added[s] += joint.turned
             behind.append(_put_joint(core, joint, case, stations[s], begin))
             begin += behind[-1].size
+        for h, pieces in given.items():
+            harmonics[h][core.CURVE :] = begin, len(pieces)
+            behind.append(pieces.ravel())
+            begin += pieces.size
         if applied is not None:
             behind.append(applied.ravel())
         if programs is not None:
@@ -308,16 +315,17 @@ class LineSystem(Portable):
         elsewhere = "use tn.order_response at several speeds, or tn.simulate at one"
         refuse_curves(self.assembly.topology, elsewhere)
         refuse_torque_tables(self.assembly.line, elsewhere)
-        for one in self.torques:
-            one.refuse_change("tn.order_response, or tn.transient with the torque that drives the line")
 
-    def _harmonic(self, one: DiskTorque, course: SpeedRamp, row: Array) -> list[float]:
-        """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course."""
-        at = np.concatenate([[course.speed], row[1:]])[None] if one.law.varies else row[None]
-        torque, sense = one.size(self.assembly, at)[0], float(np.sign(self.assembly.topology.mean_speeds[one.station]))
+    def _harmonic(self, one: DiskTorque, course: SpeedRamp | None, row: Array) -> list[float]:
+        """What the right-hand side reads of one harmonic torque: its amplitude is that at the speed of the course, or,
+        without one, stands in pieces elsewhere."""
+        sense, torque = float(np.sign(self.assembly.topology.mean_speeds[one.station])), 0j
+        if course is not None:
+            at = np.concatenate([[course.speed], row[1:]])[None] if one.law.varies else row[None]
+            torque = complex(one.size(self.assembly, at)[0])
         frequency = float(row[one.columns[2]]) if one.columns[2] >= 0 else 0.0
         return [
-            one.station, sense * float(np.abs(torque)), sense * one.own_order, frequency, float(np.angle(torque)),
+            one.station, sense * float(np.abs(torque)), sense * one.own_order, frequency, float(np.angle(torque)), 0, 0,
         ]  # fmt: skip
 
     @cached_property
@@ -455,7 +463,7 @@ def line_system(
     ------
     InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
     """
-    assembly = released(assemble(_in_series(line) if leaves else line).at(speed), slips=slips, swing=swing)
+    assembly = released(assemble(in_series(line) if leaves else line).at(speed), slips=slips, swing=swing)
     refuse_second_speed(assembly)
     if assembly.topology.knotted:
         require_tree(assembly, "nonlinear equations do")
@@ -469,7 +477,7 @@ def line_system(
     return LineSystem(assembly, float(speed), leaves)
 
 
-def _in_series(line: Driveline | Assembly) -> Driveline | Assembly:
+def in_series(line: Driveline | Assembly) -> Driveline | Assembly:
     """The line with the oil of its dampers as Maxwell elements; itself without any."""
     described = line if isinstance(line, Driveline) else line.stated or line.line
     oils = {i: one for i, one in enumerate(described.elements) if isinstance(one, ViscousDamper) and one.oil}

@@ -109,7 +109,7 @@ def _tables(made: LineSystem) -> str:
     station = p[core.HEAD : first].reshape(stations, core.PER_STATION)
     spring = p[first:shaken].reshape(joined, core.PER_COMPLIANCE)
     torque = p[shaken : shaken + harmonics * core.PER_HARMONIC].reshape(harmonics, core.PER_HARMONIC)
-    assert not np.any(station[:, [core.BY_SPEED, core.BY_SQUARE, core.STANDS]])
+    assert not np.any(station[:, [core.BY_SPEED, core.BY_SQUARE, core.STANDS]]) and not np.any(torque[:, core.PIECES])
     ripples, rows = _ripples(p, station)
     stages, waves, laws = _laws(p, spring)
     whole = [core.BEFORE, core.LINK, core.COORDINATE, core.REFERENCE]
@@ -137,7 +137,7 @@ def _tables(made: LineSystem) -> str:
         table("static const double STAGE", core.PER_STAGE, map(row_of, stages), (), "see springs with stages below"),
         table("static const double WAVE", 3, map(row_of, waves), (), "amplitude, cycles per turn of the input, phase"),
         table("static const double RIPPLE", 3, map(row_of, ripples), (), "order, amplitude, phase of a joint"),
-        table("static const double TORQUE", 5, map(row_of, torque), (),
+        table("static const double TORQUE", 5, map(row_of, torque[:, : core.CURVE]), (),
                "station, amplitude [N m], order, frequency [rad/s], phase"),
         "",
     ]  # fmt: skip

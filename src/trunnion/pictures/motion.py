@@ -207,7 +207,8 @@ def map_of_orders(
 
 
 def run_up(result: RunUp, *, shaft: str = "", unit: str = "") -> Picture:
-    """Largest |torque| of one shaft in every turn (the most loaded one, or ``shaft``) over input speed.
+    """Largest |torque| of one shaft in every turn (the most loaded one, or ``shaft``) over input speed, or in the turns
+    in which its excitations repeat.
 
     The steady response is drawn where it was computed: full where the motion is stable, dotted where it is not.
     """
@@ -223,10 +224,11 @@ def run_up(result: RunUp, *, shaft: str = "", unit: str = "") -> Picture:
         if unstable.any():
             items.append(Points(x[unstable], y[unstable], "steady, unstable", "steady motion, unstable"))
     peak, at = result.peak_torque[i], result.peak_speed[i]
+    turns = "turn" if result.period == 1 else f"{result.period} turns"
     items += [
         Level(float(result.inertia_torque[i]), "accelerates", "accelerates what is behind it"),
-        Line(result.speed * factor, result.largest[:, i], "turns", "largest in each turn"),
-        Points([at * factor], [peak], "top", f"{peak:.4g} N m at {words.rounded(at)}"),
+        Line(result.speed * factor, result.envelope[:, i], "turns", f"largest in each {turns}"),
+        Points([at * factor], [peak], "top", f"{peak:.5g} N m at {words.rounded(at)}"),
     ]
     asked = result.schedule
     remark = f"{words.ends(asked.first, asked.last)} at {words.acceleration(asked.acceleration)}"

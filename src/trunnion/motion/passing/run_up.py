@@ -8,6 +8,9 @@ The acceleration is that of the drive. Where a line is free–free, nothing turn
 drive_share carry the torque that balances the loads at each speed asked for and accelerates the whole inertia, were it
 rigid and its joints straight. What dampers, angled joints and vibration take beyond that makes it lag, and a resonance
 that takes all that accelerates captures it (Sommerfeld's effect); ``capture`` tells how such a run ends.
+
+Amplitudes of excitations that go with the speed or the load are those at the mean speed of the moment
+(``equations.amplitudes_by_speed``).
 """
 
 from __future__ import annotations
@@ -15,17 +18,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import inf
+from math import ceil, inf
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
 from trunnion.arrays import Array, Codes
 from trunnion.driveline.arguments import one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.slip_clutches import SlipClutch
+from trunnion.equations.amplitudes_by_speed import refuse_uncovered
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.inertia_torque import inertia_torque
-from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.line_regimes import staged_springs
+from trunnion.equations.line_system import LineSystem, in_series, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError
@@ -36,6 +43,8 @@ from trunnion.motion.simulation.input_rotation import TURN
 from trunnion.motion.simulation.simulate import simulate_line
 from trunnion.motion.simulation.simulation import LineSimulation
 from trunnion.numerics.curves import extremes_in
+from trunnion.response.orders.response import order_response, swing_of_torques
+from trunnion.response.speed_sweep import sweep_speeds
 from trunnion.results.counts import counted
 from trunnion.results.drawing import Axes, drawing
 from trunnion.results.fields import attribute, computed, coordinate, internal, labelled, variable
@@ -43,6 +52,7 @@ from trunnion.results.of_systems import ending
 from trunnion.results.outcome import Outcome
 from trunnion.results.result import Result
 from trunnion.results.speeds import about_speed, rounded_speed, show_acceleration, show_speed
+from trunnion.results.units import figures
 from trunnion.results.variables import Attribute, Coordinate, Variable
 from trunnion.steady.shooting.free_orbit import is_periodic, kept_speed_orbit
 from trunnion.steady.shooting.periodic_orbit import periodic_orbit
@@ -55,6 +65,8 @@ STATIC_SPEEDS = 65
 """Speeds at which the static torque is computed; between them it is interpolated."""
 SLOWEST = 1e-3
 """Share of the first speed below which no static torque is asked for: a line that stops has none by speed."""
+LONGEST_CYCLE = 4
+"""Turns of a run whose largest torques are looked at together, at most; those of a four-stroke engine are two."""
 EVENED = 9
 """Turns over which the lag is averaged for the acceleration that a free–free line has."""
 LOOSER, LOOSEST = 100.0, 1e-6
@@ -65,12 +77,16 @@ LOOSER, LOOSEST = 100.0, 1e-6
 class SteadyResponse:
     """Steady torque over speed: speed (points,) [rad/s]; largest (points, shaft), the largest |torque| [N m] of the
     periodic motion; swing (points, shaft): half of its peak-to-peak; verdict (points,) codes. In order along the
-    branch, which may fold back."""
+    branch, which may fold back.
+
+    linear: what is to be known where it is no branch but the linear response, as a clause; "" of a branch.
+    """
 
     speed: Array
     largest: Array
     swing: Array
     verdict: Codes
+    linear: str = ""
 
 
 @labelled
@@ -88,6 +104,11 @@ class RunUp(Result):
     upper: Array = variable("turn shaft", "N*m", "largest torque", name="torque_upper")
     lower: Array = variable("turn shaft", "N*m", "smallest torque", name="torque_lower")
     vibration: Array = variable("turn shaft", "N*m", "largest distance of the torque from the quasi-static one")
+    swing: Array = variable(
+        "turn shaft",
+        "N*m",
+        "half peak to peak of its distance from the quasi-static one, over the period about the turn",
+    )
     lag: Array = variable("turn", "rad/s", "by how much a free–free line turned slower than asked")
     inertia_torque: Array = variable(
         "shaft", "N*m", "accelerates the inertia behind it at the full acceleration, were it rigid and joints straight"
@@ -95,6 +116,7 @@ class RunUp(Result):
     steady: SteadyResponse | None = internal("response in the same range, None if not asked for")
     ending: RunUpEnding | None = internal("of a free–free line, None where the speed is prescribed")
     unit: str = internal("of speeds in print")
+    period: int = attribute("turns in which each excitation by order repeats, four at most", default=1)
     ended: str = attribute("what a time limit left out, as a clause", default="")
 
     @property
@@ -133,6 +155,11 @@ class RunUp(Result):
         return np.maximum(np.abs(self.upper), np.abs(self.lower))
 
     @property
+    def envelope(self) -> Array:
+        """The same over the ``period`` about each turn."""
+        return np.asarray(maximum_filter1d(self.largest, self.period, axis=0, mode="nearest"))
+
+    @property
     @computed(variable("shaft", "N*m"))
     def peak_torque(self) -> Array:
         """Largest |torque| of every shaft over the whole passage [N m]."""
@@ -163,6 +190,13 @@ class RunUp(Result):
         """Mean input speed [rad/s] of the turn in which each shaft has it."""
         return self.speed[self.vibration.argmax(axis=0)]
 
+    @property
+    @computed(variable("shaft", "N*m"))
+    def peak_swing(self) -> Array:
+        """Half of the largest peak-to-peak of every shaft's torque (shaft,) [N m] about the quasi-static one, which is
+        what the steady vibration is compared with."""
+        return np.asarray(self.swing.max(axis=0))
+
     @cached_property
     def steady_vibration(self) -> Array:
         """Half of the largest peak-to-peak torque of every shaft among the steady motions found [N m]; NaN without."""
@@ -177,6 +211,7 @@ class RunUp(Result):
             yield Variable("steady_torque", self.steady.largest, "steady_speed shaft", "N*m")
             yield Variable("steady_swing", self.steady.swing, "steady_speed shaft", "N*m")
             yield Variable("steady_verdict", self.steady.verdict, "steady_speed")
+            yield Attribute("steady_linear", self.steady.linear)
         if self.ending is not None:
             yield from self.ending.declared()
         yield from super().declared()
@@ -192,8 +227,8 @@ class RunUp(Result):
             against = self._against(i)
             rows.append(
                 f"  {name}: at most {self.peak_torque[i]:.5g} N m, at {rounded_speed(self.peak_speed[i], unit)}; "
-                f"{self.inertia_torque[i]:.5g} N m accelerate what is behind it, ± {self.peak_vibration[i]:.5g} N m "
-                f"vibrate at {rounded_speed(self.vibration_speed[i], unit)}{against}"
+                f"{self.inertia_torque[i]:.5g} N m accelerate what is behind it, ± {self.peak_swing[i]:.5g} N m "
+                f"vibrate at {rounded_speed(self.speed[int(self.swing[:, i].argmax())], unit)}{against}"
             )
         asked = self.schedule
         made = f"{counted(len(self.speed), 'turn')} in {self.simulation.end:.5g} s"
@@ -209,6 +244,10 @@ class RunUp(Result):
                 f"{about_speed(abs(self.lag[worst]), unit)} {sense} than asked, at "
                 f"{rounded_speed(self.speed[worst], unit)}"
             )
+            if self.simulation.beyond_table:
+                rows.append(f"  {self.simulation.beyond_table}")
+        if self.steady is not None and self.steady.linear:
+            rows.append(f"  {self.steady.linear}")
         if self.simulation.line.sliders:
             rows.append("  no steady response beside it: clutches rub, which no branch follows; ask periodic_response")
         if self.ended:
@@ -217,11 +256,11 @@ class RunUp(Result):
 
     def _against(self, i: int) -> str:
         """When the vibration of a shaft is largest, where that tells, and the steady one beside it."""
-        setting_in = self.time[int(self.vibration[:, i].argmax())] < self.ramp
+        setting_in = self.time[int(self.swing[:, i].argmax())] < self.ramp
         words = " while the acceleration sets in" if setting_in else ""
         if not np.isfinite(self.steady_vibration[i]):
             return words
-        share = self.peak_vibration[i] / max(self.steady_vibration[i], 1e-300)
+        share = self.peak_swing[i] / max(self.steady_vibration[i], 1e-300)
         times = "against" if setting_in else f"{share:.3g} times"
         return f"{words}, {times} the largest steady vibration found, ± {self.steady_vibration[i]:.5g} N m"
 
@@ -246,6 +285,9 @@ def run_up(
     "short of torque", "stalled" or "undecided". Where the line lagged on the way, a second run at another tolerance
     must end alike.
 
+    Excitations whose amplitude goes with the speed or the load have the one of the mean speed of the moment, and of the
+    load that is balanced there, without what accelerates.
+
     Parameters
     ----------
     line : a ``Driveline`` or its ``Assembly``.
@@ -265,7 +307,8 @@ def run_up(
     Raises
     ------
     InputError : speeds or acceleration not positive; a negative ramp, or one too long for the speeds; a line that
-        is free–free without a drive_share; more than 20 000 turns.
+        is free–free without a drive_share; speeds that the table of an excitation does not cover, or one that varies
+        on a line parts of which may slip; more than 20 000 turns.
 
     Examples
     --------
@@ -281,9 +324,10 @@ def run_up(
     if isinstance(steady, bool) or not isinstance(steady, int | np.integer) or steady < 0:
         raise InputError("must be a whole number, 0 for none", element="run_up", key="steady", value=steady)
     refuse_pendulums(line.line if isinstance(line, Assembly) else line)
-    prepared = line_system(line, first)
+    prepared = line_system(in_series(line), first)
     require_share(prepared.assembly)
     prepared.refuse_change()
+    refuse_uncovered(prepared, prepared.assembly.table(1, first)[0], min(first, last), max(first, last))
     asked = schedule(prepared.assembly, first, last, acceleration, ramp)
     ended = ""
     try:
@@ -317,7 +361,7 @@ def run_up(
         torque = run.torque_at(times)
         return np.hstack([torque, torque - quasi_static(times)])
 
-    seen = extremes_in(curves, run.cuts, edges)
+    seen, period = extremes_in(curves, run.cuts, edges), _cycle(prepared)
     found = None
     try:
         found = _steady(prepared.assembly, first, last, steady) if steady else None
@@ -331,11 +375,13 @@ def run_up(
         upper=seen.high[:, :count],
         lower=seen.low[:, :count],
         vibration=seen.largest[:, count:],
+        swing=_swing(seen.high[:, count:], seen.low[:, count:], period),
         lag=lag,
         inertia_torque=np.abs(inertia_torque(run.line.assembly)) * asked.acceleration,
         steady=found,
         ending=ending,
         unit=run.unit,
+        period=period,
         ended=ended,
     )
 
@@ -379,6 +425,19 @@ def _let_slip(prepared: LineSystem, state: Array) -> Array:
     return np.concatenate([motion.rotation[0, firsts], rates, state[2 * n :]])
 
 
+def _cycle(prepared: LineSystem) -> int:
+    """Turns in which each excitation by order repeats by itself, as far as runs are looked at in so many together."""
+    turning = [abs(one.order) for one in line_harmonics(prepared.assembly) if one.order and one.acts]
+    rates = [rate for rate in (*turning, *prepared.assembly.topology.rates) if rate]
+    return min(ceil(1 / min(rates)), LONGEST_CYCLE) if rates else 1
+
+
+def _swing(high: Array, low: Array, turns: int) -> Array:
+    """Half of highest less lowest (turn, shaft), over so many ``turns`` about each."""
+    about = {"size": turns, "axis": 0, "mode": "nearest"}
+    return np.asarray(maximum_filter1d(high, **about) - minimum_filter1d(low, **about)) / 2
+
+
 @dataclass(frozen=True)
 class _FreeInputSpeed:
     """Speed and acceleration of a free–free line: what is asked, less its ``lag`` (turns,) [rad/s] about
@@ -419,14 +478,32 @@ def _quasi_static(assembly: Assembly, asked: SpeedSchedule, own: _FreeInputSpeed
 
 
 def _steady(assembly: Assembly, first: float, last: float, points: int) -> SteadyResponse | None:
-    """The branch of steady motions over the range, folds and all; what was found of it."""
+    """The branch of steady motions over the range, folds and all; what was found of it. The linear response of a smooth
+    straight line with excitations that vary, as an engine's, whose branch takes minutes, or on which oil alone drags
+    something along, which no branch follows."""
     prepared = line_system(assembly, first)
     if prepared.system.forcing_period is None or (assembly.topology.free and not is_periodic(prepared)):
         return None
     clutched = any(isinstance(one, SlipClutch) for one in assembly.line.elements)
-    if prepared.sliders or clutched or assembly.topology.dragged:  # no branch follows them
+    if prepared.sliders or clutched:  # no branch follows them
         return None
-    branch = periodic_branch(
-        assembly, "speed", min(first, last), max(first, last), longest_step=1 / points, tolerance=1e-10
-    )
+    low, high = min(first, last), max(first, last)
+    row = assembly.table(1, low)
+    bent = any(law.nonuniform for law in prepared.untwisted(row).joints)
+    smooth = not (bent or staged_springs(assembly, row[0]))
+    if smooth and (assembly.topology.dragged or any(one.law.varies for one in prepared.torques)):
+        return _linear(assembly, sweep_speeds(assembly, low, high, max(points, 2)))
+    if assembly.topology.dragged:
+        return None
+    branch = periodic_branch(assembly, "speed", low, high, longest_step=1 / points, tolerance=1e-10)
     return SteadyResponse(branch.parameter, branch.largest, branch.peak_to_peak / 2, branch.verdict)
+
+
+def _linear(assembly: Assembly, speeds: Array) -> SteadyResponse:
+    """The linear steady response of a line whose equations are linear but for the angle at which torques act."""
+    found = order_response(assembly, speeds)
+    shift, name = swing_of_torques(assembly, found.spectrum)
+    said = "the steady response is linear"
+    if name:
+        said += f": the swing of {name} can shift up to {figures(100 * shift, 2)} % of its torque to other orders"
+    return SteadyResponse(found.speed, found.peak_torque, found.vibratory_torque, found.judged(), said)

@@ -16,7 +16,7 @@ from trunnion.driveline.arguments import one_number, one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import line_system
+from trunnion.equations.line_system import in_series, line_system
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up
@@ -202,8 +202,8 @@ def safe_accelerations(
     """
     first, last = one_speed(first, "first"), one_speed(last, "last")
     refuse_pendulums(line.line if isinstance(line, Assembly) else line)
-    prepared = line_system(line, first)
-    limits = _limits(limit, line_system(line, first, slips=True).shafts)
+    prepared = line_system(in_series(line), first)
+    limits = _limits(limit, line_system(prepared.assembly, first, slips=True).shafts)
     low, high = accelerations
     if not (0 < low < high and np.isfinite(high)):
         raise InputError("must be a rising pair", key="accelerations", value=list(accelerations))

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from trunnion.arrays import Array
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed
+from trunnion.equations.amplitudes_by_speed import amplitudes_by_speed
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.line_system import LineSystem, line_system
 from trunnion.equations.speed_profile import SpeedProfile
@@ -110,8 +111,8 @@ def simulate(
 
     Raises
     ------
-    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; an
-        excitation that depends on the speed, on a free–free line that leaves the speed it begins with.
+    InputError : no or a wrong duration, speed, start, times or tolerance; what belongs to the other kind of subject; a
+        speed that leaves the table of an excitation.
 
     Examples
     --------
@@ -275,9 +276,6 @@ def simulate_line(
     state = prepared.rest() if start is None else prepared.system.checked_start(start)
     if len(profile.time) > 1:
         require_share(prepared.assembly)
-    elif imbalance(prepared.assembly, prepared.assembly.table(1, profile.speed[0]))[0]:
-        for one in prepared.torques:
-            one.refuse_change()
     go = _IntegrationSettings(tuple(events), tolerance, most_steps, dense)
     if turns is not None and prepared.assembly.topology.free:
         pieces = _made_turns(prepared, profile, state, turns, duration, go)
@@ -297,7 +295,9 @@ def prolonged(run: LineSimulation, duration: float, drive: float, *, tolerance: 
     """
     end, course = run.profile.courses(run.end + duration)[-1]
     row = run.line.assembly.table(1, run.profile.speed[0])[0]
-    system = run.line.system.reading(run.line.numbers(row, course, drive))
+    system = run.line.system.reading(
+        run.line.numbers(row, course, drive, amplitudes=_amplitudes(run.line, run.profile))
+    )
     piece = _IntegrationSettings((), tolerance, MOST_STEPS, True).on(system, run.final, run.end, end)
     return _sampled(LineSimulation.of(run.line, run.profile, [*run.pieces, piece]))
 
@@ -332,10 +332,13 @@ def _along(
     row = prepared.assembly.table(1, profile.speed[0])[0]
     known = prepared.untwisted(row[None])
     pieces: list[Simulation] = []
+    amplitudes = _amplitudes(prepared, profile)
     for end, course in profile.courses(duration):
         system = prepared.system
         if len(profile.time) > 1:
-            system = system.reading(prepared.numbers(row, course, drive, known))
+            system = system.reading(prepared.numbers(row, course, drive, known, amplitudes=amplitudes))
+        elif amplitudes:
+            system = _leaving(prepared, profile, amplitudes)
         piece = go.on(system, state, course.since, end)
         ended = converter_end(prepared, piece.end, piece.final, system.numbers, piece.outcome)
         pieces.append(replace(piece, outcome=ended))
@@ -345,12 +348,29 @@ def _along(
     return pieces
 
 
+def _amplitudes(line: LineSystem, profile: SpeedProfile) -> dict[int, Array]:
+    """Of the excitations that vary, over the speeds of a profile, where the line leaves the first of them; else none:
+    they keep the amplitude of that."""
+    row = line.assembly.table(1, profile.speed[0])
+    if len(profile.time) == 1 and not imbalance(line.assembly, row)[0]:
+        return {}
+    return amplitudes_by_speed(line, row[0], min(profile.speed), max(profile.speed))
+
+
+def _leaving(line: LineSystem, profile: SpeedProfile, amplitudes: dict[int, Array]) -> System:
+    """The system of a line that leaves the speed at which it begins, under these amplitudes over the speed."""
+    row = line.assembly.table(1, profile.speed[0])[0]
+    return line.system.reading(line.numbers(row, amplitudes=amplitudes))
+
+
 def _made_turns(
     prepared: LineSystem, profile: SpeedProfile, state: Array, turns: float, guess: float, go: _IntegrationSettings
 ) -> list[Simulation]:
     """The pieces of a run of a free line until its input has made ``turns``, which takes ``guess`` [s] at the speed
     that it begins with."""
-    system, pieces, span, until, furthest = prepared.system, list[Simulation](), guess, 0.0, 0.0
+    amplitudes = _amplitudes(prepared, profile)
+    system = _leaving(prepared, profile, amplitudes) if amplitudes else prepared.system
+    pieces, span, until, furthest = list[Simulation](), guess, 0.0, 0.0
     dense = replace(go, dense=True)
     while True:
         pieces.append(dense.on(system, state, until, until + span))

@@ -13,9 +13,11 @@ from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
 from trunnion.driveline.operating_speed import speed_unit
+from trunnion.equations.amplitudes_by_speed import table_left
 from trunnion.equations.line_regimes import LineRegimes
 from trunnion.equations.line_system import LineMotion, LineSystem
 from trunnion.equations.speed_profile import SpeedProfile
+from trunnion.equations.steady_base import imbalance
 from trunnion.errors import InputError
 from trunnion.motion.simulation.input_rotation import TURN, InputRotation
 from trunnion.numerics.curves import Extremes, extremes_in
@@ -364,6 +366,21 @@ class LineSimulation(Result, Simulation, OfShafts):
         """Input speed [rad/s] at ``time``."""
         return self.input.speed(self.time)
 
+    @cached_property
+    def beyond_table(self) -> str:
+        """That a free–free line turned at speeds beyond the table of an excitation, whose amplitude is held there, as a
+        clause; "" where it did not."""
+        row = self.line.assembly.table(1, self.profile.speed[0])
+        leaves = len(self.profile.time) > 1 or imbalance(self.line.assembly, row)[0]
+        speed = self.whole.turns[1] if self.starts_free and leaves else np.zeros(0)
+        if not len(speed):
+            return ""
+        left = table_left(self.line, row[0], min(self.profile.speed), max(self.profile.speed), speed)
+        if left is None:
+            return ""
+        at = self.words.rounded(left[1])
+        return f"at {at} the line left the table of {left[0]}, whose amplitude is held beyond its ends"
+
     @property
     def turns(self) -> float:
         """Turns that the input made."""
@@ -405,6 +422,8 @@ class LineSimulation(Result, Simulation, OfShafts):
             words = "that rotations deviate from"
             yield Variable("reference_speed", self.profile.at(self.time), "time", "rad/s", words)
         yield Attribute("driveline", self.system.name)
+        if self.beyond_table:
+            yield Attribute("beyond_table", self.beyond_table)
         yield from ending(self.outcome)
 
     def plot(self, axes: Axes | None = None, *, shafts: tuple[str, ...] = (), unit: str = "") -> Axes:
@@ -421,6 +440,8 @@ class LineSimulation(Result, Simulation, OfShafts):
         yield f"motion of {self.system.name} over {self.end:.6g} s ({self.turns:.6g} turns): {self.steps} steps"
         if self.starts_free:
             yield f"  {self._turning}"
+            if self.beyond_table:
+                yield f"  {self.beyond_table}"
         extremes = self.torque_extremes
         for name, low, high in zip(self.shafts, extremes.low, extremes.high, strict=True):
             yield f"  {name}: torque {low:.6g} … {high:.6g} N m"

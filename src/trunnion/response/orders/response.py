@@ -371,14 +371,21 @@ def _swing_of_clutches(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[
             )
 
 
-def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
-    """How far the disks swing whose orders are taken at their mean angle."""
+def swing_of_torques(assembly: Assembly, spectrum: OrderSpectrum) -> tuple[float, str]:
+    """How far the disk swings, times its order [rad], whose torque that shifts most to other orders, as its angle is
+    taken at the mean; and its name."""
     topo, worst = assembly.topology, (0.0, "")
     swing = np.abs(spectrum.amplitude[..., spectrum.channels.deviation]).sum(axis=1)
     for torque in disk_torques(assembly):
         if torque.acts and torque.order:
             i = topo.unknown_of[torque.station]
             worst = max(worst, (abs(torque.own_order) * float(np.nanmax(swing[:, i], initial=0.0)), torque.name))
+    return worst
+
+
+def _nominal_angle(assembly: Assembly, spectrum: OrderSpectrum) -> Iterator[Finding]:
+    """How far the disks swing whose orders are taken at their mean angle."""
+    worst = swing_of_torques(assembly, spectrum)
     if worst[0] > 0:
         grave = worst[0] > LARGEST_SWING
         check = " Run linearity-check." if grave else ""

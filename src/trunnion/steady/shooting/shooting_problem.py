@@ -139,6 +139,8 @@ class ShootingProblem(Generic[M]):
             by = range(len(z) - n) if tangents else ()
             self.last = self.place(z)(z[:n], tangents=tangents, by=by, **how)
         except InputError:  # a trial value may be no value of this parameter
+            if len(z) == n and self.last is None:
+                raise
             return None
         return self.last
 
