@@ -28,22 +28,29 @@ def growth(line: tn.Driveline, speed: float) -> float:
     return float(np.log(SwungTree(line).radius(speed)) * speed / np.pi)
 
 
-@pytest.mark.parametrize("seed", [6101, 6104])
-def test_a_range_beside_what_is_unstable_about_the_static_twist(seed: int) -> None:
-    """Its upper end is stable about the static twist by a little, and unstable about the motion that the line makes."""
+@pytest.mark.parametrize(("seed", "wide"), [(6101, 0.1), (6104, 0.05)])
+def test_ranges_are_those_about_the_motion_that_the_line_makes(seed: int, wide: float) -> None:
+    """They begin and end where growth by the test's own motion and multipliers is nought, which growth about the static
+    twist is not."""
     line, rng = random_swung_line(seed, driven=True)
     modes = SwungTree(line).modes()
     i, j = rng.integers(len(modes), size=2)
     middle = float(modes[i] + modes[j]) / 2
-    whole = tn.assess(line, (0.95 * middle, 1.05 * middle)).check("parametric stability")
+    low, high = (1 - wide) * middle, (1 + wide) * middle
+    whole = tn.assess(line, (low, high)).check("parametric stability")
     assert whole.status is Status.EXCEEDED
     rate, speed = said(whole)
+    assert speed == pytest.approx(whole.speed, rel=1e-4)
     assert rate == pytest.approx(growth(line, speed), rel=2e-2, abs=1e-3)
-    low = whole.barred[0][0] * (1 - 1e-5)
-    assert growth(line, low) > 0 > tn.stability(line, low).growth_rate
-    beside = tn.assess(line, (0.95 * middle, low)).check("parametric stability")
-    assert beside.status is Status.EXCEEDED and beside.value > 0 and beside.speed == pytest.approx(low)
-    assert beside.value == pytest.approx(growth(line, beside.speed), rel=1e-4)
+    assert whole.value == pytest.approx(growth(line, whole.speed), rel=1e-4)
+    outer = [end for pair in whole.covered for end in pair]  # of the range, and where the motion breaks off
+    every = [(end, side) for pair in whole.barred for end, side in zip(pair, (1, -1), strict=True)]
+    ends = [(end, side) for end, side in every if np.abs(np.array(outer) / end - 1).min() > 1e-4]
+    assert ends
+    for end, inwards in ends:
+        assert growth(line, end * (1 + 2e-6 * inwards)) > 0 > growth(line, end * (1 - 2e-6 * inwards))
+    static = [tn.stability(line, end).growth_rate for end, _ in ends]
+    assert max(map(abs, static)) > 1e-3
 
 
 def test_nothing_is_said_where_the_line_hardly_swings() -> None:

@@ -59,9 +59,9 @@ def on_the_border(line: tn.Driveline, low: float, high: float) -> float:
     return float(np.sqrt(less * more))
 
 
-def bordering(seed: int) -> tuple[tn.Driveline, float, float]:
+def bordering(seed: int, *, driven: bool = False) -> tuple[tn.Driveline, float, float]:
     """A random line and a range about a resonance of two of its modes."""
-    line, rng = random_swung_line(seed, driven=False)
+    line, rng = random_swung_line(seed, driven=driven)
     modes = SwungTree(line).modes()
     i, j = rng.integers(len(modes), size=2)
     middle = (modes[i] + modes[j]) / 2 * (1 if rng.random() < 0.8 else 0.5)
@@ -87,6 +87,7 @@ def same(line: tn.Driveline) -> tn.Driveline:
     return line
 
 
+DRIVEN = (5401, 5402, 5403, 5404, 5405, 5406, 5407, 5408)
 FREE = [(seed, same) for seed in (5102, 5103, 5105, 5107, 5109, 5114, 5120, 5126, 5129)]
 STAGED = [(seed, staged) for seed in (5300, 5301, 5302, 5306, 5310, 5312)]
 
@@ -100,7 +101,21 @@ STAGED = [(seed, staged) for seed in (5300, 5301, 5302, 5306, 5310, 5312)]
 )
 def test_verdicts_of_random_free_lines(seed: int, changed: Callable[[tn.Driveline], tn.Driveline]) -> None:
     """Ends too, and how fast the fastest disturbance grows; with stages each speed is judged by itself."""
-    line, low, high = bordering(seed)
+    verdict_is_right(*bordering(seed), changed)
+
+
+@pytest.mark.parametrize(
+    "seed", [pytest.param(seed, marks=() if seed == DRIVEN[0] else pytest.mark.slow) for seed in DRIVEN]
+)
+def test_verdicts_of_random_driven_lines(seed: int) -> None:
+    """About the motion that joints and loads make them swing in, and not their static twist."""
+    verdict_is_right(*bordering(seed, driven=True), same)
+
+
+def verdict_is_right(
+    line: tn.Driveline, low: float, high: float, changed: Callable[[tn.Driveline], tn.Driveline]
+) -> None:
+    """Of the line as ``changed``, which makes the same motions."""
     (check,) = [one for one in tn.assess(changed(line), (low, high)).checks if one.name == "parametric stability"]
     speed, growth = scanned(line, low, high, 3 * COARSE)
     covered, unstable, end = (np.zeros(len(speed), dtype=bool) for _ in range(3))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import isclose
 from typing import TYPE_CHECKING
 
@@ -18,7 +18,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.mean_balance import SAME, mean_speeds, own_speed
 from trunnion.driveline.operating_speed import runs_by_itself
 from trunnion.equations.coefficients import Assembly, assemble
-from trunnion.equations.steady_base import has_periodic_base, refuse_dragged
+from trunnion.equations.steady_base import has_joint_angles, has_periodic_base, refuse_dragged
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.resonances import resonances, varies
 from trunnion.floquet.ranges.span import Gap, SmoothRange, Span
@@ -68,6 +68,11 @@ TRIAL = SearchEffort(25, 1e-4, 9, 1e-3, named=False)
 OF_OWN_MOTIONS = 3e-6
 """Share of a value that may be missing because an periodic steady state, about which it is computed, is known no more
 closely."""
+SWINGS = 2e-3
+"""Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes: a
+choice, as below it growth about the static twist hardly differs."""
+STAGES = "it has stages or play, with which each speed takes its own periodic motion"
+FOLLOWS = "its numbers follow the speed"
 
 
 @dataclass(frozen=True)
@@ -162,7 +167,10 @@ class LoadCaseResponse:
             points = tuple(sorted({*self.follows.points, *cuts}))
             return replace(self.follows, low=self.low, high=self.high, points=points)
         span = Span(self.assembly, self.low, self.high, points=tuple(sorted(cuts)))
-        return replace(span, lost=self._lost(span)) if self._searches_motions else span
+        if not self._searches_motions:
+            return span
+        assert self.motions is not None
+        return replace(span, lost=self._lost(span, self.motions))
 
     @property
     def _searches_motions(self) -> bool:
@@ -173,18 +181,17 @@ class LoadCaseResponse:
             return False
         return not self.motions.obstacle
 
-    def _lost(self, span: Span) -> tuple[Gap, ...]:
+    def _lost(self, span: Span, motions: SteadyStatesBySpeed) -> tuple[Gap, ...]:
         """Speeds at which the line's periodic steady state breaks off."""
         # Loaded where needed: it brings the compiler with it.
         from trunnion.steady.free.periodic_steady_states import breaks
 
-        assert self.motions is not None
         met = resonances(span)
         about = (met.speed[:, None] + met.width[:, None] * np.array([-1.0, 0.0, 1.0])).ravel()
         speeds = np.union1d(np.linspace(span.start, span.high, self.effort.costly), about)
         speeds = speeds[(speeds >= span.start) & (speeds <= span.high)]
-        self.motions.broken = breaks(self.motions, speeds)
-        return tuple(Gap(one.low, one.high, one.why) for one in self.motions.broken)
+        motions.broken = breaks(motions, speeds)
+        return tuple(Gap(one.low, one.high, one.why) for one in motions.broken)
 
     @cached_property
     def measures(self) -> tuple[Measure, ...]:
@@ -423,6 +430,11 @@ class LoadCaseResponse:
         if not self.parametric:
             return straight_ranges(self.span)
         points = self.effort.costly if self.costly else self.effort.points
+        if self.follows_motion:
+            try:
+                return self._ranges_about_motions(points)
+            except (InputError, ComputationError) as error:
+                self.not_followed.append(str(error).splitlines()[0])
         if self.given:
             return UnstableRanges(self._stability(np.unique(self.given)), (), 0.0, ())
         return unstable_ranges(self.span, self._stability, points=points)
@@ -430,6 +442,60 @@ class LoadCaseResponse:
     def _stability(self, speeds: Array) -> StabilityOverSpeed:
         table = self.span.table(speeds) if self.span.put else None
         return stability_along(self.assembly, speeds, motions=self.motions, table=table)
+
+    @cached_property
+    def swing(self) -> float:
+        """How far the inputs of joints swing [rad] at most, all over the range and at resonances, by linear theory, of
+        a driven line with joint angles; 0 of others, and where there is no response."""
+        if self.assembly.topology.free or not has_joint_angles(self.assembly):
+            return 0.0
+        first = (
+            [np.array(self.given)]
+            if self.given
+            else first_speeds(self.span.pieces, resonances(self.span), self.effort.points)
+        )
+        try:
+            found = self.respond(np.unique(np.concatenate(first))).joint_rotation
+        except (InputError, ComputationError):
+            return 0.0
+        return float(np.nan_to_num(found, nan=1.0, posinf=1.0).max(initial=0.0))
+
+    @property
+    def follows_motion(self) -> bool:
+        """Whether stability of a driven line is judged about the periodic motion that it makes and not about its static
+        twist, where that can be: where its joints swing."""
+        return self.swing >= SWINGS
+
+    @cached_property
+    def not_followed(self) -> list[str]:
+        """Why the motion of a driven line that swings is not known; none where it is."""
+        return []
+
+    @property
+    def about_motion(self) -> bool:
+        """Whether the ``unstable`` ranges of a driven line are about the periodic motion that it makes."""
+        return self.follows_motion and not self.not_followed
+
+    def _ranges_about_motions(self, points: int) -> UnstableRanges:
+        """Of a driven line.
+
+        Raises
+        ------
+        InputError, ComputationError : it has no such motion that all speeds share.
+        """
+        # Loaded where needed: it brings the compiler with it.
+        from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
+
+        if self.span.put:
+            raise InputError(FOLLOWS)
+        motions = SteadyStatesBySpeed(self.assembly.line)
+        if motions.obstacle:
+            raise InputError(STAGES)
+        judge = partial(stability_along, self.assembly, about_steady_state=True, motions=motions)
+        if self.given:
+            return UnstableRanges(judge(np.unique(self.given)), (), 0.0, ())
+        span = replace(self.span, lost=self._lost(self.span, motions))
+        return unstable_ranges(span, judge, points=points, swing=self.swing)
 
     @property
     def along(self) -> StabilityOverSpeed:

@@ -7,8 +7,8 @@ slowest disturbance: 100 % where they take nothing, 0 on the border of stability
 looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
 resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
-the whole range, the check says so. Driven lines are judged about their static twist; where the motion that they really
-make is disturbed otherwise, it decides whether they are stable (``steady_state_growth``).
+the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing, about
+the periodic motion that joints and loads make, searched alike.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -26,12 +26,16 @@ from trunnion.arrays import Array
 from trunnion.design.assessment.assessment_input import AssessmentInput, LoadCaseResponse
 from trunnion.design.assessment.check import PROVED, SEARCHED, Check, Rule, Status
 from trunnion.design.assessment.compared import not_reached
-from trunnion.design.assessment.steady_state_growth import SteadyStateGrowth, steady_state_growth
 from trunnion.driveline.machines import Generator
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.ranges.span import SmoothRange
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
-from trunnion.floquet.stability.stability_over_speed import SpeedBySpeedError, StabilityOverSpeed, straight_decay
+from trunnion.floquet.stability.stability_over_speed import (
+    SpeedBySpeedError,
+    StabilityOverSpeed,
+    stability_along,
+    straight_decay,
+)
 from trunnion.results.counts import counted, listed
 from trunnion.results.verdict import Verdict
 from trunnion.waiting import OutOfTime, keep_time
@@ -43,6 +47,8 @@ SPARSE = 9
 ROUGHLY = 1e-5
 """How closely the ends of unstable ranges are located there, as a share of the speed."""
 MOST_SAID = 4
+NOTICED = 0.01
+"""Share of the straight line's damping from which on another growth about the static twist is said."""
 STILL = 1e-3
 """Share of the growth about a line's own motion below which that about its static twist is none."""
 BOXES = 6
@@ -79,8 +85,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     covered = _covered(case, found)
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
-    swung = steady_state_growth(case, found) if subject.naming else None
-    own = "" if swung is None else f"; {_of_steady_state(subject, swung)}"
+    own = _of_motion(subject, case, worst[0], worst[1], straight)
     if found.ranges:
         if not case.parametric:
             fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
@@ -102,12 +107,6 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
         because = f"{words} at some speeds: {remedy}{case.suffix}"
         yield Check(NAME, Status.NOT_JUDGED, RULE, because, inputs=worst[2], load_case=case.name)
         return
-    if swung is not None and swung.unstable:
-        straight = straight_decay(case.assembly, swung.speed)
-        margin = -swung.growth / straight if straight > 0 else -np.inf
-        worst = (swung.growth, swung.speed, worst[2])
-        yield _judged(case, Status.EXCEEDED, own.removeprefix("; ") + case.suffix + gaps, margin, worst, (), covered)
-        return
     share = min(-growth[at] / straight, 1.0) if straight > 0 else 1.0
     because = (
         f"every disturbance halves within {np.log(2) / -growth[at]:.3g} s, slowest {here}: {100 * share:.3g} % of "
@@ -116,22 +115,32 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     status = Status.NOT_JUDGED if found.gaps else Status.SATISFIED
     proof = ""
     if status is Status.SATISFIED and subject.naming:
-        proof = PROVED if swung is None and _proved(case) else SEARCHED
-        because += "; proved for every speed of the range" if proof == PROVED else ""
+        proof = PROVED if not own and _proved(case) else SEARCHED
+        if proof == PROVED:
+            about = " about the static twist" if case.follows_motion else ""
+            because += f"; proved for every speed of the range{about}"
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 
 
-def _of_steady_state(subject: AssessmentInput, swung: SteadyStateGrowth) -> str:
-    """What the motion that joints and loads make the line swing in says beside its static twist."""
+def _of_motion(subject: AssessmentInput, case: LoadCaseResponse, growth: float, speed: float, straight: float) -> str:
+    """What is judged of a driven line whose joints swing, and what another growth about its static twist would be; a
+    clause, or nothing."""
+    if not (subject.naming and case.follows_motion):
+        return ""
+    if case.not_followed:
+        why = case.not_followed[0]
+        return f"; about its static twist, though its joints swing by {case.swing:.2g} rad: {why}"
+    static = float(stability_along(case.assembly, [speed]).growth_rate[0])
+    if not abs(growth - static) > NOTICED * straight:
+        return ""
 
-    def rate(growth: float) -> str:
-        return f"{'grows' if growth > 0 else 'decays'} by {abs(growth):.3g} 1/s"
+    def rate(of: float) -> str:
+        return f"{'grows' if of > 0 else 'decays'} by {abs(of):.3g} 1/s"
 
-    static = "stays as it is" if abs(swung.static) < STILL * abs(swung.growth) else rate(swung.static)
+    beside = "stays as it is" if abs(static) < STILL * abs(growth) else rate(static)
     return (
-        f"about the motion that its joints and loads make it swing in a disturbance {rate(swung.growth)} at "
-        f"{subject.shown(swung.speed)}, where it {static} about the static twist: stable_windows with "
-        "about_steady_state follows that"
+        f"; about the motion that its joints and loads make it swing in a disturbance {rate(growth)} at "
+        f"{subject.shown(speed)}, where it {beside} about the static twist"
     )
 
 

@@ -97,7 +97,8 @@ def unstable_ranges(
     octaves = np.geomspace(max(low, high / 2**8), high, apart)
     met = exponent_collisions(span, low, high, swing)
     met = met.of(met.matters)
-    pairs = GrowingPairs.of(span, met.of(met.raised), CLOSER * ENDS)
+    alone = met.raised & (swing is None)  # which follows modes about the static twist
+    pairs = GrowingPairs.of(span, met.of(alone), CLOSER * ENDS)
     lost = np.array([at for gap in span.lost for at in (gap.low, (gap.low + gap.high) / 2, gap.high)])
     lost = np.concatenate([lost[(lost >= low) & (lost <= high)], [low, high], pairs.looked_at])
     first = np.setdiff1d(np.concatenate([even, octaves, met.speed]), lost)

@@ -46,8 +46,8 @@ NEGLIGIBLE = 1e-10
 CORRECTIONS, MATRICES = 8, 4
 """Newton's steps, and matrices of all unknowns that one takes."""
 LONG = 6
-"""Unknowns from which on steps along the tree cost less than matrices of all unknowns: as much at five, half at eight, a
-fifth at sixteen, whatever the harmonics."""
+"""Unknowns from which on steps along the tree cost less than matrices of all unknowns: as much at five, half at eight,
+a fifth at sixteen, whatever the harmonics."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
