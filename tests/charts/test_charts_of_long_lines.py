@@ -20,11 +20,11 @@ from trunnion.numerics.patches.patches import Box
 ANGLES = "factor of HookeJoint *.angle"
 
 
-def uniform(inertias: int) -> tn.Driveline:
+def uniform(inertias: int, damping: float = 0.05) -> tn.Driveline:
     """Shafts and disks alike, two joints of 1 rad times the factor; hardly damped, so that it has tongues."""
     elements: list[Any] = [tn.ConstantSpeed()]
     for i in range(inertias):
-        elements += [tn.Shaft(stiffness=2e5, damping=0.05), tn.Disk(inertia=0.1)]
+        elements += [tn.Shaft(stiffness=2e5, damping=damping), tn.Disk(inertia=0.1)]
         if i in (2, inertias // 2):
             elements.append(tn.HookeJoint(angle=1.0))
     return tn.Driveline(elements)
@@ -97,6 +97,36 @@ def test_one_column_at_a_time_as_all_of_them(half: bool, monkeypatch: pytest.Mon
     assert not np.array_equal(found, other)
     assert (np.linalg.norm(found - other, axis=(1, 2)) <= error + bound).all() and error.max() < 2 * bound.max()
     assert trace == pytest.approx(damping, rel=1e-12)
+
+
+def test_columns_of_a_tree_as_all_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Branches and gears, joints behind each other."""
+    assembly = assemble(random_tree(4, 20, 21, driven=True))
+    across, up = axis(assembly, ("speed", 60.0, 300.0, 2), "x")[0], axis(assembly, (ANGLES, 0.1, 1.2, 2), "y")[0]
+    family = LineFamily(assembly, across, up, float("nan"), True, half_windows=False)
+    assert np.any(np.diff(family.program.parent) != 1) and not family.needs_stages
+    batch = family.batch(np.geomspace(60.0, 300.0, 18), np.linspace(0.1, 1.2, 18))
+    found, error, trace = family._integrated(batch, 1e-11, 1)
+    monkeypatch.setattr(chain_monodromy, "SHORT", 1000)
+    other, bound, damping = family._integrated(batch, 1e-11, 1)
+    assert (np.linalg.norm(found - other, axis=(1, 2)) <= np.minimum(error + bound, 1e-10)).all()
+    assert trace == pytest.approx(damping, rel=1e-12)
+
+
+def test_nodes_are_as_well_known_as_they_say_where_less_is_asked_of_the_kernel() -> None:
+    """Matrices by half periods at points by chance, against whole periods as sharp as the kernel goes; fast modes are
+    damped, so that the kernel's bounds are far too large."""
+    assembly, tolerance = assemble(uniform(20, 10.0)), 2.5e-10
+    across, up = axis(assembly, ("speed", 60.0, 330.0, 2), "x")[0], axis(assembly, (ANGLES, 0.1, 0.45, 2), "y")[0]
+    family = LineFamily(assembly, across, up, float("nan"), True)
+    asked = family.sampled_to(tolerance)
+    assert asked > 10 * tolerance
+    rng = np.random.default_rng(5)
+    x, y = rng.uniform(60.0, 330.0, 40), rng.uniform(0.1, 0.45, 40)
+    found, error, _ = family.matrices(x, y, asked, 1)
+    sharp, _, _ = family.over_whole_periods()._integrated(family.batch(x, y), 1e-14, 1)
+    off = np.linalg.norm(found - sharp, axis=(1, 2))
+    assert np.all(off <= error) and error.max() < tolerance
 
 
 def turning(rate: float) -> Any:

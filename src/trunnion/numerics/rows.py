@@ -8,6 +8,8 @@ so a kernel is written in loops and compiled in a tenth of the time that the sam
 lane, and nothing is left to the luck of automatic vectorisation. ``load`` takes the form of what it returns from its
 last argument: with a number there it reads one number, so the same text serves one lane as well as sixteen.
 
+``spread_half`` makes a row of half as many, for kernels that need more rows at a time than registers hold.
+
 Functions that take or return a row are called from compiled code alone: ``numerics.jit.njit(inner=True)``.
 """
 
@@ -22,33 +24,39 @@ from numba import types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
-from trunnion.numerics.batch import BATCH
+from trunnion.numerics.batch import BATCH, HALF
 
 _DOUBLE = ir.DoubleType()
-_VECTOR = ir.VectorType(_DOUBLE, BATCH)
 
 
 class RowType(types.Type):
-    """Type of a row of ``BATCH`` numbers."""
+    """Type of a row of ``width`` numbers."""
 
-    def __init__(self) -> None:
-        super().__init__(name=f"Row({BATCH})")
+    def __init__(self, width) -> None:
+        super().__init__(name=f"Row({width})")
+        self.width = width
+
+    @property
+    def vector(self):
+        """What LLVM makes of it."""
+        return ir.VectorType(_DOUBLE, self.width)
 
 
-row_type = RowType()
+row_type, half_type = ROWS = RowType(BATCH), RowType(HALF)
 
 
 @register_model(RowType)
 class _RowModel(models.PrimitiveModel):
     def __init__(self, manager, kind) -> None:
-        super().__init__(manager, kind, _VECTOR)
+        super().__init__(manager, kind, kind.vector)
 
 
-def _spread(builder, number):
+def _spread(builder, number, kind):
     """A number in every lane."""
-    one = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), number, ir.Constant(ir.IntType(32), 0))
-    zeros = ir.Constant(ir.VectorType(ir.IntType(32), BATCH), [0] * BATCH)
-    return builder.shuffle_vector(one, ir.Constant(_VECTOR, ir.Undefined), zeros)
+    nothing = ir.Constant(kind.vector, ir.Undefined)
+    one = builder.insert_element(nothing, number, ir.Constant(ir.IntType(32), 0))
+    zeros = ir.Constant(ir.VectorType(ir.IntType(32), kind.width), [0] * kind.width)
+    return builder.shuffle_vector(one, nothing, zeros)
 
 
 def _address(context, builder, signature, args, kind):
@@ -59,17 +67,19 @@ def _address(context, builder, signature, args, kind):
 @intrinsic
 def spread(typing, number):
     """A row that holds ``number`` in every lane."""
+    return row_type(types.float64), lambda context, builder, signature, args: _spread(builder, args[0], row_type)
 
-    def generate(context, builder, signature, args):
-        return _spread(builder, args[0])
 
-    return row_type(types.float64), generate
+@intrinsic
+def spread_half(typing, number):
+    """A row of half as many lanes."""
+    return half_type(types.float64), lambda context, builder, signature, args: _spread(builder, args[0], half_type)
 
 
 @intrinsic
 def load(typing, array, at, like):
     """What stands in the flat ``array`` from ``at`` on: a row where ``like`` is one, otherwise a number."""
-    kind = row_type if like == row_type else types.float64
+    kind = like if like in ROWS else types.float64
 
     def generate(context, builder, signature, args):
         vector = context.get_value_type(kind)
@@ -83,7 +93,7 @@ def load(typing, array, at, like):
 @intrinsic
 def store(typing, array, at, value):
     """Write a row or a number into the flat ``array`` from ``at`` on."""
-    kind = row_type if value == row_type else types.float64
+    kind = value if value in ROWS else types.float64
 
     def generate(context, builder, signature, args):
         written = builder.store(args[2], _address(context, builder, signature, args, context.get_value_type(kind)))
@@ -94,19 +104,19 @@ def store(typing, array, at, value):
 
 
 def _operator(symbol, instruction):
-    row, number = row_type, types.float64
-    kinds = [(row, row), (row, number), (number, row)]
+    number = types.float64
 
     @infer_global(symbol)
     class _Operator(ConcreteTemplate):
-        cases = [signature(row, *pair) for pair in kinds]
+        cases = [signature(row, *pair) for row in ROWS for pair in ((row, row), (row, number), (number, row))]
 
     def generate(context, builder, signature, args):
-        both = [_spread(builder, a) if t == number else a for a, t in zip(args, signature.args, strict=True)]
+        row = signature.return_type
+        both = [_spread(builder, a, row) if t == number else a for a, t in zip(args, signature.args, strict=True)]
         return getattr(builder, instruction)(*both)
 
-    for pair in kinds:
-        lower_builtin(symbol, *pair)(generate)
+    for case in _Operator.cases:
+        lower_builtin(symbol, *case.args)(generate)
 
 
 _operator(operator.add, "fadd")

@@ -21,6 +21,7 @@ from trunnion.arrays import Array, Flags, Places
 from trunnion.errors import ComputationError, InputError
 from trunnion.floquet.charts.chart_families import ChartFamily, LineFamily
 from trunnion.floquet.charts.chart_pixels import Pixels, judge, judge_matrices, judge_rows
+from trunnion.numerics.batch import BATCH
 from trunnion.numerics.patches import patches
 from trunnion.numerics.patches.patches import Box, Patch, PatchedFunction
 from trunnion.numerics.threads import on_threads
@@ -41,6 +42,8 @@ AT_ONCE = 200_000
 """Numbers of a patch that are turned into pixels together."""
 COLUMNS = 8_000_000
 """Numbers of a patch along columns of pixels, which stay in memory while their rows are shown."""
+FEWEST_ROWS = 4
+"""Rows of pixels together, however long: weighted sums of several take a third of the time a row."""
 SAMPLING = 0.7
 """Share of the progress that building the function makes; showing its pixels makes the rest."""
 UNEVEN = 0.4713
@@ -245,12 +248,12 @@ def shown(
     parts = [
         (patch, rows, some)
         for patch, rows, columns in function.parts(u, v)
-        for some in _strips(columns, patch.coefficients[..., 0].size, COLUMNS)
+        for some in _strips(columns, _whole_batches(COLUMNS // patch.coefficients[..., 0].size))
     ]
     for k, (patch, rows, columns) in enumerate(parts):
         judge_strip = judged(patch, u[columns])
         width = (columns.stop - columns.start) * len(patch.error)
-        tasks += [(judge_strip, part, columns) for part in _strips(rows, width)]
+        tasks += [(judge_strip, part, columns) for part in _strips(rows, max(FEWEST_ROWS, AT_ONCE // width))]
         left[rows, columns] = False
         held += (columns.stop - columns.start) * patch.coefficients[..., 0].size
         if held >= COLUMNS // 2 or k == len(parts) - 1:
@@ -334,7 +337,11 @@ def _decide_stiff(family: ChartFamily, pixels: Pixels, x: Array, y: Array) -> No
     pixels.put_better(found, rows, columns)
 
 
-def _strips(rows: slice, per_row: int, most: int = AT_ONCE) -> list[slice]:
-    """Rows in strips of at most ``most`` numbers: bounded memory, and work for every thread's cache."""
-    step = max(1, most // max(per_row, 1))
+def _strips(rows: slice, step: int) -> list[slice]:
+    """``rows`` in strips of ``step``: bounded memory, and work for every thread's cache."""
     return [slice(a, min(a + step, rows.stop)) for a in range(rows.start, rows.stop, step)]
+
+
+def _whole_batches(count: int) -> int:
+    """No more columns than ``count``, of many as many as kernels take without a rest."""
+    return count - count % BATCH if count > BATCH else max(1, count)

@@ -223,20 +223,27 @@ class LineFamily(ChartFamily):
         found, error, trace = self._integrated(batch, tolerance, threads)
         if self.size <= LARGEST_DENSE or self.set_aside:
             return found, error, trace
+        rounding = self._rounding(batch, found)
+        return found, np.minimum(error, RESERVE * self._compared[0] * error + rounding), trace
+
+    def _rounding(self, batch: ChainBatch, found: Array) -> Array:
+        """What rounding leaves of matrices ``found`` of the lanes of ``batch``."""
         size = np.sqrt((found**2).sum(axis=(1, 2)) / (2 * self.size))
-        rounding = ROUNDING * batch.frequency * np.sqrt(self.size) * self.period * np.maximum(1.0, size)
-        return found, np.minimum(error, RESERVE * self._share_of_bound * error + rounding), trace
+        radians = batch.frequency * np.sqrt(self.size) * self.period
+        return np.asarray(ROUNDING * radians * np.maximum(1.0, size))
 
     def _integrated(self, batch: ChainBatch, tolerance: float, threads: int) -> tuple[Array, Array, Array]:
         """As ``matrices``, with the kernel's own bounds."""
         return chain_monodromy(self.program, batch, self._window(self.program, batch), tolerance, threads)
 
     @cached_property
-    def _share_of_bound(self) -> float:
-        """The largest share of the kernel's bound that errors reach, at the corners of the axes and between.
+    def _compared(self) -> tuple[float, float]:
+        """The largest share of the kernel's bound that errors reach, at the corners of the axes and between, and the
+        largest bound over the tolerance that was asked for.
 
         The bound carries every step's error on as if nothing died out. Of long lines, whose fast modes do, it is a
-        thousand times too large and more; so matrices of some points are compared with sharper ones.
+        thousand times too large and more; so matrices of some points are compared with sharper ones. What rounding
+        leaves is no share of a bound: the share is no less than what it hides where the bound is largest.
         """
         places = np.concatenate([[0.0, 0.0, 1.0, 1.0], np.mod(np.sqrt(2) * np.arange(1, BATCH - 3), 1.0)])
         others = np.concatenate([[0.0, 1.0, 0.0, 1.0], np.mod(np.sqrt(3) * np.arange(1, BATCH - 3), 1.0)])
@@ -245,8 +252,11 @@ class LineFamily(ChartFamily):
         batch = self.batch(*at)
         rough, bound, _ = self._integrated(batch, COMPARED, 1)
         sharp = self._integrated(batch, COMPARED / 100, 1)[0]
-        share = np.linalg.norm(rough - sharp, axis=(1, 2)) / bound
-        return float(share.max()) if np.isfinite(share).all() else 1.0
+        off, rounding = np.linalg.norm(rough - sharp, axis=(1, 2)), self._rounding(batch, sharp)
+        share = np.maximum(off - rounding, 0.0) / bound
+        if not np.isfinite(share).all():
+            return 1.0, 1.0
+        return float(max(share.max(), (rounding / bound).min())), float(bound.max() / COMPARED)
 
     def evaluate(self, x: Array, y: Array, tolerance: float, threads: int) -> tuple[Array, Array]:
         """See ``ChartFamily``."""
@@ -316,11 +326,19 @@ class LineFamily(ChartFamily):
         if self.size <= LARGEST_DENSE:
             return None
 
+        asked = self.sampled_to(tolerance)
+
         def sample(u: Array, v: Array) -> tuple[Array, Array, Array]:
-            return self.matrices(*self._from_patch(u, v), SAMPLED * tolerance, threads)
+            return self.matrices(*self._from_patch(u, v), asked, threads)
 
         most_nodes = NODES_FOR_PIXELS * pixels
         return matrix_patches(sample, box, 2 * self.size, tolerance, most_nodes, MOST_BYTES, report_progress)
+
+    def sampled_to(self, tolerance: float) -> float:
+        """What is asked of matrices of long lines, so that their errors stay well below ``tolerance``: more where those
+        stay far below what is asked for, up to where that was found."""
+        (share, grown), sampled = self._compared, SAMPLED * tolerance
+        return max(sampled, min(SAMPLED * sampled / (RESERVE * share * grown), COMPARED))
 
     def differ(self, x: Array, y: Array) -> bool:
         """See ``ChartFamily``."""

@@ -24,7 +24,7 @@ from trunnion.numerics.jit import njit
 class ChainProgram(NamedTuple):
     """What all lanes share: who hangs on whom, and which joint's law acts where. Sources are −1 for "none".
 
-    parent (n,): parent unknown, −1 at a prescribed or missing root.
+    parent (n,): parent unknown, a smaller one, or −1 at a prescribed or missing root.
     joint_speed_source, joint_rate (joints,): the joint whose output drives this one (−1: the input itself),
         and the speed ratio in between.
     joint_ratio_source, joint_ratio (joints,): the same within the joint's group, for r = da/da_ref.

@@ -1,9 +1,10 @@
-"""Eigenvalues of many small matrices, sixteen at a time, and how sensitive one of each is.
+"""Eigenvalues of many small matrices, eight at a time, and how sensitive one of each is.
 
 A library finds the eigenvalues of one matrix after the other, in loops too short for vector registers. Here each
-instruction serves sixteen matrices: reduction to Hessenberg form by reflections, then Francis's steps with double
-shifts (Golub and Van Loan, Matrix Computations, algorithms 7.4.2 and 7.5.1). Each matrix has its own range of rows that
-are still to be parted; outside of it nothing is reflected.
+instruction serves eight matrices, as many as registers hold with all that a reflection needs (sixteen take a third
+longer): reduction to Hessenberg form by reflections, then Francis's steps with double shifts (Golub and Van Loan,
+Matrix Computations, algorithms 7.4.2 and 7.5.1). Each matrix has its own range of rows that are still to be parted;
+outside of it nothing is reflected.
 """
 
 # mypy: ignore-errors
@@ -12,9 +13,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from trunnion.numerics.batch import BATCH
+from trunnion.numerics.batch import HALF
 from trunnion.numerics.jit import njit
-from trunnion.numerics.rows import load, spread, store
+from trunnion.numerics.rows import load, spread_half, store
 
 MOST_SWEEPS = 30
 """Steps for one eigenvalue after which a matrix is given up."""
@@ -30,22 +31,22 @@ def eigenvalues_in_rows(matrices, size, values, hessenberg):
     """Eigenvalues of ``matrices`` (size², points), an even size, their entries by rows: values (size, points, 2) real
     and imaginary, NaN where they were not found; hessenberg (points, size, size) similar to each by rotations."""
     points = matrices.shape[1]
-    h, work = np.empty(size * size * BATCH), np.empty((size + 9) * BATCH)
-    low, high, tried = np.empty(BATCH, np.int64), np.empty(BATCH, np.int64), np.empty(BATCH, np.int64)
-    for at in range(0, points, BATCH):
-        used = min(BATCH, points - at)
+    h, work = np.empty(size * size * HALF), np.empty((size + 9) * HALF)
+    low, high, tried = np.empty(HALF, np.int64), np.empty(HALF, np.int64), np.empty(HALF, np.int64)
+    for at in range(0, points, HALF):
+        used = min(HALF, points - at)
         for q in range(size * size):
-            for l in range(BATCH):
-                h[q * BATCH + l] = matrices[q, at + min(l, used - 1)]
+            for l in range(HALF):
+                h[q * HALF + l] = matrices[q, at + min(l, used - 1)]
         _reduce(h, size, work)
-        for l in range(BATCH):
+        for l in range(HALF):
             high[l], tried[l] = size - 1 if l < used else -1, 0
         for l in range(used):
             own = hessenberg[at + l]
             for i in range(size):
                 values[i, at + l, 0] = values[i, at + l, 1] = np.nan
                 for j in range(size):
-                    own[i, j] = h[(i * size + j) * BATCH + l]
+                    own[i, j] = h[(i * size + j) * HALF + l]
         while True:
             first, last = size, -1
             for l in range(used):
@@ -63,40 +64,40 @@ def _reduce(h, size, work):
     """Hessenberg form in place."""
     for c in range(size - 2):
         first, count = c + 1, size - c - 1
-        for l in range(BATCH):
+        for l in range(HALF):
             square = 0.0
             for i in range(first + 1, size):
-                entry = h[(i * size + c) * BATCH + l]
+                entry = h[(i * size + c) * HALF + l]
                 square += entry * entry
-            head = h[(first * size + c) * BATCH + l]
+            head = h[(first * size + c) * HALF + l]
             norm = np.sqrt(head * head + square)
             beta = -norm if head >= 0.0 else norm
             v = head - beta
             # 2/‖v‖², v = (head − β, the rest); none where there is nothing to reflect.
             weight = 2.0 / (v * v + square) if square > 0.0 else 0.0
             work[l] = weight
-            work[BATCH + l] = v
+            work[HALF + l] = v
             for i in range(first + 1, size):
-                work[(i - first + 1) * BATCH + l] = h[(i * size + c) * BATCH + l]
-                h[(i * size + c) * BATCH + l] = 0.0
-            h[(first * size + c) * BATCH + l] = beta if square > 0.0 else head
+                work[(i - first + 1) * HALF + l] = h[(i * size + c) * HALF + l]
+                h[(i * size + c) * HALF + l] = 0.0
+            h[(first * size + c) * HALF + l] = beta if square > 0.0 else head
         for j in range(c + 1, size):
-            _reflect(h, (first * size + j) * BATCH, size * BATCH, count, work)
+            _reflect(h, (first * size + j) * HALF, size * HALF, count, work)
         for i in range(size):
-            _reflect(h, (i * size + first) * BATCH, BATCH, count, work)
+            _reflect(h, (i * size + first) * HALF, HALF, count, work)
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _reflect(h, at, stride, count, work):
     """Reflect ``count`` numbers of every lane, ``stride`` apart from ``at`` on, by weight and vector in ``work``."""
-    zero = spread(0.0)
+    zero = spread_half(0.0)
     dot = zero
     for i in range(count):
-        dot = dot + load(work, (i + 1) * BATCH, zero) * load(h, at + i * stride, zero)
+        dot = dot + load(work, (i + 1) * HALF, zero) * load(h, at + i * stride, zero)
     dot = dot * load(work, 0, zero)
     for i in range(count):
         to = at + i * stride
-        store(h, to, load(h, to, zero) - load(work, (i + 1) * BATCH, zero) * dot)
+        store(h, to, load(h, to, zero) - load(work, (i + 1) * HALF, zero) * dot)
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
@@ -109,22 +110,22 @@ def _part(h, size, lane, low, high, tried, values):
         last = high[lane]
         begin = last
         while begin > 0:
-            here, above = h[(begin * size + begin) * BATCH + lane], h[((begin - 1) * size + begin - 1) * BATCH + lane]
-            between = (begin * size + begin - 1) * BATCH + lane
+            here, above = h[(begin * size + begin) * HALF + lane], h[((begin - 1) * size + begin - 1) * HALF + lane]
+            between = (begin * size + begin - 1) * HALF + lane
             if abs(h[between]) <= EPS * (abs(here) + abs(above)):
                 h[between] = 0.0
                 break
             begin -= 1
         low[lane] = begin
         if begin == last:
-            values[last, 0], values[last, 1] = h[(last * size + last) * BATCH + lane], 0.0
+            values[last, 0], values[last, 1] = h[(last * size + last) * HALF + lane], 0.0
             high[lane], tried[lane] = last - 1, 0
         elif begin == last - 1:
             _pair(h, size, lane, last, values)
             high[lane], tried[lane] = last - 2, 0
         else:
             tried[lane] += 1
-            if tried[lane] > MOST_SWEEPS or not abs(h[(last * size + last) * BATCH + lane]) < np.inf:
+            if tried[lane] > MOST_SWEEPS or not abs(h[(last * size + last) * HALF + lane]) < np.inf:
                 high[lane] = -1
             return
 
@@ -132,8 +133,8 @@ def _part(h, size, lane, low, high, tried, values):
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _pair(h, size, lane, last, values):
     """Eigenvalues of rows ``last`` − 1 and ``last``, parted from all others."""
-    upper, lower = ((last - 1) * size + last - 1) * BATCH + lane, (last * size + last - 1) * BATCH + lane
-    p, q, r, s = h[upper], h[upper + BATCH], h[lower], h[lower + BATCH]
+    upper, lower = ((last - 1) * size + last - 1) * HALF + lane, (last * size + last - 1) * HALF + lane
+    p, q, r, s = h[upper], h[upper + HALF], h[lower], h[lower + HALF]
     mean, half = (p + s) / 2, (p - s) / 2
     inside = half * half + q * r
     root = np.sqrt(abs(inside))
@@ -150,32 +151,32 @@ def _pair(h, size, lane, last, values):
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _shifts(h, size, low, high, tried, work):
     """First column of (H − σ₁)(H − σ₂) of each lane's range, σ the eigenvalues of its last two rows."""
-    for l in range(BATCH):
+    for l in range(HALF):
         if high[l] < 0:
             continue
-        upper, lower = ((high[l] - 1) * size + high[l] - 1) * BATCH + l, (high[l] * size + high[l] - 1) * BATCH + l
-        p, q, r, s = h[upper], h[upper + BATCH], h[lower], h[lower + BATCH]
+        upper, lower = ((high[l] - 1) * size + high[l] - 1) * HALF + l, (high[l] * size + high[l] - 1) * HALF + l
+        p, q, r, s = h[upper], h[upper + HALF], h[lower], h[lower + HALF]
         total, det = p + s, p * s - q * r
         if tried[l] % STUCK == 0:
-            stride = abs(r) + abs(h[upper - BATCH])
+            stride = abs(r) + abs(h[upper - HALF])
             total, det = 1.5 * stride + 2 * s, stride * stride + 1.5 * stride * s + s * s
-        at, below = (low[l] * size + low[l]) * BATCH + l, ((low[l] + 1) * size + low[l]) * BATCH + l
-        a, b, c, d, e = h[at], h[at + BATCH], h[below], h[below + BATCH], h[below + (size + 1) * BATCH]
-        work[6 * BATCH + l] = a * (a - total) + b * c + det
-        work[7 * BATCH + l] = c * (a + d - total)
-        work[8 * BATCH + l] = c * e
+        at, below = (low[l] * size + low[l]) * HALF + l, ((low[l] + 1) * size + low[l]) * HALF + l
+        a, b, c, d, e = h[at], h[at + HALF], h[below], h[below + HALF], h[below + (size + 1) * HALF]
+        work[6 * HALF + l] = a * (a - total) + b * c + det
+        work[7 * HALF + l] = c * (a + d - total)
+        work[8 * HALF + l] = c * e
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _sweep(h, size, first, last, low, high, work):
     """One step of Francis on rows ``first`` … ``last``, of each lane on those of its own range."""
-    zero = spread(0.0)
+    zero = spread_half(0.0)
     for k in range(first, last):
         three = k < last - 1
-        for l in range(BATCH):
-            # Everything is read before anything is chosen: branches would be sixteen times as slow.
-            x, y, z = work[l], work[BATCH + l], work[2 * BATCH + l]
-            first_x, first_y, first_z = work[6 * BATCH + l], work[7 * BATCH + l], work[8 * BATCH + l]
+        for l in range(HALF):
+            # Everything is read before anything is chosen: branches would be eight times as slow.
+            x, y, z = work[l], work[HALF + l], work[2 * HALF + l]
+            first_x, first_y, first_z = work[6 * HALF + l], work[7 * HALF + l], work[8 * HALF + l]
             begin, end = low[l], high[l]
             x, y, z = (first_x if k == begin else x), (first_y if k == begin else y), (first_z if k == begin else z)
             z = z if k < end - 1 else 0.0
@@ -186,27 +187,27 @@ def _sweep(h, size, first, last, low, high, work):
             live = (k >= begin) & (k < end) & (length > 0.0)
             over, weight = 1.0 / v, 2.0 * v * v / length
             # v = (1, y, z) with its weight 2/‖v‖²
-            work[3 * BATCH + l] = weight if live else 0.0
-            work[4 * BATCH + l] = y * over if live else 0.0
-            work[5 * BATCH + l] = z * over if live else 0.0
-        weight, y, z = load(work, 3 * BATCH, zero), load(work, 4 * BATCH, zero), load(work, 5 * BATCH, zero)
+            work[3 * HALF + l] = weight if live else 0.0
+            work[4 * HALF + l] = y * over if live else 0.0
+            work[5 * HALF + l] = z * over if live else 0.0
+        weight, y, z = load(work, 3 * HALF, zero), load(work, 4 * HALF, zero), load(work, 5 * HALF, zero)
         for j in range(max(first, k - 1), last + 1):
-            _reflect_few(h, (k * size + j) * BATCH, size * BATCH, three, weight, y, z)
+            _reflect_few(h, (k * size + j) * HALF, size * HALF, three, weight, y, z)
         for i in range(k + 1, min(k + 2, last) + 1):
             if k > first:
-                store(h, (i * size + k - 1) * BATCH, zero)
-        for i in range(min(k + 3, last) + 1):
-            _reflect_few(h, (i * size + k) * BATCH, BATCH, three, weight, y, z)
+                store(h, (i * size + k - 1) * HALF, zero)
+        for i in range(first, min(k + 3, last) + 1):
+            _reflect_few(h, (i * size + k) * HALF, HALF, three, weight, y, z)
         for m in range(3):
             i = k + 1 + m
             if i <= last:
-                store(work, m * BATCH, load(h, (i * size + k) * BATCH, zero))
+                store(work, m * HALF, load(h, (i * size + k) * HALF, zero))
 
 
 @njit(nogil=True, fastmath=EXACT, error_model="numpy", inner=True)
 def _reflect_few(h, at, stride, three, weight, y, z):
     """The same of two numbers or ``three``, by the vector (1, y, z)."""
-    zero = spread(0.0)
+    zero = spread_half(0.0)
     p, q = load(h, at, zero), load(h, at + stride, zero)
     if three:
         r = load(h, at + 2 * stride, zero)

@@ -1,8 +1,10 @@
 """Taylor integration of long plain chains over a stretch of input angle, sixteen lanes at a time.
 
-As ``series_driver``, but that the coefficients of one column alone are kept, which a processor's cache holds: of 50
-unknowns those of all columns take 22 MB, and reading them takes longer than making them. So every column is carried on
-at once, over a step whose length follows from the one before; one that turns out too long is taken back.
+As ``series_driver``, but one column after the other is carried over the step, whose length follows from the step
+before; one that turns out too long is taken back. Each order of a column's series needs the order before alone, and is
+added to the state at the step's end at once: only what the series of a joint's coupling multiplies is kept of all
+orders. So what a column needs lies in a processor's first caches: of 50 unknowns whole series take 220 KB a column and
+22 MB in all, and reading them takes many times as long as making them.
 """
 
 # mypy: ignore-errors
@@ -22,9 +24,10 @@ from trunnion.numerics.rows import load, spread, store
 
 LEAST_STEP, NEXT_STEP = 0.93, 0.98
 """A step is taken back where less than this share of it was right, and the next is a little shorter than it may be."""
-# Places of one unknown's numbers in the scratch of a column: twist, force, and the series of torques.
-TWIST, FORCE, TORQUE = 0, BATCH, 2 * BATCH
-PER_SPARE = 2 * BATCH + ROWS
+# Places of one unknown's numbers of a step, of its scratch in a column, and of the series that are kept.
+KAPPA, SLOW, NEAR, PER_NUMBERS = 0, BATCH, 2 * BATCH, 3 * BATCH
+ANGLE, TWIST, FORCE, PER_SPARE = 0, BATCH, 2 * BATCH, 3 * BATCH
+ANGLES, TORQUES, PER_KEPT = 0, ROWS, 2 * ROWS
 
 
 @njit(nogil=True)
@@ -51,12 +54,15 @@ def _propagate(program, block, begin, length, tolerance, most_steps, now, after,
     parent, n = program.parent, len(program.parent)
     wide = 2 * n
     joints, start = empty_series(program)
-    near, scratch, squares = np.zeros(n * ROWS), np.zeros(n * PER_SPARE), np.zeros((LAST + 1) * BATCH)
-    series = np.empty(wide * ROWS)
-    last, grown, largest, bent = np.empty(BATCH), np.empty(BATCH), np.ones(BATCH), np.zeros(n, np.bool_)
+    near, squares = np.zeros(n * ROWS), np.zeros((LAST + 1) * BATCH)
+    numbers, scratch, kept = np.zeros(n * PER_NUMBERS), np.zeros(n * PER_SPARE), np.zeros(n * PER_KEPT)
+    last, grown, largest = np.empty(BATCH), np.empty(BATCH), np.ones(BATCH)
+    bent, felt = np.zeros(n, np.bool_), np.zeros(n, np.bool_)
     fastest = begin_block(block.unknown, now, wide, BATCH, error, trace)
     for i in range(n):
         bent[i] = parent[i] >= 0 and program.near_source[i] >= 0
+        if bent[i]:
+            felt[parent[i]] = True
         for l in range(BATCH):
             near[i * ROWS + l] = block.unknown[i * PER_UNKNOWN + NEAR_SCALE * BATCH + l]
     done, count = 0.0, 0
@@ -73,10 +79,10 @@ def _propagate(program, block, begin, length, tolerance, most_steps, now, after,
         else:
             couplings(program, block, BATCH, bent, begin + done, h, joints, start, near, spread(0.0))
         begin_step(parent, bent, near, squares)
+        _numbers_of_step(block.unknown, near, h, numbers)
+        nu = block.unknown[FREQUENCY * BATCH : (FREQUENCY + 1) * BATCH]
         for column in range(0, wide * wide * BATCH, wide * BATCH):
-            _begin_column(now, column, wide, series)
-            column_series(parent, bent, block.unknown, near, series, scratch, squares, h)
-            _end_column(after, column, wide, series)
+            _carry_column(parent, bent, felt, numbers, nu, near, now, after, column, scratch, kept, squares, h)
         # No step is asked for less than its own rounding; otherwise steps would shrink for ever.
         s, fall = length_of_step(squares, n, max(tolerance * h / length, ROUNDING), last, grown)
         if not s >= LEAST_STEP:
@@ -97,77 +103,91 @@ def _propagate(program, block, begin, length, tolerance, most_steps, now, after,
     return count
 
 
-@njit(nogil=True, inner=True)
-def _begin_column(states, column, wide, series):
-    zero = spread(0.0)
-    for i in range(wide):
-        store(series, i * ROWS, load(states, column + i * BATCH, zero))
-
-
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
-def _end_column(states, column, wide, series):
-    """Every state of a column after a step of one unit."""
-    for i in range(wide):
-        at = i * ROWS
-        total = load(series, at + ORDER * BATCH, spread(0.0))
-        for k in range(at + (ORDER - 1) * BATCH, at - 1, -BATCH):
-            total = total + load(series, k, total)
-        store(states, column + i * BATCH, total)
-
-
-@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
-def column_series(parent, bent, unknown, near, w, scratch, squares, h):
-    """Coefficients of the column ``w`` (state, order), whose order 0 stands there; squares are added to."""
-    n = len(parent)
+def _numbers_of_step(unknown, near, h, numbers):
+    """What all columns share of every unknown side by side: κ, d/hν and the coupling at the step's begin."""
     zero = spread(0.0)
     nu = h * load(unknown, FREQUENCY * BATCH, zero)
-    now = 0 * n  # not a constant: numba would compile for each of them anew
-    _add_squares(w, now, 2 * n, squares, LAST_SQUARE + now)
-    for i in range(n):
-        if parent[i] >= 0:
-            e, o, p = load(near, i * ROWS, zero), i * ROWS, parent[i] * ROWS
-            store(scratch, i * PER_SPARE + TWIST, load(w, o, zero) - e * load(w, p, zero))
-    for k in range(ORDER):
-        here, over = k * BATCH, 1.0 / (k + 1)
-        for i in range(n):
-            x, v, rate = i * ROWS + here + BATCH, (n + i) * ROWS + here, over * nu
-            store(w, x, rate * load(w, v, zero))
-            store(scratch, i * PER_SPARE + FORCE, zero)
-        for i in range(n):
-            p, x, own = parent[i], i * ROWS + here, i * PER_SPARE
-            kappa = load(unknown, i * PER_UNKNOWN + STIFFNESS * BATCH, zero)
-            d = load(unknown, i * PER_UNKNOWN + DAMPING * BATCH, zero)
-            force = load(scratch, own + FORCE, zero)
-            if p < 0:
-                v = (n + i) * ROWS + here
-                store(scratch, own + FORCE, force - kappa * load(w, x, zero) - d * load(w, v, zero))
-                continue
-            e = load(near, i * ROWS, zero)
-            up, torque, above = p * ROWS + here + BATCH, own + TORQUE + here, p * PER_SPARE + FORCE
-            q = load(w, x + BATCH, zero) - e * load(w, up, zero)
-            g = load(scratch, above, zero)
-            if bent[i]:
-                for j in range(BATCH, here + BATCH, BATCH):
-                    c = load(near, i * ROWS + j, zero)
-                    q = q - c * load(w, up - j, zero)
-                    g = g + c * load(scratch, torque - j, zero)
-                q = q - load(near, i * ROWS + here + BATCH, zero) * load(w, up - here - BATCH, zero)
-            t = kappa * load(scratch, own + TWIST, zero) + ((k + 1.0) * d / nu) * q
-            store(scratch, own + TWIST, q)
-            store(scratch, torque, t)
-            store(scratch, own + FORCE, force - t)
-            store(scratch, above, g + e * t)
-        for i in range(n):
-            v = (n + i) * ROWS + here + BATCH
-            store(w, v, (h * over) * load(scratch, i * PER_SPARE + FORCE, zero))
-        if k + LAST >= ORDER:
-            _add_squares(w, here + BATCH, 2 * n, squares, (k + LAST - ORDER) * BATCH)
+    for i in range(len(numbers) // PER_NUMBERS):
+        own, to = i * PER_UNKNOWN, i * PER_NUMBERS
+        store(numbers, to + KAPPA, load(unknown, own + STIFFNESS * BATCH, zero))
+        store(numbers, to + SLOW, load(unknown, own + DAMPING * BATCH, zero) / nu)
+        store(numbers, to + NEAR, load(near, i * ROWS, zero))
 
 
 @njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
-def _add_squares(w, order, states, squares, at):
+def _carry_column(parent, bent, felt, numbers, nu, near, now, after, column, scratch, kept, squares, h):
+    """The column of ``now`` that stands at ``column``, after a step of one unit, into ``after``; squares are added to.
+
+    Every order walks along the unknowns once, from the root: the rate of an unknown follows from the force that the
+    order before left on it, in whose place the next one is summed. ``felt``: unknowns whose angles a coupling takes.
+    """
+    n = len(parent)
+    zero = spread(0.0)
+    rates = column + n * BATCH
+    unit = h * load(nu, 0 * n, zero)
+    square = load(squares, LAST_SQUARE + 0 * n, zero)
+    for i in range(n):
+        own, x, v = i * PER_SPARE, load(now, column + i * BATCH, zero), load(now, rates + i * BATCH, zero)
+        square = square + x * x + v * v
+        store(scratch, own + ANGLE, x)
+        store(scratch, own + FORCE, v)
+        store(after, column + i * BATCH, zero)
+        store(after, rates + i * BATCH, zero)
+        if felt[i]:
+            store(kept, i * PER_KEPT + ANGLES, x)
+        if parent[i] >= 0:
+            x = x - load(numbers, i * PER_NUMBERS + NEAR, zero) * load(scratch, parent[i] * PER_SPARE + ANGLE, zero)
+        store(scratch, own + TWIST, x)
+    store(squares, LAST_SQUARE + 0 * n, square)
+    turned = 1.0
+    for k in range(ORDER):
+        here, growing, rate = k * BATCH, k + 1.0, unit * (1.0 / (k + 1))
+        summed = 1.0 if k else 0.0
+        for i in range(n):
+            own, number, p, to = i * PER_SPARE, i * PER_NUMBERS, parent[i], column + i * BATCH
+            v = turned * load(scratch, own + FORCE, zero)
+            x = rate * v
+            store(after, rates + i * BATCH, load(after, rates + i * BATCH, zero) + summed * v)
+            store(after, to, load(after, to, zero) + x)
+            store(scratch, own + ANGLE, x)
+            if felt[i]:
+                store(kept, i * PER_KEPT + ANGLES + here + BATCH, x)
+            kappa, slow = load(numbers, number + KAPPA, zero), growing * load(numbers, number + SLOW, zero)
+            before = load(scratch, own + TWIST, zero)
+            if p < 0:
+                store(scratch, own + TWIST, x)
+                store(scratch, own + FORCE, zero - kappa * before - slow * x)
+                continue
+            e, above, up, torque = load(numbers, number + NEAR, zero), p * PER_SPARE, p * PER_KEPT, i * PER_KEPT
+            q = x - e * load(scratch, above + ANGLE, zero)
+            if bent[i]:
+                for j in range(BATCH, here + 2 * BATCH, BATCH):
+                    q = q - load(near, i * ROWS + j, zero) * load(kept, up + ANGLES + here + BATCH - j, zero)
+            t = kappa * before + slow * q
+            g = load(scratch, above + FORCE, zero) + e * t
+            if bent[i]:
+                store(kept, torque + TORQUES + here, t)
+                for j in range(BATCH, here + BATCH, BATCH):
+                    g = g + load(near, i * ROWS + j, zero) * load(kept, torque + TORQUES + here - j, zero)
+            store(scratch, own + TWIST, q)
+            store(scratch, own + FORCE, zero - t)
+            store(scratch, above + FORCE, g)
+        turned = h / growing
+        if k + LAST >= ORDER:
+            _add_squares(scratch, n, turned, squares, (k + LAST - ORDER) * BATCH)
+    for i in range(n):
+        a, b = column + i * BATCH, rates + i * BATCH
+        v = load(after, b, zero) + turned * load(scratch, i * PER_SPARE + FORCE, zero)
+        store(after, a, load(now, a, zero) + load(after, a, zero))
+        store(after, b, load(now, b, zero) + v)
+
+
+@njit(nogil=True, fastmath=True, error_model="numpy", inner=True)
+def _add_squares(scratch, n, turned, squares, at):
+    """Those of the order that a walk has come to."""
     total = load(squares, at, spread(0.0))
-    for i in range(order, order + states * ROWS, ROWS):
-        x = load(w, i, total)
-        total = total + x * x
+    for own in range(0, n * PER_SPARE, PER_SPARE):
+        x, v = load(scratch, own + ANGLE, total), turned * load(scratch, own + FORCE, total)
+        total = total + x * x + v * v
     store(squares, at, total)
