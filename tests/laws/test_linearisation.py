@@ -35,6 +35,28 @@ def base(assembly: Assembly, time: float, *, twisted: bool) -> tuple[np.ndarray,
     )
 
 
+def test_without_joints_stations_keep_their_exact_ratios() -> None:
+    """Two gears in a row, a branch, and a joint that stands straight on it or none."""
+    speeds = []
+    for joint in ([], [tn.HookeJoint(angle=0.0)]):
+        parts = [
+            *(tn.ConstantSpeed(), tn.Shaft(stiffness=1e4), tn.Disk(inertia=0.1, name="first"), tn.Ratio(ratio=3.0)),
+            *(tn.Disk(inertia=0.2), tn.Ratio(ratio=-0.7), tn.Shaft(stiffness=2e4), tn.Disk(inertia=0.3)),
+            *(tn.Shaft(stiffness=3e4, after="first"), *joint, tn.Ratio(ratio=1.1), tn.Disk(inertia=0.1)),
+        ]
+        assembly = assemble(tn.Driveline(parts))
+        topo, tau = assembly.topology, np.linspace(0.0, 3.0, 4)
+        motion = base_motion(topo, assembly.coefficients(assembly.table(2, SPEED)), tau)
+        speeds.append(motion.speed[..., topo.firsts])
+        for found, exact in ((motion.speed, topo.mean_speeds), (motion.relative, topo.relative_ratios)):
+            assert found.shape == (2, 4, len(topo.stations)) and found == pytest.approx(
+                np.broadcast_to(exact, found.shape)
+            )
+        for part in (motion.acceleration, motion.relative_slope, motion.relative_curvature):
+            assert not part.any()
+    assert np.array_equal(*speeds)
+
+
 @pytest.mark.parametrize("seed", quick_every(4, range(40)))
 @pytest.mark.parametrize("twisted", [False, True])
 @pytest.mark.parametrize("made", [random_line, random_geared_line, random_uneven_line])

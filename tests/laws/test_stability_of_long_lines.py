@@ -209,6 +209,17 @@ def test_harmonics_that_meet_other_modes_fall_slowly(monkeypatch: pytest.MonkeyP
     assert (apart <= bound).any(axis=1).all() and (apart <= bound).any(axis=0).all()
 
 
+def test_lengths_of_a_basis_are_those_of_the_rows_of_its_inverse() -> None:
+    """Two real modes among pairs, and two states beside them: dual vectors of the complex basis."""
+    rng, pair = np.random.default_rng(3), np.array([True, False, True, True, False])
+    modes = rng.normal(size=(10, 5)) + 1j * rng.normal(size=(10, 5)) * pair
+    others = np.linalg.qr(rng.normal(size=(10, 10)))[0][:, :2]
+    basis = tree_modes._Basis(np.zeros(5, complex), np.zeros(5, complex), modes, pair, np.zeros(5), others)
+    dual = np.linalg.inv(np.concatenate([modes, modes[:, pair].conj(), others], axis=1))
+    lengths = basis.lengths(np.linalg.inv(basis.whole))
+    assert lengths == pytest.approx(np.linalg.norm(dual[:5], axis=1), rel=1e-12)
+
+
 def test_along_a_range_as_at_single_speeds() -> None:
     """Radius and verdict of a line that the kernel would have known to 1e-4."""
     line = uniform(44, 0.2, 0.3)

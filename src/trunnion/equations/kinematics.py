@@ -141,6 +141,8 @@ def base_motion(
     turning = walk(places, [tau], stood, {s: jet[:1] for s, jet in own.items()})
     # Each station lies in one piece over time, which is how it is filled.
     a = np.moveaxis(np.array([angle for (angle,) in turning.angle]), 0, -1)
+    if not (turning.passed or own):
+        return _even_motion(topo, places, a)
     w, w1, r, r1, r2 = (np.moveaxis(np.zeros((len(topo.stations), *tau.shape)), 0, -1) for _ in range(5))
     w[..., 0], r[..., 0] = 1.0, 1.0
     for s, (_, speed, acceleration) in own.items():
@@ -165,6 +167,21 @@ def base_motion(
             for quantity in (w, w1, r, r1, r2):
                 quantity[..., s] = quantity[..., b] / place.ratio
     return BaseMotion(a, w, w1, r, r1, r2)
+
+
+def _even_motion(topo: Topology, places: Sequence[StationKinematics], angle: Array) -> BaseMotion:
+    """Of a line without joints, whose stations keep their speeds."""
+    speed, relative = [1.0], [1.0]
+    for station, place in zip(topo.stations[1:], places, strict=True):
+        if station.link is LinkKind.SUM:
+            speed.append(sum(share * speed[one] for one, share in place.of))
+        else:
+            speed.append(speed[place.before] / place.ratio)
+        tied = station.link not in (LinkKind.SUM, LinkKind.SHAFT, LinkKind.LOOSE)
+        relative.append(relative[place.before] / place.ratio if tied else 1.0)
+    w, r, still = np.empty_like(angle), np.empty_like(angle), np.zeros_like(angle)
+    w[:], r[:] = speed, relative
+    return BaseMotion(angle, w, still, r, still, still)
 
 
 def _given(

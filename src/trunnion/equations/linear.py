@@ -124,7 +124,7 @@ def put_entries(
         at, moment = topo.unknown_of[inert], coefficients.inertia[:, None, inert]
         mass[at, at] += np.moveaxis(moment, 2, 0)
         forcing[..., at] -= moment * (motion.acceleration[..., inert] * speed[..., None] ** 2)
-    for s in np.setdiff1d(np.flatnonzero(acting[0].any(axis=0) | loaded), inert).tolist():
+    for s in _but(acting[0].any(axis=0) | loaded, inert):
         group = topo.group_of(s)
         i, ref = topo.coordinate[group], topo.reference[group]
         if i < 0:
@@ -152,7 +152,7 @@ def put_entries(
     if len(springs):
         _put_springs(topo, coefficients, torques, springs, damping, stiffness, forcing)
         ratio_seen[..., springs] = 1.0
-    for e in np.setdiff1d(np.arange(len(topo.compliances)), springs).tolist():
+    for e in _but(np.ones(len(topo.compliances), dtype=bool), springs):
         compliance, (far, near) = topo.compliances[e], topo.ends[e]
         ref = topo.reference[topo.group_of(compliance.near)]
         k, c, torque = coefficients.stiffness[:, e, None], coefficients.damping[:, e, None], torques[..., e]
@@ -188,6 +188,12 @@ def _torques_of(topo: Topology, co: LineCoefficients, tau: Array, motion: BaseMo
 
 
 NONE = np.zeros(0, dtype=np.intp)
+
+
+def _but(which: Flags, put: Integers) -> list[int]:
+    """Places of ``which`` that were not put yet."""
+    which[put] = False
+    return np.flatnonzero(which).tolist()
 
 
 def alike(topo: Topology, loaded: Flags) -> tuple[Integers, Integers]:
@@ -264,6 +270,12 @@ def over_mass(matrices: LineMatrices, part: Array) -> Array:
     return np.asarray(part * (1 / own)[..., None])
 
 
+def require_rigid_base(assembly: Assembly, table: Array) -> None:
+    """Refuse a line that no steady motion of rigid shafts stands for."""
+    require_steady_base(assembly, table)
+    refuse_periodic_base(assembly, "put a ConstantSpeed in front")
+
+
 def periodic_linear_system(
     assembly: Assembly, table: Array, *, statically_twisted: bool = True
 ) -> PeriodicLinearSystem:
@@ -275,8 +287,7 @@ def periodic_linear_system(
         ``require_steady_base``).
     """
     topo = assembly.topology
-    require_steady_base(assembly, table)
-    refuse_periodic_base(assembly, "put a ConstantSpeed in front")
+    require_rigid_base(assembly, table)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
     speed = float(coefficients.speed[0])
     period = 2 * np.pi * float(require_period(assembly.line, topo))

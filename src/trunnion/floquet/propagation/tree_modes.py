@@ -15,10 +15,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 
 import numpy as np
 
-from trunnion.arrays import Array, Complex, Flags
+from trunnion.arrays import Array, Complex, Flags, Places
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.linear import rigid_motions
@@ -88,7 +89,7 @@ class _Basis:
     left: Array
     others: Array
 
-    @property
+    @cached_property
     def whole(self) -> Array:
         """Real vectors of all: Re v, Im v of pairs, N (2n, 2n)."""
         return np.concatenate([self.modes.real, self.modes.imag[:, self.pair], self.others], axis=1)
@@ -103,7 +104,7 @@ class _Basis:
             except np.linalg.LinAlgError:
                 basis = basis._independent()
                 continue
-            rows = np.linalg.norm(basis.rows(inverse), axis=1)
+            rows = basis.lengths(inverse)
             good = rows < WORST_CONDITION
             if good.all():
                 return basis, inverse, rows
@@ -135,12 +136,23 @@ class _Basis:
         kept[owner[depends]] = False
         return self._of(kept)
 
-    def rows(self, inverse: Array) -> Complex:
-        """Rows (m, 2n) of the inverse that belong to the modes."""
+    def carried(self, rest: _Rest, onto: Complex, value: Complex, both: Places) -> Complex:
+        """Vectors (2n, d) of the multipliers of the ``rest``; ``onto`` (m, d): what falls back onto the modes in a
+        period; ``value``: multipliers of these and, behind them, of the conjugates of pairs, which are ``both``."""
+        back = np.arange(len(both)) >= len(self.pair)
+        own = _mirrored(self.modes, both, back)
+        onto = np.where(back[:, None], onto[both].conj(), onto[both])
+        apart = rest.multiplier - value[:, None]
+        beside = onto @ rest.vectors / np.where(np.abs(apart) < NO_DISTANCE, NO_DISTANCE, apart)
+        return np.asarray(self.others @ rest.vectors + own @ beside)
+
+    def lengths(self, inverse: Array) -> Array:
+        """Those of the rows of the ``inverse`` that belong to the modes (m,), of pairs (Re − i Im)/2."""
         m = len(self.pair)
-        rows = np.where(self.pair[:, None], inverse[:m] / 2, inverse[:m]).astype(complex)
-        rows[self.pair] -= 0.5j * inverse[m : m + int(self.pair.sum())]
-        return rows
+        square = np.einsum("ij,ij->i", inverse, inverse)
+        found = square[:m]
+        found[self.pair] = (found[self.pair] + square[m : m + int(self.pair.sum())]) / 4
+        return np.asarray(np.sqrt(found))
 
 
 def _judged(line: HillLine, found: FollowedModes, aside: Array) -> FloquetModes | None:
@@ -153,7 +165,7 @@ def _judged(line: HillLine, found: FollowedModes, aside: Array) -> FloquetModes 
     size = np.linalg.norm(v, axis=0)
     v, left = v / size, found.left / size
     pair = np.abs(turned.imag) > REAL * np.abs(turned)
-    if len(turned):
+    if not pair.all():
         largest = np.take_along_axis(v, np.abs(v).argmax(axis=0)[None], axis=0)[0]
         v = np.where(pair, v, v * (np.abs(largest) / largest))
     basis, inverse, rows = _Basis(found.value, turned, v, pair, left, np.zeros((2 * line.n, 0))).completed()
@@ -172,36 +184,43 @@ def _proven(line: HillLine, basis: _Basis, inverse: Array, rows: Array, aside: A
     onto = share[:m].astype(complex)
     onto[several] = (share[several] - 1j * share[m : m + len(several)]) / 2
     both = np.concatenate([np.arange(m), several])
-    back = np.arange(len(both)) >= m
-    own, value = np.where(back, basis.modes[:, both].conj(), basis.modes[:, both]), basis.multiplier[both]
-    value = np.where(back, value.conj(), value)
-    onto = np.where(back[:, None], onto[both].conj(), onto[both])
-    apart = rest.multiplier - value[:, None]
-    beside = onto @ rest.vectors / np.where(np.abs(apart) < NO_DISTANCE, NO_DISTANCE, apart)
-    carried = basis.others @ rest.vectors + own @ beside
-    every, condition = np.concatenate([own, carried / np.linalg.norm(carried, axis=0)], axis=1), rows[both]
+    back = np.arange(len(both) + len(rest.multiplier)) >= m
+    back[len(both) :] = False
+    value = np.where(back[: len(both)], basis.multiplier[both].conj(), basis.multiplier[both])
+    vectors, condition = basis.modes, rows[both]
+    exponent = np.where(back[: len(both)], basis.exponent[both].conj(), basis.exponent[both])
     if d:
-        condition = _conditions(every, rigid)
+        carried = basis.carried(rest, onto, value, both)
+        vectors = np.concatenate([vectors, carried / np.linalg.norm(carried, axis=0)], axis=1)
+        exponent = np.concatenate([exponent, line.exponents(rest.multiplier, carried)])
+    source = np.concatenate([both, m + np.arange(len(rest.multiplier))])
+    if d:
+        condition = _conditions(_mirrored(vectors, source, back), rigid)
     multiplier = np.concatenate([value, rest.multiplier])
     grown = max(1.0, float(np.abs(multiplier).max(initial=0.0)), rest.norm)
     moved = line.time * _norm(basis.whole) * _norm(inverse.T) * grown * basis.left[both] * rows[both]
     off = float(np.hypot(np.linalg.norm(moved), off))
     error = bounds_of(multiplier, condition, off + EPSILON * rest.norm * (d > 0))
-    exponent = np.where(back, basis.exponent[both].conj(), basis.exponent[both])
-    exponent = np.concatenate([exponent, line.exponents(rest.multiplier, carried)])
     order = np.argsort(-np.abs(multiplier), kind="stable")
-    rotation, rate = line.states(every[:, order])
+    rotation, rate = line.states(vectors)
     states = np.concatenate([rotation, rate / line.speed])
     return FloquetModes(
         multiplier[order],
         error[order],
         exponent[order],
-        states / np.abs(states).max(axis=0),
+        _mirrored(states / np.abs(states).max(axis=0), source[order], back[order]),
         line.trace,
         abs(float(exponent.real.sum()) * line.time + line.trace),
         off,
         d,
     )
+
+
+def _mirrored(columns: Complex, source: Places, back: Flags) -> Complex:
+    """The columns ``source``, those that are ``back`` as their conjugates."""
+    found = columns[:, source]
+    found.imag[:, back] *= -1
+    return found
 
 
 def _conditions(vectors: Complex, rigid: Array) -> Array:

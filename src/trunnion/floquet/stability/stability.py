@@ -20,10 +20,10 @@ from trunnion.arrays import Array, Complex
 from trunnion.driveline.arguments import one_number
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import operating_speed, speed_unit
-from trunnion.equations.aligned import rigid_rotation
+from trunnion.equations.aligned import aligned_matrices, frequencies, rigid_rotation
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.linear import periodic_linear_system, rigid_motions
+from trunnion.equations.linear import periodic_linear_system, require_rigid_base, rigid_motions
 from trunnion.equations.steady_base import (
     carried_at_input,
     has_periodic_base,
@@ -284,22 +284,26 @@ def _speed_told(found: Stability, topo: Topology, coefficients: LineCoefficients
 
 
 def _about_rigid_shafts(assembly: Assembly, table: Array, tolerance: float, statically_twisted: bool) -> Stability:
-    require_time(assembly, float(table[0, 0]), partial(by_modes_of, assembly), "stability")
-    system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
-    forced = partial(linear_response, assembly, system.rate, statically_twisted=statically_twisted)
-    turns, frequency = require_period(assembly.line, assembly.topology), np.array(system.frequencies)
+    topo, speed = assembly.topology, float(table[0, 0])
+    require_time(assembly, speed, partial(by_modes_of, assembly), "stability")
+    require_rigid_base(assembly, table)
+    forced = partial(linear_response, assembly, speed, statically_twisted=statically_twisted)
+    turns = require_period(assembly.line, topo)
     coefficients = assembly.coefficients(table, statically_twisted=statically_twisted)
-    aside = rigid_motions(assembly.topology, coefficients)
-    if assembly.topology.size >= LONG:
-        modes = floquet_modes(assembly.topology, coefficients, turns)
-        if modes is not None and (found := _of_modes(system, modes, aside, forced, tolerance)) is not None:
+    aside = rigid_motions(topo, coefficients)
+    if topo.size >= LONG:
+        modes = floquet_modes(topo, coefficients, turns)
+        found = modes and _of_modes(topo, modes, aside, turns, speed, forced, tolerance)
+        if modes and found:
             if found.verdict not in (Verdict.UNSTABLE, Verdict.UNDECIDED):
                 return found
             # Only what grows belongs to a resonance.
-            motion = mode_motion(assembly.topology, coefficients, turns, complex(modes.exponent[0]))
-            named = _named(motion, found.verdict, system.rate, frequency, sources(assembly), turns)
+            motion = mode_motion(topo, coefficients, turns, complex(modes.exponent[0]))
+            frequency = frequencies(aligned_matrices(topo, coefficients), still=topo.still)[0] / speed
+            named = _named(motion, found.verdict, speed, frequency, sources(assembly), turns)
             return replace(found, resonance=named)
-    run = propagated(system, tolerance)
+    system = periodic_linear_system(assembly, table, statically_twisted=statically_twisted)
+    frequency, run = np.array(system.frequencies), propagated(system, tolerance)
     return _judge(system, run, sources(assembly), turns, frequency, forced, aside)
 
 
@@ -449,34 +453,39 @@ def _judge(
 
 
 def _of_modes(
-    system: PeriodicLinearSystem,
+    topo: Topology,
     modes: FloquetModes,
     aside: Array,
+    turns: Fraction,
+    speed: float,
     forced: Callable[[], LinearResponse],
     tolerance: float,
 ) -> Stability | None:
     """Of the modes of a long line; None where they are known less well than asked."""
     radius, error = spectral_radius(modes.multiplier, modes.error)
-    undamped = abs(modes.trace) < 1e-13 * system.size
+    undamped = abs(modes.trace) < 1e-13 * topo.size
     verdict = Verdict(int(verdicts(radius, error, undamped)))
-    if modes.off > max(tolerance, ROUNDING * system.size):
+    if modes.off > max(tolerance, ROUNDING * topo.size):
         return None
-    ones, rigid = np.ones(aside.shape[1]), aside / np.abs(aside).max(axis=0, initial=0.0)
-    value = np.concatenate([modes.multiplier, ones])
-    order = np.argsort(-np.abs(value), kind="stable")
+    value, off, states = modes.multiplier, modes.error, modes.states
+    if still := aside.shape[1]:
+        value, off = np.concatenate([value, np.ones(still)]), np.concatenate([off, np.zeros(still)])
+        order = np.argsort(-np.abs(value), kind="stable")
+        states = np.concatenate([states, aside / np.abs(aside).max(axis=0)], axis=1)[:, order]
+        value, off = value[order], off[order]
     return Stability(
-        multipliers=value[order],
-        multiplier_error=np.concatenate([modes.error, 0 * ones])[order],
-        floquet_modes=np.concatenate([modes.states, rigid], axis=1)[:, order],
+        multipliers=value,
+        multiplier_error=off,
+        floquet_modes=states,
         spectral_radius=float(radius),
         error_estimate=float(error),
         verdict=verdict,
-        period=system.period,
-        speed=system.rate,
+        period=2 * np.pi * float(turns),
+        speed=speed,
         resonance=None,
         forced=forced,
         liouville_defect=modes.liouville_defect,
-        names=system.names,
+        names=topo.names,
         set_aside=aside.shape[1],
     )
 
