@@ -7,7 +7,7 @@ its crank, its table or its pressures at the momentary mean speed, and is integr
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -93,20 +93,27 @@ CASES = {one.__name__: one for one in (masses, over_speed, over_load, over_both,
 class Oracle:
     """Disks in a row; the first is excited and carries the drive, the last the load. ``drive``: what the drive gives
     beyond the load at the speed asked for [N m]; ``driven``: the input turns as asked, by the first shaft, in front of
-    the last two disks, of which the one behind is excited and loaded."""
+    the last two disks, of which the one behind is excited and loaded; ``until``: when the last speed is asked for [s],
+    behind which that stays."""
 
     torque: Torque
     driven: bool = False
     drive: float = 0.0
+    first: float = FIRST
+    acceleration: float = ACCELERATION
+    until: float = np.inf
+    quadratic: float = QUADRATIC
+    damping: np.ndarray = field(default_factory=lambda: DAMPING)
 
     def rate(self, t: float, y: np.ndarray) -> np.ndarray:
-        asked = FIRST + ACCELERATION * t
-        angle = (FIRST + ACCELERATION * t / 2) * t
+        since = min(t, self.until)
+        asked = self.first + self.acceleration * since
+        angle = self.first * t + self.acceleration * since * (t - since / 2)
         n = len(y) // 2
         d, v, push = y[:n], y[n:], np.zeros(n)
-        twist, slip = np.diff(d, prepend=0.0) if self.driven else np.diff(d), 0.0
+        twist = np.diff(d, prepend=0.0) if self.driven else np.diff(d)
         slip = np.diff(v, prepend=0.0) if self.driven else np.diff(v)
-        shaft = STIFFNESS * twist + DAMPING * slip
+        shaft = STIFFNESS * twist + self.damping * slip
         if self.driven:
             inertia = INERTIA[1:]
             push -= shaft
@@ -117,19 +124,32 @@ class Oracle:
             push[:-1] += shaft
             push[1:] -= shaft
             mean, excited = asked + inertia @ v / inertia.sum(), 0
-            push[0] += propeller(asked) + self.drive
+            push[0] += self.quadratic * asked**2 + self.drive
         push[excited] += self.torque(angle + d[excited], mean)
-        push[-1] -= QUADRATIC * abs(asked + v[-1]) * (asked + v[-1])
-        return np.concatenate([v, push / inertia - ACCELERATION])
+        push[-1] -= self.quadratic * abs(asked + v[-1]) * (asked + v[-1])
+        return np.concatenate([v, push / inertia - (self.acceleration if t < self.until else 0.0)])
 
     def shafts(self, times: np.ndarray, start: np.ndarray) -> np.ndarray:
         """Torques of both shafts (time, shaft)."""
-        found = solve_ivp(self.rate, (0.0, times[-1]), start, "DOP853", times, rtol=1e-11, atol=1e-12, max_step=0.02)
-        n = len(start) // 2
-        d, v = found.y[:n], found.y[n:]
+        n, y = len(start) // 2, self.motion(times, start)
+        d, v = y[:n], y[n:]
         if self.driven:
             d, v = np.vstack([np.zeros(d.shape[1]), d]), np.vstack([np.zeros(d.shape[1]), v])
-        return np.asarray((STIFFNESS[:, None] * np.diff(d, axis=0) + DAMPING[:, None] * np.diff(v, axis=0)).T)
+        return np.asarray((STIFFNESS[:, None] * np.diff(d, axis=0) + self.damping[:, None] * np.diff(v, axis=0)).T)
+
+    def motion(self, times: np.ndarray, start: np.ndarray) -> np.ndarray:
+        """Deviations from the rotation asked for and their rates (state, time), cut where the schedule ends."""
+        cut = np.searchsorted(times, self.until)
+        parts, begin = [], (0.0, start)
+        for some, end in ((times[:cut], min(self.until, times[-1])), (times[cut:], times[-1])):
+            if end > begin[0]:
+                at = np.append(some[some < end], end)
+                y = solve_ivp(
+                    self.rate, (begin[0], end), begin[1], "DOP853", at, rtol=1e-11, atol=1e-12, max_step=0.02
+                ).y
+                parts.append(y[:, : len(some)])
+                begin = end, y[:, -1]
+        return np.concatenate(parts, axis=1)
 
 
 def shaft(i: int) -> tn.Shaft:
@@ -184,6 +204,30 @@ def test_free_run_up(name: str) -> None:
     times = np.linspace(0.0, (LAST - FIRST) / ACCELERATION, 3001)
     expected = Oracle(torque, drive=drive).shafts(times, run.simulation.at(times[:1])[0])
     np.testing.assert_allclose(run.simulation.torque_at(times), expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("size", "kind"), [(0.01, "reached"), (0.03, "captured")])
+def test_a_resonance_that_holds_an_engine(size: float, kind: str) -> None:
+    """By torques with the square of the speed at which the line hangs, and not of the speed asked for."""
+    first, acceleration, load, damping = 60.0, 2.0, 0.002, 2.0
+    line = free_line({"excitation": [{"order": 1, "quadratic_amplitude": size}]})
+    line = line.replace("propeller", quadratic_load=load)
+    line = line.replace("Shaft 1", damping=damping).replace("Shaft 2", damping=damping)
+    run = tn.run_up(line, first, LAST, acceleration=acceleration, ramp=0.0, steady=0)
+    assert run.outcome.kind == kind and run.ending is not None
+    assert run.ending.hanging is not None and run.ending.hanging.speed == pytest.approx(77.0, rel=0.03)
+    until = (LAST - first) / acceleration
+    oracle = Oracle(
+        harmonic(1, lambda speed: size * speed**2), drive=run.ending.drive - load * LAST**2, first=first,
+        acceleration=acceleration, until=until, quadratic=load, damping=np.full(2, damping),
+    )  # fmt: skip
+    times = np.linspace(0.0, run.simulation.end, 2001)
+    turned = INERTIA @ oracle.motion(times, run.simulation.at(np.zeros(1))[0])[:3] / INERTIA.sum()
+    since = np.minimum(times, until)
+    asked = first * times + acceleration * since * (times - since / 2)
+    np.testing.assert_allclose(run.simulation.whole.angle(times), asked + turned - turned[0], rtol=0, atol=1e-4)
+    if kind == "captured":
+        assert (asked + turned)[-1] - (asked + turned)[-101] < 0.8 * LAST * (times[-1] - times[-101])
 
 
 def indicated(load: int) -> np.ndarray:
