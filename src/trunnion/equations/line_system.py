@@ -237,6 +237,7 @@ class LineSystem(Portable):
             stations[topo.firsts, core.SHARE] = self.shares(co.inertia[case])
         if on.acceleration:
             self.refuse_change()
+            assert amplitudes is not None or not any(one.law.varies for one in self.torques)
         loads = self._loads(row, course, drive, co.load[case], co.inertia[case])
         for place, part in zip((core.LOAD, core.BY_SPEED, core.BY_SQUARE), loads, strict=True):
             stations[:, place] = part * sense
