@@ -2448,6 +2448,11 @@ PYTHON = [
         "driveline: has 30 unknowns: its response over a range, at some",
         "ask for a number of speeds",
     ),
+    (
+        lambda: tn.sweep_speeds(shaken_and_steep(30), 60.0, 300.0),
+        "driveline: has 30 unknowns: its response over a range, at some",
+        "ask for a number of speeds",
+    ),
     (lambda: Driveline(3), "elements: must be a list, not of type int", "tn.Driveline(["),
     (lambda: Driveline(Disk(inertia=1)), "elements: must be a list, not of type Disk", "tn.Driveline(["),
     (

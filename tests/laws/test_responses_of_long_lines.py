@@ -16,7 +16,7 @@ from trunnion.equations import linear
 from trunnion.equations.coefficients import assemble
 from trunnion.equations.topology import require_period
 from trunnion.steady.orders import spectrum as responses
-from trunnion.steady.orders.spectrum import order_spectrum
+from trunnion.steady.orders.spectrum import order_spectrum, response_cost
 from trunnion.steady.orders.unbalanced import balanced, unbalanced
 
 SPEED = 150.0
@@ -100,6 +100,16 @@ def test_a_joint_at_80_degrees_takes_as_many_side_orders_as_it_needs() -> None:
     assert response.side_orders == found.side_orders >= needed == 92
     assert any(f"{response.side_orders} side orders on either side" in str(one) for one in response.remarks)
     assert not any("side orders" in str(one) for one in tn.order_response(chain(24, 0.3), [70.0]).remarks)
+
+
+def test_what_a_range_costs_is_reckoned_with_the_side_orders_that_its_slowest_speed_takes() -> None:
+    line, ends = chain(17, np.deg2rad(80.0)), np.array([40.0, 300.0])
+    slow, fast = (tn.order_response(line, [speed]).side_orders for speed in ends)
+    cost, one = (response_cost(assemble(line), at, 100) for at in (ends, ends[1:]))
+    assert cost.side_orders >= slow > fast == one.side_orders
+    assert cost.seconds > one.seconds and cost.memory > one.memory
+    straight = response_cost(assemble(chain(17, 0.0)), ends, 100)
+    assert straight.seconds == straight.memory == straight.side_orders == 0
 
 
 def test_a_response_that_does_not_balance_is_solved_by_whole_matrices(monkeypatch: pytest.MonkeyPatch) -> None:

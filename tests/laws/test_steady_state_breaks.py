@@ -18,6 +18,7 @@ from oracles.scanned_lines import scanned_line
 import trunnion as tn
 from trunnion.equations.coefficients import assemble
 from trunnion.floquet.stability.stability_over_speed import stability_along
+from trunnion.response.speed_sweep import response_over
 from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed, breaks
 
 
@@ -73,6 +74,17 @@ def test_responses_are_refused_where_stability_refuses(beside: tuple[float, ...]
     assert [float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:]] == pytest.approx(
         [high, low], rel=1e-5
     )
+
+
+def test_a_response_over_a_range_within_which_the_motion_folds_names_the_ends_of_the_fold():
+    """Those that shooting finds by arc length; beside the fold there is one motion at every speed, and a response."""
+    line = scanned_line("free", 117).driveline
+    with pytest.raises(tn.ComputationError, match="several periodic motions at") as refused:
+        response_over(line, 66.5, 67.5, points=9)
+    ends = sorted(float(one) for one in re.findall(r"at ([\d.]+) rad/s", str(refused.value))[1:])
+    assert ends == pytest.approx([66.979466, 67.024574], rel=2e-5)
+    beside = response_over(line, 67.1, 67.6, points=9)
+    assert len(beside.speed) > 9 and np.isfinite(beside.vibratory_torque).all()
 
 
 @pytest.mark.slow

@@ -53,6 +53,8 @@ LONG = 16
 """Unknowns from which on what a search costs is estimated before it begins."""
 MOST_SEARCHED = 600.0
 """Processor time [s] beyond which a range is not searched, as a number of speeds can be asked for in its place."""
+SEARCHED = 1.5
+"""Speeds that a search looks at, of each that it begins with."""
 
 STATE_SPEEDS = "ask for a number of speeds, such as --speed 600rpm:3000rpm:41, or state smaller joint angles"
 
@@ -188,7 +190,7 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
 
     Raises
     ------
-    InputError : as of ``order_response``.
+    InputError : as of ``order_response``; a long line whose search would take too long, with an estimate.
 
     Examples
     --------
@@ -201,11 +203,16 @@ def sweep_speeds(line: Driveline | Assembly, low: float, high: float, points: in
     """
     assembly, even = assemble(line), _even(low, high, points)
     try:
-        found = _searched(assembly, _first(assembly, even))
+        first = _first(assembly, even)
+        too_long = _too_long(assembly, first)
+        found = None if too_long else _searched(assembly, first)
     except (InputError, ComputationError) as error:
         order_response(assembly, even[[0, -1]])  # what has no response at any speed is refused
         warnings.warn(InputRemark(_evenly(even, error)), stacklevel=2)
         return even
+    if found is None:
+        assert too_long is not None
+        raise too_long
     return _with(even, found.speed)
 
 
@@ -280,7 +287,8 @@ def _too_long(assembly: Assembly, first: list[Array]) -> InputError | None:
     size, speeds = assembly.topology.size, sum(len(part) for part in first)
     if size < LONG or has_periodic_base(assembly):  # whose motions are refused where they are solved
         return None
-    cost = response_cost(assembly, float(first[-1][-1]), speeds)
+    speeds = int(SEARCHED * speeds)
+    cost = response_cost(assembly, np.array([first[0][0], first[-1][-1]]), speeds)
     what = f"its response over a range, at some {speeds} speeds with {cost.side_orders} side orders on either side,"
     try:
         require_estimate(size, what, cost.seconds, cost.memory, most=MOST_SEARCHED, remedy=STATE_SPEEDS)

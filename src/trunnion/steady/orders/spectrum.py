@@ -121,17 +121,18 @@ class ResponseCost:
     side_orders: int = 0
 
 
-def response_cost(assembly: Assembly, speed: float, speeds: int) -> ResponseCost:
-    """At so many ``speeds``, about, by the harmonics that one ``speed`` [rad/s] takes.
+def response_cost(assembly: Assembly, ends: Array, speeds: int) -> ResponseCost:
+    """At so many ``speeds``, about, by the harmonics that the ``ends`` of their range [rad/s] take: slow speeds take
+    more side orders.
 
     Raises
     ------
     InputError : as of ``order_spectrum``.
     """
-    case = _SpectrumProblem(assembly, True, _numbers(assembly, np.array([speed]), None), False, False, None, False)
+    case = _SpectrumProblem(assembly, True, _numbers(assembly, ends, None), False, False, None, False)
     if not case.varies or case.own is not None:
         return ResponseCost()
-    found = case.solved(slice(0, 1))
+    *_, found = [case.solved(slice(i, i + 1)) for i in range(len(ends))]
     return ResponseCost(case.seconds(speeds), _room(found, speeds), found.side_orders)
 
 
