@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from oracles.four_point_rainflow import four_point
-from pages import run_page
+from pages import blocks, run_page
 from typer.testing import CliRunner
 
 import trunnion as tn
@@ -212,7 +212,9 @@ def test_pictures_show_the_cycles_and_the_curve() -> None:
 
 
 @pytest.mark.slow
-def test_the_page_runs_in_order() -> None:
+def test_the_page_runs_in_order(tmp_path: Any, monkeypatch: Any) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "pump.toml").write_text(blocks("fatigue", "toml")[0], encoding="utf-8")
     text, names = run_page("fatigue")
     assert "shaft: Miner's sum 0.0534 of 1 after 20000 h, lasts 374000 h, most by 1500 rpm, full load (57.6 %)" in text
     assert text.splitlines()[2] == "satisfied"

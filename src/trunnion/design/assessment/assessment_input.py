@@ -69,8 +69,8 @@ OF_OWN_MOTIONS = 3e-6
 """Share of a value that may be missing because an periodic steady state, about which it is computed, is known no more
 closely."""
 SWINGS = 2e-3
-"""Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes: a
-choice, as below it growth about the static twist hardly differs."""
+"""Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes:
+a choice, as below it growth about the static twist hardly differs."""
 STAGES = "it has stages or play, with which each speed takes its own periodic motion"
 FOLLOWS = "its numbers follow the speed"
 
