@@ -130,14 +130,14 @@ class ShootingProblem(Generic[M]):
             slope = np.vstack([slope, np.append(self.phase.row, np.zeros(len(z) - n))])
         return left, slope
 
-    def _tried(self, z: Array, *, tangents: bool = True, **how: float) -> MapEvaluation | None:
-        """The motion at z, run as ``how`` says, kept as the last one tried; None where z is nowhere."""
+    def _tried(self, z: Array, *, tangents: bool = True) -> MapEvaluation | None:
+        """The motion at z, kept as the last one tried; None where z is nowhere."""
         if not np.isfinite(z).all():
             return None
         n = self.size
         try:
             by = range(len(z) - n) if tangents else ()
-            self.last = self.place(z)(z[:n], tangents=tangents, by=by, **how)
+            self.last = self.place(z)(z[:n], tangents=tangents, by=by)
         except InputError:  # a trial value may be no value of this parameter
             if len(z) == n and self.last is None:
                 raise
@@ -236,8 +236,11 @@ class IntegratedShooting(ShootingProblem[IntegratedMap]):
         steps several times shorter than the motion itself does."""
         if not self.cheaper_alone:
             return super().for_newton(z)
-        rough, motion = self._tried(z, looser=ROUGHER), self._tried(z, tangents=False)
-        if rough is None or motion is None or not rough.done:
+        motion = self._tried(z, tangents=False)
+        if motion is None or not motion.done:
+            return self._closing(z, None)
+        rough = self.place(z)(z[: self.size], by=range(len(z) - self.size), looser=ROUGHER)
+        if not rough.done:
             return self._closing(z, None)
         return self._closing(z, replace(motion, tangents=rough.tangents, by_values=rough.by_values))
 
