@@ -15,7 +15,7 @@ from trunnion.equations.coefficients import assemble
 from trunnion.floquet.ranges import growing_pairs
 from trunnion.floquet.ranges.collisions import Collisions, exponent_collisions
 from trunnion.floquet.ranges.span import Span
-from trunnion.floquet.ranges.unstable import UnstableRanges, _astray, closed_in, unstable_ranges
+from trunnion.floquet.ranges.unstable import UnstableRanges, _astray, between_tops, closed_in, unstable_ranges
 from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.results.verdict import Verdict, verdicts
 
@@ -54,6 +54,22 @@ def test_what_ends_with_the_range_has_no_end_within() -> None:
     judge = judged(lambda x: 5.0 - x, 1e-9)
     (ends,) = closed_in(judge(np.linspace(4.0, 6.0, 5)), judge)[1]
     assert ends == (4.0, pytest.approx(5.0, rel=1e-7))
+
+
+@pytest.mark.parametrize("wide", [0.3, 0.05, 0.01])
+@pytest.mark.parametrize("shift", [0.0, 0.13, 0.37])
+def test_two_ranges_with_little_between_them_are_two(wide: float, shift: float) -> None:
+    """Each grows as a root does beside its end; looks 0.4 apart step over what lies between."""
+    middle = 5.0 + 0.4 * shift
+
+    def excess(x: Array) -> Array:
+        low, high = middle - wide / 2, middle + wide / 2
+        below, above = (x - 3.1) * (low - x), (x - high) * (7.3 - x)
+        return np.where(below > 0, np.sqrt(np.abs(below)), np.where(above > 0, np.sqrt(np.abs(above)), -0.2)) * 0.1
+
+    judge = judged(excess, 1e-12)
+    _, found = closed_in(between_tops(judge(np.arange(2.0, 9.0, 0.4)), judge), judge)
+    assert np.ravel(found) == pytest.approx([3.1, middle - wide / 2, middle + wide / 2, 7.3], rel=2e-7)
 
 
 def chain(seed: int, inertias: int, *, steepest: float = 25.0) -> tuple[list[Part], float]:

@@ -2,7 +2,7 @@
 
 Two modes grow together about the speeds where their exponents meet (``collisions``). So one looks at every meeting
 whose pair may grow or decay more slowly than all else and, where its growth stands out, beside it; at an even grid for
-all else; and about the fastest growth until it has settled.
+all else; about the fastest growth until it has settled; and between two tops of what is unstable.
 """
 
 from __future__ import annotations
@@ -41,6 +41,8 @@ ENDS = 1e-7
 """How closely the ends of unstable ranges are located, as a share of the speed."""
 CLOSER, CONFIRMED = 0.05, 0.45
 """Shares of that to which a pair by itself locates an end, and at which looks on its two sides confirm it."""
+VALLEYS = 6
+"""Times that one halves the way from the slowest growth between two tops to its neighbours."""
 SLOWEST = 20.0
 """Factor below the lowest speed of a chart down to which growth is computed."""
 
@@ -114,7 +116,7 @@ def unstable_ranges(
         if not len(wanted):
             break
         along = along.beside(judge(wanted))
-    along, ranges = closed_in(along, judge, closely)
+    along, ranges = closed_in(between_tops(along, judge), judge, closely)
     inside = np.any([(along.speed > gap.low) & (along.speed < gap.high) for gap in span.lost], axis=0)
     return UnstableRanges(along.of(np.broadcast_to(~inside, along.speed.shape)), ranges, slow, (*gaps, *span.lost))
 
@@ -214,6 +216,23 @@ def _beside_top(along: StabilityOverSpeed) -> Array:
     if (v[k] - v[beside]).max() <= least:
         return np.zeros(0)
     return np.asarray((x[k] + x[beside])[np.abs(x[k] - x[beside]) > ENDS * x[k]] / 2)
+
+
+def between_tops(along: StabilityOverSpeed, judge: Judge) -> StabilityOverSpeed:
+    """With speeds from the slowest growth between two tops of what is unstable halfway to its neighbours, and again,
+    where a little of the range between them may be stable."""
+    for _ in range(VALLEYS):
+        x, v, grows = along.speed, along.growth_rate, along.verdict == Verdict.UNSTABLE
+        with np.errstate(invalid="ignore"):
+            low = (v[1:-1] <= v[:-2]) & (v[1:-1] <= v[2:])
+        k = 1 + np.flatnonzero(low & grows[:-2] & grows[1:-1] & grows[2:])
+        apart = np.concatenate([x[k] - x[k - 1], x[k + 1] - x[k]])
+        between = np.concatenate([x[k - 1] + x[k], x[k] + x[k + 1]]) / 2
+        between = np.unique(between[apart > ENDS * np.tile(x[k], 2)])
+        if not len(between):
+            break
+        along = along.beside(judge(between))
+    return along
 
 
 def closed_in(
