@@ -73,6 +73,10 @@ SWINGS = 2e-3
 a choice, as below it growth about the static twist hardly differs."""
 STAGES = "it has stages or play, with which each speed takes its own periodic motion"
 FOLLOWS = "its numbers follow the speed"
+LONG, TOO_LONG = (
+    40,
+    "of so many inertias that takes half an hour; ask stability with about_steady_state at single speeds",
+)
 
 
 @dataclass(frozen=True)
@@ -488,6 +492,8 @@ class LoadCaseResponse:
 
         if self.span.put:
             raise InputError(FOLLOWS)
+        if self.assembly.topology.size >= LONG:
+            raise InputError(TOO_LONG)
         motions = SteadyStatesBySpeed(self.assembly.line)
         if motions.obstacle:
             raise InputError(STAGES)
