@@ -342,7 +342,7 @@ def test_parametric_stability_as_stability_finds_it():
     frequency = float(tn.natural_frequencies(unstable).elastic[0])
     found = tn.assess(unstable, (0.8 * frequency, 1.2 * frequency))
     check = found.check("parametric stability")
-    there = tn.stability(unstable, check.speed)
+    there = tn.stability(unstable, check.speed, about_steady_state=True)  # its joint swings by a degree
     assert (check.status, str(there.verdict)) == (Status.EXCEEDED, "unstable")
     assert check.margin < 0 and "subharmonic" in check.because
     assert check.value == pytest.approx(there.growth_rate, rel=1e-4, abs=1e-6)

@@ -7,8 +7,8 @@ slowest disturbance: 100 % where they take nothing, 0 on the border of stability
 looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
 resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
-the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing, about
-the periodic motion that joints and loads make, searched alike.
+the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing and
+little damping is left, about the periodic motion that joints and loads make, searched alike.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
@@ -117,7 +117,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     if status is Status.SATISFIED and subject.naming:
         proof = PROVED if not own and _proved(case) else SEARCHED
         if proof == PROVED:
-            about = " about the static twist" if case.follows_motion else ""
+            about = " about the static twist" if case.followed else ""
             because += f"; proved for every speed of the range{about}"
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 
@@ -125,11 +125,13 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
 def _of_motion(subject: AssessmentInput, case: LoadCaseResponse, growth: float, speed: float, straight: float) -> str:
     """What is judged of a driven line whose joints swing, and what another growth about its static twist would be; a
     clause, or nothing."""
-    if not (subject.naming and case.follows_motion):
+    if not subject.naming:
         return ""
     if case.not_followed:
         why = case.not_followed[0]
         return f"; about its static twist, though its joints swing by {case.swing:.2g} rad: {why}"
+    if not case.followed:
+        return ""
     static = float(stability_along(case.assembly, [speed]).growth_rate[0])
     if not abs(growth - static) > NOTICED * straight:
         return ""
