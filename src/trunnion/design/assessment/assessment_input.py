@@ -24,7 +24,7 @@ from trunnion.floquet.ranges.resonances import resonances, varies
 from trunnion.floquet.ranges.span import Gap, SmoothRange, Span
 from trunnion.floquet.ranges.straight import straight_ranges
 from trunnion.floquet.ranges.unstable import UnstableRanges, unstable_ranges
-from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along, straight_decay
+from trunnion.floquet.stability.stability_over_speed import StabilityOverSpeed, stability_along
 from trunnion.laws.harmonic import turning
 from trunnion.modes.loaded_modes import loaded_modes
 from trunnion.response.orders.response import response_of_spectrum, steady_states_of
@@ -71,8 +71,6 @@ closely."""
 SWINGS = 2e-3
 """Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes:
 a choice, as below it growth about the static twist hardly differs."""
-CLOSE = 0.3
-"""Share of the straight line's damping that the fastest growth has to leave at most for that; a choice, too."""
 STAGES = "it has stages or play, with which each speed takes its own periodic motion"
 FOLLOWS = "its numbers follow the speed"
 LONG, TOO_LONG = (
@@ -436,29 +434,17 @@ class LoadCaseResponse:
         if not self.parametric:
             return straight_ranges(self.span)
         points = self.effort.costly if self.costly else self.effort.points
+        if self.swing >= SWINGS:
+            try:
+                about = self._ranges_about_motions(points)
+            except (InputError, ComputationError) as error:
+                self.not_followed.append(str(error).splitlines()[0])
+            else:
+                self.followed.append(about)
+                return about
         if self.given:
-            found = UnstableRanges(self._stability(np.unique(self.given)), (), 0.0, ())
-        else:
-            found = unstable_ranges(self.span, self._stability, points=points)
-        if not self._close(found) or self.swing < SWINGS:
-            return found
-        try:
-            about = self._ranges_about_motions(points)
-        except (InputError, ComputationError) as error:
-            self.not_followed.append(str(error).splitlines()[0])
-            return found
-        self.followed.append(about)
-        return about
-
-    def _close(self, found: UnstableRanges) -> bool:
-        """Whether what was ``found`` about the static twist leaves so little damping that the motion may change it."""
-        growth, speed = found.along.growth_rate, found.along.speed
-        if found.ranges or not np.isfinite(growth).any():
-            return True
-        at = int(np.nanargmax(growth))
-        return bool(
-            growth[at] > -CLOSE * straight_decay(self.assembly, float(speed[at]), self.span.table(speed[[at]])[0])
-        )
+            return UnstableRanges(self._stability(np.unique(self.given)), (), 0.0, ())
+        return unstable_ranges(self.span, self._stability, points=points)
 
     def _stability(self, speeds: Array) -> StabilityOverSpeed:
         table = self.span.table(speeds) if self.span.put else None
@@ -483,7 +469,7 @@ class LoadCaseResponse:
 
     @cached_property
     def not_followed(self) -> list[str]:
-        """Why the motion of a driven line that swings, and whose verdict is close, is not known; none where it is."""
+        """Why the motion of a driven line that swings is not known; none where it is."""
         return []
 
     @cached_property

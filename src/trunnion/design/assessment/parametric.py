@@ -7,8 +7,8 @@ slowest disturbance: 100 % where they take nothing, 0 on the border of stability
 looked at, and the ends of unstable ranges are located (``floquet.ranges.unstable``). Lines with joint angles and with
 play or stages that are free–free, where each speed takes its own periodic motion, are searched alike from fewer speeds;
 resonances are then those of the stages that the static load puts them in. Where a certificate of a few boxes proves
-the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing and
-little damping is left, about the periodic motion that joints and loads make, searched alike.
+the whole range, the check says so. Driven lines are judged about their static twist; where their joints swing, about
+the periodic motion that joints and loads make, searched alike: it may be unstable where the static twist takes nothing.
 
 Nothing excites a straight line with even meshes parametrically; one that grows by itself, as by negative damping, is
 exceeded all the same.
