@@ -153,7 +153,7 @@ def test_checks_cover_all_but_the_speeds_where_the_motion_folds():
     for name in ("max torque of s1", "parametric stability"):
         check = judged.check(name)
         assert str(check.status) == "not judged"
-        assert "not judged: the free line's periodic steady state folds back there" in check.because
+        assert "not judged: the line's periodic steady state folds back there" in check.because
         (first, second) = check.covered
         assert (first[0], second[1]) == pytest.approx((line.low, line.high))
         assert (first[1], second[0]) == pytest.approx((66.979466, 67.024574), rel=2e-6)

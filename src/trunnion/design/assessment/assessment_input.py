@@ -13,6 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Array, Codes, Complex
 from trunnion.design.assessment.cause import Cause
+from trunnion.design.assessment.driven_motions import SWINGS, lost_motions, ranges_about_motions
 from trunnion.design.assessment.measures import Measure, measures, torque_measures, torque_name
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.mean_balance import SAME, mean_speeds, own_speed
@@ -68,15 +69,6 @@ TRIAL = SearchEffort(25, 1e-4, 9, 1e-3, named=False)
 OF_OWN_MOTIONS = 3e-6
 """Share of a value that may be missing because an periodic steady state, about which it is computed, is known no more
 closely."""
-SWINGS = 2e-3
-"""Rotation [rad] at the joints, by linear theory, from which on a driven line is judged about the motion that it makes:
-a choice, as below it growth about the static twist hardly differs."""
-STAGES = "it has stages or play, with which each speed takes its own periodic motion"
-FOLLOWS = "its numbers follow the speed"
-LONG, TOO_LONG = (
-    40,
-    "of so many inertias that takes half an hour; ask stability with about_steady_state at single speeds",
-)
 
 
 @dataclass(frozen=True)
@@ -174,7 +166,7 @@ class LoadCaseResponse:
         if not self._searches_motions:
             return span
         assert self.motions is not None
-        return replace(span, lost=self._lost(span, self.motions))
+        return replace(span, lost=lost_motions(span, self.motions, self.effort.costly))
 
     @property
     def _searches_motions(self) -> bool:
@@ -184,18 +176,6 @@ class LoadCaseResponse:
         if lossy(self.assembly) or self.assembly.topology.dragged or self.motions is None:  # the checks say so
             return False
         return not self.motions.obstacle
-
-    def _lost(self, span: Span, motions: SteadyStatesBySpeed) -> tuple[Gap, ...]:
-        """Speeds at which the line's periodic steady state breaks off."""
-        # Loaded where needed: it brings the compiler with it.
-        from trunnion.steady.free.periodic_steady_states import breaks
-
-        met = resonances(span)
-        about = (met.speed[:, None] + met.width[:, None] * np.array([-1.0, 0.0, 1.0])).ravel()
-        speeds = np.union1d(np.linspace(span.start, span.high, self.effort.costly), about)
-        speeds = speeds[(speeds >= span.start) & (speeds <= span.high)]
-        motions.broken = breaks(motions, speeds)
-        return tuple(Gap(one.low, one.high, one.why) for one in motions.broken)
 
     @cached_property
     def measures(self) -> tuple[Measure, ...]:
@@ -278,7 +258,7 @@ class LoadCaseResponse:
     def _first_speeds(self) -> list[Array]:
         if self.alike is not None:
             return self.alike._first_speeds
-        return first_speeds(self.stable_pieces, resonances(self.span), self.effort.points)
+        return self._speeds_of(self.stable_pieces)
 
     @cached_property
     def first_look(self) -> OrderResponse | None:
@@ -286,6 +266,8 @@ class LoadCaseResponse:
         where there is none, or every speed takes a motion of its own."""
         if self.given or self.known is not None or self.costly or not self.stable_pieces:
             return None
+        if "_everywhere" in self.__dict__ and self.stable_pieces == self.span.pieces:
+            return self._everywhere
         try:
             return self.respond(np.concatenate(self._first_speeds))
         except (InputError, ComputationError):  # as the search then says
@@ -435,13 +417,12 @@ class LoadCaseResponse:
             return straight_ranges(self.span)
         points = self.effort.costly if self.costly else self.effort.points
         if self.swing >= SWINGS:
-            try:
-                about = self._ranges_about_motions(points)
-            except (InputError, ComputationError) as error:
-                self.not_followed.append(str(error).splitlines()[0])
-            else:
-                self.followed.append(about)
-                return about
+            given = np.array(self.given)
+            return ranges_about_motions(self.span, self.swing, points, given, partial(self._about_static_twist, points))
+        return self._about_static_twist(points)
+
+    def _about_static_twist(self, points: int) -> UnstableRanges:
+        """Of a driven line; of others about the motions that they make."""
         if self.given:
             return UnstableRanges(self._stability(np.unique(self.given)), (), 0.0, ())
         return unstable_ranges(self.span, self._stability, points=points)
@@ -456,49 +437,23 @@ class LoadCaseResponse:
         a driven line with joint angles; 0 of others, and where there is no response."""
         if self.assembly.topology.free or not has_joint_angles(self.assembly):
             return 0.0
-        first = (
-            [np.array(self.given)]
-            if self.given
-            else first_speeds(self.span.pieces, resonances(self.span), self.effort.points)
+        found = self._everywhere
+        return (
+            0.0 if found is None else float(np.nan_to_num(found.joint_rotation, nan=1.0, posinf=1.0).max(initial=0.0))
         )
+
+    @cached_property
+    def _everywhere(self) -> OrderResponse | None:
+        """The response of a driven line at speeds all over the range and at resonances, stable or not; None where there
+        is none."""
+        speeds = np.unique(self.given) if self.given else np.concatenate(self._speeds_of(self.span.pieces))
         try:
-            found = self.respond(np.unique(np.concatenate(first))).joint_rotation
-        except (InputError, ComputationError):
-            return 0.0
-        return float(np.nan_to_num(found, nan=1.0, posinf=1.0).max(initial=0.0))
+            return self.respond(speeds)
+        except (InputError, ComputationError):  # as the search then says
+            return None
 
-    @cached_property
-    def not_followed(self) -> list[str]:
-        """Why the motion of a driven line that swings is not known; none where it is."""
-        return []
-
-    @cached_property
-    def followed(self) -> list[UnstableRanges]:
-        """What was found about the periodic motion that a driven line makes; none where that was not looked at."""
-        return []
-
-    def _ranges_about_motions(self, points: int) -> UnstableRanges:
-        """Of a driven line.
-
-        Raises
-        ------
-        InputError, ComputationError : it has no such motion that all speeds share.
-        """
-        # Loaded where needed: it brings the compiler with it.
-        from trunnion.steady.free.periodic_steady_states import SteadyStatesBySpeed
-
-        if self.span.put:
-            raise InputError(FOLLOWS)
-        if self.assembly.topology.size >= LONG:
-            raise InputError(TOO_LONG)
-        motions = SteadyStatesBySpeed(self.assembly.line)
-        if motions.obstacle:
-            raise InputError(STAGES)
-        judge = partial(stability_along, self.assembly, about_steady_state=True, motions=motions)
-        if self.given:
-            return UnstableRanges(judge(np.unique(self.given)), (), 0.0, ())
-        span = replace(self.span, lost=self._lost(self.span, motions))
-        return unstable_ranges(span, judge, points=points, swing=self.swing)
+    def _speeds_of(self, pieces: tuple[SmoothRange, ...]) -> list[Array]:
+        return first_speeds(pieces, resonances(self.span), self.effort.points)
 
     @property
     def along(self) -> StabilityOverSpeed:

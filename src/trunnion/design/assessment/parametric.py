@@ -85,7 +85,7 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     here = f"at {subject.shown(speeds[at])}{case.suffix}"
     covered = _covered(case, found)
     gaps = "".join(f"; {subject.ranges([(gap.low, gap.high)])} not judged: {gap.why}" for gap in found.gaps)
-    own = _of_motion(subject, case, worst[0], worst[1], straight)
+    own = _of_motion(subject, case, found, worst[0], worst[1], straight)
     if found.ranges:
         if not case.parametric:
             fed = "negative damping, or a torque that grows with the speed, feeds it, no joint or mesh"
@@ -117,20 +117,27 @@ def parametric_stability(subject: AssessmentInput, case: LoadCaseResponse) -> It
     if status is Status.SATISFIED and subject.naming:
         proof = PROVED if not own and _proved(case) else SEARCHED
         if proof == PROVED:
-            about = " about the static twist" if case.followed else ""
+            about = " about the static twist" if found.about_steady_state else ""
             because += f"; proved for every speed of the range{about}"
     yield replace(_judged(case, status, because + own + gaps, float(share), worst, (), covered), proof=proof)
 
 
-def _of_motion(subject: AssessmentInput, case: LoadCaseResponse, growth: float, speed: float, straight: float) -> str:
+def _of_motion(
+    subject: AssessmentInput,
+    case: LoadCaseResponse,
+    found: UnstableRanges,
+    growth: float,
+    speed: float,
+    straight: float,
+) -> str:
     """What is judged of a driven line whose joints swing, and what another growth about its static twist would be; a
     clause, or nothing."""
     if not subject.naming:
         return ""
-    if case.not_followed:
-        why = case.not_followed[0]
-        return f"; about its static twist, though its joints swing by {case.swing:.2g} rad: {why}"
-    if not case.followed:
+    if found.not_followed:
+        swing = f"{np.rad2deg(case.swing):.2g}° by linear theory"
+        return f"; judged about its static twist, though its joints swing by up to {swing}: {found.not_followed}"
+    if not found.about_steady_state:
         return ""
     static = float(stability_along(case.assembly, [speed]).growth_rate[0])
     if not abs(growth - static) > NOTICED * straight:

@@ -52,12 +52,16 @@ Judge = Callable[[Array], StabilityOverSpeed]
 @dataclass(frozen=True)
 class UnstableRanges:
     """``along``: stability at all speeds looked at, rising; ``ranges``: unstable from where to where [rad/s]; ``slow``:
-    speed [rad/s] up to which the line is stable by a bound, 0 without; ``gaps``: what was not looked at."""
+    speed [rad/s] up to which the line is stable by a bound, 0 without; ``gaps``: what was not looked at;
+    ``about_steady_state``: of a driven line, whether about the periodic motion that it makes and not its static twist;
+    ``not_followed``: why not, where its joints swing."""
 
     along: StabilityOverSpeed
     ranges: tuple[tuple[float, float], ...]
     slow: float
     gaps: tuple[Gap, ...]
+    about_steady_state: bool = False
+    not_followed: str = ""
 
     @property
     def undecided(self) -> Flags:

@@ -45,8 +45,8 @@ BESIDE = 1e-6
 """Step of differences by the speed, over it."""
 CLOSE = 1e-6
 """How closely one locates where a motion ends, as a share of the speed."""
-SEVERAL = "the free line's periodic steady state folds back there, and several have one mean speed"
-NONE = "no periodic steady state of the free line was found there"
+SEVERAL = "the line's periodic steady state folds back there, and several have one mean speed"
+NONE = "no periodic steady state of the line was found there"
 
 
 @dataclass(frozen=True)
