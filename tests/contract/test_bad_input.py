@@ -2795,6 +2795,11 @@ FILES = [
     ("format 1", "bad.toml: is not valid TOML: Expected", "line 1, column 8"),
     (HEAD + JOINT + "plane = 12 deg\n", "bad.toml: is not valid TOML", "line 5, column 12"),
     ("format = 1\nformat = 1\n", "bad.toml: is not valid TOML", "line 2, column"),
+    (
+        HEAD + 'element = [\n  { type = "Disk",\n    inertia = 1 },\n]\n',
+        "bad.toml: is not valid TOML: ",
+        "write what stands in braces on one line",
+    ),
     ("a = " + "[" * 5000, "bad.toml: is not valid TOML", ""),
     (DISK, "bad.toml: format: is missing", "write format = 1 in the first line"),
     ("format = 2\n" + DISK, "bad.toml: format = 2: is a later format", "install a newer Trunnion"),

@@ -180,12 +180,21 @@ class Excitation(Record):
     @property
     def covers(self) -> str:
         """The range of its table in words, with four figures: mean torques follow from pressures."""
-        kinds = {"speeds": (SPEED, "rpm"), "torques": (TORQUE, None)}
+        return " and ".join(f"{_end(over, at[0])} to {_end(over, at[-1])}" for over, at in self.axes)
 
-        def end(over: str, value: float) -> str:
-            return str(shown(float(f"{value:.4g}") if over == "torques" else value, *kinds[over]))
+    def does_not_cover(self, over: str, value: float) -> str:
+        """That its table ends before a ``value`` of "speeds" [rad/s] or "torques" [N m], as a problem."""
+        of_disk = " of its disk" if over == "speeds" else ""
+        return f"is a table from {self.covers}, which does not cover {_shown(over, value, 5)}{of_disk}"
 
-        return " and ".join(f"{end(over, points[0])} to {end(over, points[-1])}" for over, points in self.axes)
+
+def _end(over: str, value: float) -> str:
+    return str(shown(value, SPEED, "rpm")) if over == "speeds" else _shown(over, value, 4)
+
+
+def _shown(over: str, value: float, figures: int) -> str:
+    value = float(f"{value:.{figures}g}") if over == "torques" else value
+    return str(shown(value, TORQUE) if over == "torques" else shown(value, SPEED, "rpm", figures))
 
 
 def harmonics(key: str, none: bool) -> Callable[[object], tuple[Excitation, ...]]:

@@ -87,6 +87,8 @@ def toml_of(text: str) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        if _breaks_braces(text, str(error)):
+            remedy = 'write what stands in braces on one line: { type = "Disk", inertia = "2 kg*m^2" }'
         raise InputError(f"is not valid TOML: {_cut(str(error))}", remedy=remedy) from None
     except ValueError:  # Python refuses to read numbers of more than 4300 digits
         raise InputError("is not valid TOML: a number of thousands of digits", remedy="write 1.2e4, say") from None
@@ -103,6 +105,17 @@ def _without_texts(text: str) -> str:
         closing = (found for found in _CLOSING[mark].finditer(text, opening.end()) if found.group()[0] != "\\")
         place = next((found.end() - found.group().count("\n") for found in closing), len(text))
     return "".join([*kept, text[place:]])
+
+
+def _breaks_braces(text: str, message: str) -> bool:
+    """Whether the parser stopped at the end of a line within an inline table, which has to stay on one."""
+    if not (place := re.search(r"\(at line (\d+), column (\d+)\)$", message)):
+        return False
+    lines, number, column = text.splitlines(), int(place[1]), int(place[2])
+    if not 1 <= number <= len(lines) or column <= len(lines[number - 1]):
+        return False
+    told = _without_texts(lines[number - 1])
+    return told.count("{") > told.count("}")
 
 
 def _cut(message: str) -> str:

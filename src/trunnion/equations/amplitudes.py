@@ -53,9 +53,9 @@ def _shape(law: Excitation, running: Running) -> Complex:
         if np.any(beyond(points, place)):
             apart = np.maximum(points[0] - place, place - points[-1])
             worst = place[int(np.argmax(np.where(np.isnan(apart), np.inf, apart)))]
-            asked = f"{worst * 30 / np.pi:.5g} rpm of its disk" if over == "speeds" else f"{worst:.5g} N m"
-            problem = f"is a table from {law.covers}, which does not cover {asked}"
-            raise InputError(problem, remedy="extend the table, or narrow the range of speeds")
+            raise InputError(
+                law.does_not_cover(over, float(worst)), remedy="extend the table, or narrow the range of speeds"
+            )
     phases = np.array(law.phases) if law.phases else np.zeros(len(law.amplitudes))
     values: Complex = (np.array(law.amplitudes) * np.exp(1j * phases) / (law.largest or 1.0)).astype(complex)
     (points, place), *second = read

@@ -146,7 +146,7 @@ def _over_speeds(assembly: Assembly, name: str, number: int, law: Excitation, sp
     """Of a table over speed and load the one over speed, at the load that the disk drives with."""
     load = float(-assembly.exciting_load(assembly.line.index(name), assembly.table(1, abs(speed)))[0])
     if beyond(law.torques, np.array([load]))[0]:
-        problem = f"is a table from {law.covers}, which does not cover {load:.5g} N m"
+        problem = law.does_not_cover("torques", load)
         raise InputError(problem, element=name, key=f"excitation {number}", remedy="extend the table")
     return law.at_torque(load)
 

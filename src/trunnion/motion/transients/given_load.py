@@ -163,7 +163,7 @@ def _amplitudes(name: str, rotor: Rotor, law: Numbered, torque: Array) -> Comple
     points = np.array(one.torques)
     slack = BEYOND * float(np.abs(points).max())
     if np.any(off := (torque < points[0] - slack) | (torque > points[-1] + slack)):
-        problem = f"is a table from {one.covers}, which does not cover {float(torque[off][0]):.5g} N m"
+        problem = one.does_not_cover("torques", float(torque[off][0]))
         raise InputError(problem, element=name, key=f"excitation {number}", remedy="extend the table")
     phases = np.array(one.phases) if one.phases else np.zeros(len(points))
     values = np.array(one.amplitudes) * np.exp(1j * phases)
