@@ -114,8 +114,8 @@ def _breaks_braces(text: str, message: str) -> bool:
     lines, number, column = text.splitlines(), int(place[1]), int(place[2])
     if not 1 <= number <= len(lines) or column <= len(lines[number - 1]):
         return False
-    told = _without_texts(lines[number - 1])
-    return told.count("{") > told.count("}")
+    marks = _without_texts(lines[number - 1])
+    return marks.count("{") > marks.count("}")
 
 
 def _cut(message: str) -> str:
