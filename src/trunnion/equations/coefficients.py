@@ -178,6 +178,10 @@ class Assembly:
             self._known[key] = found
         return found
 
+    def untwisted(self, table: Array) -> LineCoefficients:
+        """Coefficients about zero twist: what the nonlinear equations stand on."""
+        return self.coefficients(table, statically_twisted=False, free_play=True)
+
     @cached_property
     def _known(self) -> dict[tuple[bytes, bool, bool, bool], LineCoefficients]:
         """Coefficients of single rows: parts of one analysis ask for the same."""

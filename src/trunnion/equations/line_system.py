@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -14,13 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Array, Integers
-from trunnion.driveline import quantities
-from trunnion.driveline.dampers import ViscousDamper
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.driveline.parameters import SPEED, Parameter
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.coefficients import Assembly, assemble
+from trunnion.equations.coefficients import Assembly
 from trunnion.equations.converters import PlacedConverter, placed_converters
 from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, disk_torques, line_harmonics
@@ -29,11 +26,10 @@ from trunnion.equations.line_coefficients import LineCoefficients
 from trunnion.equations.line_regimes import line_kernel as kernel
 from trunnion.equations.line_regimes import line_regimes, released_kernel, slider_strides, staged_springs
 from trunnion.equations.loads import accelerating_loads, drive_places, drive_torques, given_shares, refuse_curves
-from trunnion.equations.released import PlacedPendulum, placed_pendulums, released, released_numbers
+from trunnion.equations.prepared_line import ANGLE_SCALE, prepared
+from trunnion.equations.released import PlacedPendulum, placed_pendulums, released_numbers
 from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.slip_clutches import PlacedClutch, placed_clutches
-from trunnion.equations.steady_base import require_tree
-from trunnion.errors import InputError, InputRemark
 from trunnion.laws.fourier import FourierLaw
 from trunnion.laws.harmonic import LONGEST_PERIOD, ROUNDING, common_rate, periods_in_common, turning
 from trunnion.laws.hooke import CrossLaw
@@ -41,9 +37,6 @@ from trunnion.laws.joint import JointLaw
 from trunnion.portable import Portable
 from trunnion.systems.system import System
 from trunnion.systems.user_functions import CFunction, from_kernel
-
-ANGLE_SCALE = 0.01
-"""The deviation [rad] that counts as one in error control."""
 
 
 @dataclass(frozen=True)
@@ -200,8 +193,8 @@ class LineSystem(Portable):
         return len(self.numbers(self.assembly.table(1, 1.0)[0]))
 
     def untwisted(self, table: Array) -> LineCoefficients:
-        """Coefficients about zero twist: what the nonlinear equations stand on."""
-        return self.assembly.coefficients(table, statically_twisted=False, free_play=True)
+        """As of ``Assembly.untwisted``."""
+        return self.assembly.untwisted(table)
 
     def numbers(
         self,
@@ -455,50 +448,6 @@ def line_system(
     swing: bool = False,
     linearised: bool = False,
 ) -> LineSystem:
-    """Prepare ``line`` at input ``speed`` [rad/s] (of a free line: the mean speed it is observed from, and which it may
-    leave; oil over frequency is then a Maxwell element). Its slip clutches stick, or slip beyond their capacity where
-    ``slips``; its centrifugal pendulums are rings on springs, or swing along their paths where they ``swing``. Unless
-    it is only to be ``linearised`` about its motion, torques that act by their tangents are said.
-
-    Raises
-    ------
-    InputError : a second prescribed speed; no spring; what ``assemble`` refuses.
-    """
-    assembly = released(assemble(in_series(line) if leaves else line).at(speed), slips=slips, swing=swing)
-    refuse_second_speed(assembly)
-    if assembly.topology.knotted:
-        require_tree(assembly, "nonlinear equations do")
-    if not assembly.topology.compliances:
-        raise InputError("has no spring, so that nothing twists", element="driveline", remedy="add a Shaft")
-    held = {name: "torque over speed by the tangent" for name, rotor in assembly.topology.rotors if rotor.tangent}
-    held |= {rub.name: "losses by the mean torque" for rub in assembly.topology.rubs}
-    for name, what in held.items() if not linearised else ():
-        at = quantities.shown(float(speed), quantities.SPEED, speed_unit(assembly.line), 5)
-        warnings.warn(InputRemark(f"{name}: equations of motion have its {what} at {at} of the input"), stacklevel=2)
+    """Prepare ``line`` at input ``speed`` [rad/s]; see ``prepared``, which refuses what has no nonlinear equations."""
+    assembly = prepared(line, speed, leaves=leaves, slips=slips, swing=swing, linearised=linearised)
     return LineSystem(assembly, float(speed), leaves)
-
-
-def in_series(line: Driveline | Assembly) -> Driveline | Assembly:
-    """The line with the oil of its dampers as Maxwell elements; itself without any."""
-    described = line if isinstance(line, Driveline) else line.stated or line.line
-    oils = {i: one for i, one in enumerate(described.elements) if isinstance(one, ViscousDamper) and one.oil}
-    if not oils:
-        return line
-    elements = tuple(oils[i].maxwell if i in oils else one for i, one in enumerate(described.elements))
-    return described.model_copy(update={"elements": elements})
-
-
-def refuse_second_speed(assembly: Assembly) -> None:
-    """Refuse a line whose two ends are both prescribed.
-
-    Raises
-    ------
-    InputError : so.
-    """
-    if sum(assembly.topology.prescribed) > 1:
-        raise InputError(
-            "a second prescribed speed has no place in the nonlinear equations",
-            element="driveline",
-            key="ConstantSpeed",
-            remedy="end the line with a Disk",
-        )

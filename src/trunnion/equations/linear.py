@@ -64,15 +64,18 @@ def stiffness_waves(topo: Topology, coefficients: LineCoefficients, tau: Array) 
     return wave
 
 
-def line_matrices(topo: Topology, coefficients: LineCoefficients, tau: Array) -> LineMatrices:
-    """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]."""
+def line_matrices(
+    topo: Topology, coefficients: LineCoefficients, tau: Array, given: GivenRotation | None = None
+) -> LineMatrices:
+    """Linearised M, C, K and forcing in physical time at input angles ``tau`` [rad]; of a tree about a motion that is
+    ``given``, by default that of rigid shafts."""
     if topo.graph:
         return _graph_matrices(topo, coefficients, tau)
     cases, times, n = len(coefficients.speed), len(tau), topo.size
     # Each entry lies in one piece over time, which is how it is filled.
     mass, damping, stiffness = (np.zeros((n, n, cases, times)) for _ in range(3))
     forcing = np.zeros((cases, times, n))
-    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing)
+    ratio, wave = put_entries(topo, coefficients, tau, mass, damping, stiffness, forcing, given)
     mass, damping, stiffness = (part.transpose(2, 3, 0, 1) for part in (mass, damping, stiffness))
     return LineMatrices(mass, damping, stiffness, forcing, ratio, wave)
 

@@ -30,7 +30,7 @@ from trunnion.equations.coefficients import Assembly, assemble, joint_laws
 from trunnion.equations.coupling_tables import refuse_torque_tables
 from trunnion.equations.harmonics import DiskTorque, LineHarmonic, MeshError, line_harmonics
 from trunnion.equations.line_regimes import staged_springs
-from trunnion.equations.line_system import refuse_second_speed
+from trunnion.equations.prepared_line import refuse_second_speed
 from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.sliders import PlacedSlider, sliders
 from trunnion.equations.slip_clutches import refuse_slip_clutches

@@ -120,6 +120,11 @@ def has_periodic_base(assembly: Assembly, table: Array | None = None) -> bool:
     return assembly.topology.free and has_joint_angles(assembly, table)
 
 
+def loaded_by_speed(assembly: Assembly) -> bool:
+    """Whether any load of the line depends on the speed."""
+    return any(rotor.loaded_by_speed for _, rotor in assembly.topology.rotors)
+
+
 def require_balance(assembly: Assembly, table: Array) -> None:
     """Refuse a free line whose torques do not add up to nothing at the rows of ``table``, and name them; and legs of a
     differential that the loads would turn against each other."""
@@ -247,7 +252,7 @@ def _remedy(assembly: Assembly, row: Array, left: float) -> str:
     station, element = _driving(assembly, row[None])
     name = assembly.line.names[element]
     remedy = f'give the driving disk, "{name}" say, drive_share = 1'
-    if any(rotor.loaded_by_speed for _, rotor in topo.rotors):
+    if loaded_by_speed(assembly):
         return remedy  # no constant torque balances at more than one speed
     needed = float(row[assembly.packed.column(element, "load_torque")]) - left / abs(float(topo.speed_ratio[station]))
     return f'{remedy}, or load_torque = "{needed:.10g} N*m"'

@@ -27,6 +27,7 @@ from trunnion.equations.loads import given_shares
 from trunnion.equations.steady_base import (
     has_joint_angles,
     imbalance,
+    loaded_by_speed,
     refuse_dragged,
     require_balance,
     torques_in_words,
@@ -50,7 +51,6 @@ from trunnion.results.variables import Attribute, Coordinate, Variable, attribut
 from trunnion.results.verdict import MEANING, Verdict
 from trunnion.steady.shooting.free_orbit import (
     kept_speed_orbit,
-    loaded_by_speed,
     require_periodic,
     torque_driven_orbit,
 )

@@ -32,7 +32,8 @@ from trunnion.equations.coefficients import Assembly
 from trunnion.equations.harmonics import line_harmonics
 from trunnion.equations.inertia_torque import inertia_torque
 from trunnion.equations.line_regimes import staged_springs
-from trunnion.equations.line_system import LineSystem, in_series, line_system
+from trunnion.equations.line_system import LineSystem, line_system
+from trunnion.equations.prepared_line import in_series
 from trunnion.equations.released import refuse_pendulums
 from trunnion.equations.steady_base import require_share
 from trunnion.errors import InputError

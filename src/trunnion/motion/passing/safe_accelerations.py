@@ -16,7 +16,8 @@ from trunnion.driveline.arguments import one_number, one_speed
 from trunnion.driveline.driveline import Driveline
 from trunnion.driveline.operating_speed import speed_unit
 from trunnion.equations.coefficients import Assembly
-from trunnion.equations.line_system import in_series, line_system
+from trunnion.equations.line_system import line_system
+from trunnion.equations.prepared_line import in_series
 from trunnion.equations.released import refuse_pendulums
 from trunnion.errors import InputError
 from trunnion.motion.passing.run_up import run_up

@@ -25,7 +25,8 @@ from trunnion.driveline.slip_clutches import SlipClutch
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.applied_torques import PlacedFriction, PlacedTorque, TorqueAxis, disk_station, time_knots
 from trunnion.equations.line_regimes import LineRegimes, line_kernel, released_kernel, watch_kernel
-from trunnion.equations.line_system import ANGLE_SCALE, LineSystem
+from trunnion.equations.line_system import LineSystem
+from trunnion.equations.prepared_line import ANGLE_SCALE
 from trunnion.laws.stages import SLIPS_BACK, SLIPS_ON, STICKS
 from trunnion.motion.simulation.converter_ends import converter_end
 from trunnion.motion.transients.lagging import held_lags, with_lags
@@ -95,9 +96,8 @@ class Stepper:
         self.lagging = [one for one in self.torques if one.lags]
         nothing = np.zeros((count, self.core.PER_APPLIED))
         nothing[:, self.core.DENOMINATOR] = 1.0
-        self.numbers = line.numbers(
-            row, known=co, applied=nothing, programs=np.concatenate([[], *programs]), lags=len(self.lagging)
-        )  # fmt: skip
+        put = np.concatenate([[], *programs])
+        self.numbers = line.numbers(row, known=co, applied=nothing, programs=put, lags=len(self.lagging))
         self.applied_at = int(self.numbers[self.core.APPLIED_AT])
         behind = self.applied_at + count * self.core.PER_APPLIED
         self.programs = [behind + sum(map(len, programs[:k])) for k in range(len(programs))]

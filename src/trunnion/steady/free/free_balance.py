@@ -4,8 +4,9 @@ harmonics.
     ẍ = a(t, x, ẋ) + T b(t, x, ẋ),    x = a₀ + Σ_k (a_k cos kbΩt + b_k sin kbΩt),    phaseᵀ a₀ = 0
 
 T is the torque of the drives beyond the balance of the loads, which keeps the mean speed; the last equation fixes the
-phase. Of a line whose input turns as prescribed neither is there. Accelerations and their slopes come from the compiled
-nonlinear equations at samples of the period; Newton's steps are taken for all speeds together.
+phase. Of a line whose input turns as prescribed neither is there. Newton's steps are taken for all speeds together:
+along the tree of a line that is nothing else (``tree_newton``), of any other with matrices of all unknowns,
+accelerations and their slopes being those of the compiled nonlinear equations at samples of the period.
 """
 
 from __future__ import annotations
@@ -14,28 +15,35 @@ from collections.abc import Callable, Sequence
 from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trunnion.arrays import Array, Flags, Places
 from trunnion.equations.aligned import rigid_rotation
 from trunnion.equations.coefficients import Assembly
+from trunnion.equations.given_rotation import GivenRotation
 from trunnion.equations.kinematics import base_motion
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.line_system import ANGLE_SCALE, LineMotion, LineSystem
+from trunnion.equations.linear import LineMatrices, line_matrices, over_mass
 from trunnion.equations.loads import drive_places, drive_torques
-from trunnion.equations.numbers_of_rows import numbers_of_rows
+from trunnion.equations.prepared_line import ANGLE_SCALE
+from trunnion.equations.released import placed_pendulums
+from trunnion.equations.sliders import sliders
+from trunnion.equations.slip_clutches import placed_clutches
 from trunnion.equations.steady_base import refuse_dragged
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.continuation.newton import solve_many
 from trunnion.numerics.harmonics import solved
-from trunnion.numerics.integration.sampled_rates import sampled_rates_of_cases
 from trunnion.numerics.memory import require_estimate
 from trunnion.numerics.threads import on_one_thread
 from trunnion.results.counts import counted
 from trunnion.steady.free import tree_newton
-from trunnion.steady.free.tree_newton import TreeNewton
+from trunnion.steady.free.tree_newton import TreeMotions, TreeNewton
 from trunnion.waiting import keep_time
+
+if TYPE_CHECKING:
+    from trunnion.equations.line_system import LineMotion, LineSystem
 
 FEWEST, MOST = 6, 48
 """Harmonics of the period kept."""
@@ -45,9 +53,6 @@ NEGLIGIBLE = 1e-10
 """Size of the outermost harmonics [rad] that is small enough."""
 CORRECTIONS, MATRICES = 8, 4
 """Newton's steps, and matrices of all unknowns that one takes."""
-LONG = 6
-"""Unknowns from which on steps along the tree cost less than matrices of all unknowns: as much at five, half at eight,
-a fifth at sixteen, whatever the harmonics."""
 MOST_NUMBERS = 4_000_000
 """Numbers of a batch of Newton's matrices."""
 
@@ -56,14 +61,14 @@ MOST_NUMBERS = 4_000_000
 class SteadyStates:
     """Motions at ``value`` (case,), speeds [rad/s] or what else ``balance.rows`` reads: ``found`` (case,), rotations
     ``rows`` (case, n, 2h + 1) [rad] as series of the period, ``torque`` (case,) [N m at the input] that drives beyond
-    the balance; ``numbers`` (case, number): what the compiled equations read, without it."""
+    the balance. ``read`` (case, number): what the compiled equations read, where that is at hand."""
 
     balance: FreeBalance
     value: Array
     found: Flags
     rows: Array
     torque: Array
-    numbers: Array
+    read: Array | None = None
 
     @cached_property
     def table(self) -> Array:
@@ -106,7 +111,12 @@ class SteadyStates:
     @cached_property
     def coefficients(self) -> LineCoefficients:
         """Of the lines, about zero twist."""
-        return self.balance.line.untwisted(self.table)
+        return self.balance.assembly.untwisted(self.table)
+
+    @cached_property
+    def numbers(self) -> Array:
+        """What the compiled equations read (case, number), without the torque that drives beyond the balance."""
+        return self.balance.numbers(self.table, self.coefficients) if self.read is None else self.read
 
     @property
     def states(self) -> Array:
@@ -114,14 +124,52 @@ class SteadyStates:
         both = np.concatenate([self.rows, fourier.rate(self.rows, 1.0) * self.rate[:, None, None]], axis=1)
         return np.ascontiguousarray(fourier.samples(both, self.times).transpose(0, 2, 1))
 
-    def sampled(self, more: float = 0.0) -> tuple[Array, Array]:
-        """Rates (case, time, 2n) and their slopes (case, time, 2n, 2n) by the states, under ``more`` torque; NaN if
-        none."""
+    def sampled(self) -> tuple[Array, Array]:
+        """Accelerations (case, time, n) [rad/s²] and their slopes (case, time, n, 2n) by the states at ``tau``; NaN
+        where there are none.
+
+        Of a line that is a tree they come from its matrices, with slopes as close as the motion is balanced; of any
+        other from the compiled equations.
+        """
+        n = len(self.balance.turn)
+        if not self.balance.of_tree:
+            rates, slopes = self._compiled(0.0)
+            return rates[..., n:], slopes[:, :, n:]
+        m = self._matrices
+        both = over_mass(m, np.concatenate([m.stiffness, m.damping, m.forcing[..., None]], axis=-1))
+        bend = self._given.at(self.tau)[2] * (self.speed**2)[:, None, None]
+        return bend + both[..., -1], -both[..., : 2 * n]
+
+    def by_drive(self) -> Array:
+        """What one N m more of the drives adds to the accelerations (case, time, n)."""
+        if self.balance.of_tree:
+            torques = self.balance.newton(self.table).driven(self.tau, self._given)
+            return np.asarray(over_mass(self._matrices, torques[..., None])[..., 0])
+        n = len(self.balance.turn)
+        return np.asarray((self._compiled(1.0)[0] - self._compiled(0.0)[0])[..., n:])
+
+    @cached_property
+    def _given(self) -> GivenRotation:
+        """The motions as what a tree is linearised about."""
+        return self.balance.newton(self.table).given(TreeMotions(self.rows, self.torque, self.torque))
+
+    @property
+    def _matrices(self) -> LineMatrices:
+        """Of a tree along the motions."""
+        return line_matrices(self.balance.assembly.topology, self.coefficients, self.tau, self._given)
+
+    def _compiled(self, more: float) -> tuple[Array, Array]:
+        """Rates (case, time, 2n) and their slopes (case, time, 2n, 2n) of the compiled equations under ``more`` torque;
+        NaN if none."""
+        from trunnion.numerics.integration.sampled_rates import sampled_rates_of_cases
+
         times = self.tau / self.speed[:, None]
         return sampled_rates_of_cases(self.balance.address, times, self.states, self.driven(more))
 
     def observed(self) -> LineMotion:
         """Twist, torque (case, time, spring) and rotation (case, time, station) along the motions."""
+        from trunnion.equations.line_system import LineMotion
+
         each = [
             self.balance.line.observed(self.tau / speed, states, numbers)
             for speed, states, numbers in zip(self.speed, self.states, self.driven(0.0), strict=True)
@@ -130,9 +178,8 @@ class SteadyStates:
 
     def part(self, at: slice) -> SteadyStates:
         """Some of them."""
-        return SteadyStates(
-            self.balance, self.value[at], self.found[at], self.rows[at], self.torque[at], self.numbers[at]
-        )
+        read = None if self.read is None else self.read[at]
+        return SteadyStates(self.balance, self.value[at], self.found[at], self.rows[at], self.torque[at], read)
 
     def driven(self, more: float) -> Array:
         """What the compiled equations read (case, number), with ``more`` torque than the motions have."""
@@ -146,10 +193,12 @@ class SteadyStates:
         return self.balance.line.drive_numbers(self.table)
 
 
-def of_tree(line: LineSystem) -> bool:
+def of_tree(assembly: Assembly) -> bool:
     """Whether the entries of a tree are all that a line's equations have about any motion."""
-    topo, co = line.assembly.topology, line.untwisted(line.assembly.table(1, 1.0))
-    acting = topo.graph or topo.lost or topo.rubs or topo.drags or line.sliders or line.clutches or line.pendulums
+    topo, table = assembly.topology, assembly.table(1, 1.0)
+    row, co = table[0], assembly.untwisted(table)
+    parts = sliders(assembly.packed, topo, row) or placed_clutches(assembly, row) or placed_pendulums(assembly, row)
+    acting = topo.graph or topo.lost or topo.rubs or topo.drags or parts
     return not (acting or co.waves or co.across or co.loss.any())
 
 
@@ -169,11 +218,16 @@ class FreeBalance:
         self.phase = np.eye(topo.size)[first]
         self.fastest = max(1, int(np.ceil(max(float(rate) for rate in topo.rates) * period / (2 * np.pi) - 1e-9)))
         self.fewest = max(FEWEST, 3 * self.fastest)
-        self.line = LineSystem(assembly, 1.0)
         self.weight = np.ones(2 * topo.size)
         self.rows: Rows = self._at_speeds
-        self.of_tree = of_tree(self.line)
-        self.along_tree = topo.size >= LONG and self.of_tree
+        self.of_tree = of_tree(assembly)
+
+    @cached_property
+    def line(self) -> LineSystem:
+        """The compiled equations: loaded where they are needed, as they bring the compiler with them."""
+        from trunnion.equations.line_system import LineSystem
+
+        return LineSystem(self.assembly, 1.0)
 
     @property
     def address(self) -> int:
@@ -188,6 +242,8 @@ class FreeBalance:
 
     def numbers(self, table: Array, co: LineCoefficients) -> Array:
         """What the compiled equations read (case, number)."""
+        from trunnion.equations.numbers_of_rows import numbers_of_rows
+
         return numbers_of_rows(self.line, table, co)
 
     def _at_speeds(self, speed: Array) -> Array:
@@ -205,8 +261,10 @@ class FreeBalance:
                 self._batch(value[i : i + batch_size], h, None if guess is None else guess[i : i + batch_size])
                 for i in range(0, len(value), batch_size)
             ]
-        keys = ("value", "found", "rows", "torque", "numbers")
-        return SteadyStates(self, *(np.concatenate([getattr(part, key) for part in parts]) for key in keys))
+        keys = ("value", "found", "rows", "torque")
+        value, found, rows, torque = (np.concatenate([getattr(part, key) for part in parts]) for key in keys)
+        read = [part.read for part in parts if part.read is not None]
+        return SteadyStates(self, value, found, rows, torque, np.concatenate(read) if read else None)
 
     def require_time(self, h: int, many: int) -> None:
         """Refuse so ``many`` motions of ``h`` harmonics where they would not end, or fill the memory.
@@ -216,7 +274,7 @@ class FreeBalance:
         InputError : says how long they would take, and how much memory.
         """
         size = len(self.turn)
-        if self.along_tree:  # no more than the response does along the tree
+        if self.of_tree:  # no more than the response does along the tree
             return
         unknowns = size * (2 * h + 1) + 1
         seconds, memory = many * (1.5e-9 * unknowns**3 + 3e-7 * unknowns**2), MATRICES * 8.0 * unknowns**2
@@ -225,19 +283,20 @@ class FreeBalance:
 
     def _batch(self, value: Array, h: int, guess: Array | None) -> SteadyStates:
         table = self.rows(value)
-        speed, co = table[:, 0], self.line.untwisted(table)
-        numbers, first = self.numbers(table, co), self.rigid(table, h, co) if guess is None else guess
-        unit = self.torque_unit(co)
-        if self.along_tree:
+        speed, co = table[:, 0], self.assembly.untwisted(table)
+        first, unit = self.rigid(table, h, co) if guess is None else guess, self.torque_unit(co)
+        if self.of_tree:
             motions_found, found = tree_newton.solved(
                 lambda some: self.newton(table[some]), first, unit, ANGLE_SCALE, tolerance=CLOSED, most=CORRECTIONS
             )
             rows = np.where(found[:, None, None], motions_found.rows, 0.0)
-            return SteadyStates(self, value, found, rows, np.where(found, motions_found.torque, 0.0), numbers)
+            return SteadyStates(self, value, found, rows, np.where(found, motions_found.torque, 0.0))
+
+        read = self.numbers(table, co)
 
         def motions(cases: Places, z: Array, found: Flags) -> SteadyStates:
             rows = ANGLE_SCALE * z[:, :-1].reshape(len(z), *first.shape[1:])
-            return SteadyStates(self, value[cases], found, rows, unit[cases] * z[:, -1], numbers[cases])
+            return SteadyStates(self, value[cases], found, rows, unit[cases] * z[:, -1], read[cases])
 
         def equations(cases: Places, z: Array) -> tuple[Array, Array]:
             return self._equations(motions(cases, z, np.zeros(len(z), dtype=bool)), unit[cases])
@@ -267,8 +326,7 @@ class FreeBalance:
     def _moved(self, motions: SteadyStates, table: Array, unit: Array) -> Array:
         """What is missing of the balance of ``motions`` in lines of other packed numbers."""
         other = self.along(lambda value: table)
-        numbers = self.numbers(table, self.line.untwisted(table))
-        moved = SteadyStates(other, motions.value, motions.found, motions.rows, motions.torque, numbers)
+        moved = SteadyStates(other, motions.value, motions.found, motions.rows, motions.torque)
         return self._missing(moved, unit, moved.sampled()[0])
 
     def torque_unit(self, co: LineCoefficients) -> Array:
@@ -283,17 +341,17 @@ class FreeBalance:
         if self.free:
             drive = drive_torques(topo, drive_places(topo, self.assembly.packed.column, table), ones)
         held = int(self.phase.argmax()) if self.free else None
-        return TreeNewton(topo, self.line.untwisted(table), self.period, drive, held)
+        return TreeNewton(topo, self.assembly.untwisted(table), self.period, drive, held)
 
     def _equations(self, motions: SteadyStates, unit: Array) -> tuple[Array, Array]:
         """What is missing of the balance and of the phase (case, unknowns), and its derivative by the rows in units of
         ``ANGLE_SCALE`` and by the torque in those of ``unit`` (case,)."""
         n, h, rate = len(self.turn), motions.h, motions.rate
         cases, wide = len(rate), 2 * h + 1
-        rates, slopes = motions.sampled()
+        felt, slopes = motions.sampled()
         speed = motions.speed
         by_speed = np.repeat([-1.0 / speed**2, rate / speed**2], n, axis=0).T[:, None, None]
-        both = fourier.product_blocks(slopes[..., n:, :] * by_speed, h)
+        both = fourier.product_blocks(slopes * by_speed, h)
         matrix = both[..., :n, :].copy()
         fourier.add_rate(matrix, both[..., n:, :])
         d = fourier.rate_matrix(h, 1.0)
@@ -301,22 +359,21 @@ class FreeBalance:
         size = n * wide
         whole = np.zeros((cases, size + 1, size + 1))
         whole[:, :size, :size] = matrix.reshape(cases, size, size)
-        missing = self._missing(motions, unit, rates)
+        missing = self._missing(motions, unit, felt)
         if not self.free:  # no torque is missing
             whole[:, size, size] = 1.0
             return missing, whole
-        along = (motions.sampled(1.0)[0] - rates)[..., n:].transpose(0, 2, 1)
-        whole[:, :size, size] = -fourier.rows_of(along, h).reshape(cases, size) * (
+        whole[:, :size, size] = -fourier.rows_of(motions.by_drive().transpose(0, 2, 1), h).reshape(cases, size) * (
             unit / (ANGLE_SCALE * speed**2)
         )[:, None]  # fmt: skip
         whole[:, size, :size:wide] = self.phase / np.linalg.norm(self.phase)
         return missing, whole
 
-    def _missing(self, motions: SteadyStates, unit: Array, rates: Array) -> Array:
-        """The first of these, of motions with ``rates`` (case, time, 2n)."""
-        n, h, rate = len(self.turn), motions.h, motions.rate
+    def _missing(self, motions: SteadyStates, unit: Array, felt: Array) -> Array:
+        """The first of these, of motions with the accelerations ``felt`` (case, time, n)."""
+        h, rate = motions.h, motions.rate
         inertial = fourier.rate(fourier.rate(motions.rows, 1.0), 1.0) * (rate**2)[:, None, None]
-        left = inertial - fourier.rows_of(rates[..., n:].transpose(0, 2, 1), h)
+        left = inertial - fourier.rows_of(felt.transpose(0, 2, 1), h)
         balance = left.reshape(len(rate), -1) / (ANGLE_SCALE * motions.speed**2)[:, None]
         if not self.free:
             return np.column_stack([balance, motions.torque / unit])

@@ -16,7 +16,7 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.coefficients import Assembly
 from trunnion.equations.given_rotation import GivenRotation
 from trunnion.equations.line_coefficients import LineCoefficients
-from trunnion.equations.line_system import ANGLE_SCALE
+from trunnion.equations.prepared_line import ANGLE_SCALE
 from trunnion.equations.steady_base import require_balance
 from trunnion.errors import ComputationError
 from trunnion.numerics import harmonics as fourier
@@ -61,7 +61,7 @@ class LongSteadyState:
     @property
     def coefficients(self) -> LineCoefficients:
         """The numbers of the line, untwisted."""
-        return self.curve.balance.line.untwisted(self.table)
+        return self.assembly.untwisted(self.table)
 
     @property
     def swing(self) -> float:
@@ -82,7 +82,6 @@ def long_steady_state(line: Driveline, speed: float, least: int) -> LongSteadySt
     if curve.unexcited.topology.size < least or curve.obstacle or not curve.balance.of_tree:
         return None
     balance, at = curve.balance, np.array([speed])
-    balance.along_tree = True
     require_balance(balance.assembly, balance.assembly.table(1, speed))
     motions = curve.at_all(at)
     if leads_elsewhere(balance, motions):

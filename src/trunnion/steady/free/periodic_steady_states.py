@@ -12,7 +12,7 @@ speed, and which of them runs depends on how one got there; where the first fold
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -24,14 +24,14 @@ from trunnion.driveline.driveline import Driveline
 from trunnion.equations.aligned import aligned_matrices
 from trunnion.equations.coefficients import Assembly, assemble
 from trunnion.equations.harmonics import unexcited
-from trunnion.equations.line_system import line_system
 from trunnion.equations.linear_clutches import mean_by_load, with_mean_clutches
+from trunnion.equations.prepared_line import prepared, with_stages
+from trunnion.equations.steady_base import loaded_by_speed
 from trunnion.equations.topology import require_period
 from trunnion.numerics import harmonics as fourier
 from trunnion.numerics.harmonics import doubled
 from trunnion.numerics.spectrum import along, real_positive
 from trunnion.steady.free.free_balance import MOST, MOST_NUMBERS, FreeBalance, SteadyStates
-from trunnion.steady.shooting.free_orbit import loaded_by_speed
 
 ALIKE = 1e-6
 """Difference [rad] of two motions that are the same."""
@@ -161,8 +161,8 @@ def _about(motions: SteadyStates) -> tuple[Complex, Array, Array]:
     (case, 2n), in energy-like units."""
     balance, speed = motions.balance, motions.speed
     n = len(balance.turn)
-    rates, slopes = motions.sampled()
-    spectrum = np.fft.rfft(slopes[:, :, n:], axis=1)[:, :-1] / motions.times
+    felt, slopes = motions.sampled()
+    spectrum = np.fft.rfft(slopes, axis=1)[:, :-1] / motions.times
     root = np.sqrt(aligned_matrices(balance.assembly.topology, motions.coefficients).mass)
     ratio = root[:, :, None] / root[:, None, :]
     stiffness = -spectrum[:, 0, :, :n].real * ratio / (speed**2)[:, None, None]
@@ -173,7 +173,7 @@ def _about(motions: SteadyStates) -> tuple[Complex, Array, Array]:
     a[..., n:, n:] = spectrum[..., n:] * (ratio / speed[:, None, None])[:, None]
     scale = np.concatenate([root, root / unit[:, None]], axis=1)
     over = speed[:, None]
-    shift = np.concatenate([rates[:, 0, :n] / over + balance.turn, rates[:, 0, n:] / over**2], axis=1) * scale
+    shift = np.concatenate([motions.states[:, 0, n:] / over + balance.turn, felt[:, 0] / over**2], axis=1) * scale
     drift = np.concatenate([np.zeros(n), balance.turn]) * scale
     return a, shift, drift
 
@@ -186,13 +186,12 @@ class KnownSteadyState:
     resolved: bool
     rows: Array
     torque: float
-    numbers: Array
 
     @classmethod
     def of(cls, motions: SteadyStates, i: int | np.signedinteger) -> KnownSteadyState:
         """One of several."""
         found, resolved = bool(motions.found[i]), bool(motions.resolved[i])
-        return cls(found, resolved, motions.rows[i], float(motions.torque[i]), motions.numbers[i])
+        return cls(found, resolved, motions.rows[i], float(motions.torque[i]))
 
     @property
     def h(self) -> int:
@@ -223,6 +222,42 @@ def apart(one: Array, other: Array) -> float:
     return float(np.abs(fourier.resized(one, h) - fourier.resized(other, h))[:, 1:].max())
 
 
+@dataclass
+class FollowedMotion:
+    """A motion on its way along a curve: where it is and leads (``end``), the next step, and by how much its rows
+    (n, 2h + 1) change over that."""
+
+    motion: KnownSteadyState
+    at: float
+    end: float
+
+    def __post_init__(self) -> None:
+        self._step, self._slope = self.end - self.at, np.zeros_like(self.motion.rows)
+        self.over = self.at == self.end
+
+    @property
+    def to(self) -> float:
+        """Where the next step leads."""
+        return self.end if abs(self.end - self.at) <= abs(self._step) else self.at + self._step
+
+    @property
+    def expected(self) -> Array:
+        """The motion there as the last two lead to it."""
+        return np.asarray(self.motion.rows + self._slope * (self.to - self.at))
+
+    def go(self, motion: KnownSteadyState) -> None:
+        """Take the step, which leads to ``motion``; the next one is twice as long."""
+        to, taken = self.to, self.to - self.at
+        self._slope = (motion.rows - fourier.resized(self.motion.rows, motion.h)) / taken
+        self.at, self.motion, self._step = to, motion, 2 * taken
+        self.over = to == self.end
+
+    def shorten(self, finest: float) -> None:
+        """Halve the next step: the walk is over where it becomes less than ``finest``."""
+        self._step = (self.to - self.at) / 2
+        self.over = abs(self._step) < finest
+
+
 class SteadyStateCurve:
     """The motions along one parameter, each value solved once. Phases count from zero rotation of the input."""
 
@@ -239,7 +274,7 @@ class SteadyStateCurve:
 
     def by_speed(self, table: Array) -> Flags:
         """Whether any torque depends on the speed at rows of packed numbers (case,)."""
-        co = self.balance.line.untwisted(table)
+        co = self.balance.assembly.untwisted(table)
         return np.asarray(co.viscous.any(axis=1) | co.quadratic.any(axis=1))
 
     def at_all(self, speeds: Array) -> SteadyStates:
@@ -253,7 +288,6 @@ class SteadyStateCurve:
             np.array([one.found for one in known]),
             np.stack([fourier.resized(one.rows, h) for one in known]),
             np.array([one.torque for one in known]),
-            np.stack([one.numbers for one in known]),
         )
 
     def _at(self, speed: float) -> KnownSteadyState:
@@ -268,38 +302,41 @@ class SteadyStateCurve:
         further = faster.solve(np.array([speed]), one.h, one.rows[None])
         return float(further.torque[0] - one.torque) if further.found[0] else 0.0
 
-    def continued(
-        self, motion: KnownSteadyState, begin: float, end: float, leap: float = LEAP
-    ) -> tuple[float, KnownSteadyState]:
-        """How far a ``motion`` at ``begin`` goes on towards ``end`` [rad/s], and what it is there: each step starts
-        where the last two lead to, and ends near that, within the share ``leap`` of its swing."""
-        at, step = begin, end - begin
-        slope = np.zeros_like(motion.rows)
-        while at != end:
-            to = end if abs(end - at) <= abs(step) else at + step
-            further = self._led_to(to, motion, slope * (to - at), leap)
-            if further is None:
-                step = (to - at) / 2
-                if abs(step) < self._finest(at):
-                    break
-            else:
-                slope = (further.rows - fourier.resized(motion.rows, further.h)) / (to - at)
-                at, motion, step = to, further, 2 * (to - at)
-        return at, motion
+    def continued(self, walks: Sequence[FollowedMotion], leap: float = LEAP) -> list[tuple[float, KnownSteadyState]]:
+        """How far motions go on towards where each of ``walks`` leads, and what they are there: every step starts where
+        the last two lead to, and ends near that, within the share ``leap`` of the motion's swing. All take their steps
+        together."""
+        left = [walk for walk in walks if not walk.over]
+        while left:
+            further = self._led_to(left, leap)
+            for walk, motion in zip(left, further, strict=True):
+                if motion is None:
+                    walk.shorten(self._finest(walk.at))
+                else:
+                    walk.go(motion)
+            left = [walk for walk in left if not walk.over]
+        return [(walk.at, walk.motion) for walk in walks]
 
-    def _led_to(self, speed: float, motion: KnownSteadyState, change: Array, leap: float) -> KnownSteadyState | None:
-        """The motion at ``speed`` that Newton's steps from ``motion`` and its ``change`` (n, 2h + 1) lead to, with as
-        many harmonics as it needs; None where they lead nowhere, or so far that it is another."""
-        guess = expected = motion.rows + change
-        for h in [one for one in doubled(self.balance.fewest, MOST) if one >= motion.h]:
-            found = self.balance.solve(np.array([speed]), h, fourier.resized(guess, h)[None])
-            if not found.found[0]:
-                return None
-            if found.resolved[0]:
-                further = KnownSteadyState.of(found, 0)
-                return further if apart(further.rows, expected) <= leap * max(motion.swing, ALIKE) else None
-            guess = found.rows[0]
-        return None
+    def _led_to(self, walks: list[FollowedMotion], leap: float) -> list[KnownSteadyState | None]:
+        """The motions that Newton's steps from where walks are expected next lead to, with as many harmonics as each
+        needs; None where they lead nowhere, or so far that it is another."""
+        expected = [walk.expected for walk in walks]
+        guess, found = dict(enumerate(expected)), dict[int, KnownSteadyState]()
+        for h in doubled(self.balance.fewest, MOST):
+            which = [i for i in guess if walks[i].motion.h <= h]
+            if not which:
+                continue
+            start = np.stack([fourier.resized(guess[i], h) for i in which])
+            reached = self.balance.solve(np.array([walks[i].to for i in which]), h, start)
+            for k, i in enumerate(which):
+                if reached.found[k] and not reached.resolved[k]:
+                    guess[i] = reached.rows[k]
+                    continue
+                del guess[i]
+                near = leap * max(walks[i].motion.swing, ALIKE)
+                if reached.found[k] and apart(reached.rows[k], expected[i]) <= near:
+                    found[i] = KnownSteadyState.of(reached, k)
+        return [found.get(i) for i in range(len(walks))]
 
     def _solve(self, speeds: Array) -> None:
         """From rigid shafts, where that leads nowhere from the nearest motion found; harmonics doubled until they are
@@ -324,7 +361,7 @@ class SteadyStateCurve:
         if any(one.low < speed < one.high for one in self.broken):
             return
         for begin, start in self._about(speed):
-            reached, motion = self.continued(start, begin, speed)
+            reached, motion = self.continued([FollowedMotion(start, begin, speed)])[0]
             if reached == speed:
                 self.known[speed] = motion
                 return
@@ -360,7 +397,7 @@ class SteadyStateCurve:
             one = self.balance.solve(motions.value[[i]], motions.h, rows[[near]])
             found[i], rows[i], torque[i] = one.found[0], one.rows[0], one.torque[0]
             lost = np.delete(lost, next_to)
-        return SteadyStates(self.balance, motions.value, found, rows, torque, motions.numbers)
+        return SteadyStates(self.balance, motions.value, found, rows, torque)
 
 
 class SteadyStatesBySpeed(SteadyStateCurve):
@@ -375,7 +412,7 @@ class SteadyStatesBySpeed(SteadyStateCurve):
         """Why there is no balance of smooth equations for all speeds; empty where there is."""
         if mean_by_load(self.line) and loaded_by_speed(assemble(unexcited(self.line))):
             return "the mean of its clutch changes with the speed besides"
-        if line_system(self.unexcited, 1.0, linearised=True).system.regimes is not None:
+        if with_stages(prepared(self.unexcited, 1.0, linearised=True)):
             return "it has stages or play besides"
         return ""
 
@@ -442,7 +479,7 @@ class BranchWalk:
 
     def outside(self, speed: float, end: float) -> Iterator[Break]:
         """What lies between the outermost motion found and the end of the range."""
-        last = self._continued(speed, end)
+        last = self._continued([(speed, end)])[0]
         if last != end:
             yield Break(min(last, end), max(last, end), NONE)
 
@@ -458,10 +495,11 @@ class BranchWalk:
 
     def between(self, pairs: list[tuple[float, float]]) -> Iterator[Break]:
         """What lies between neighbours of which neither leads to the other."""
-        for a, b in pairs:
-            up = self._continued(a, b)
-            down = a if up == b else self._continued(b, a)
-            if up != b and down != a:
+        reached = zip(pairs, self._continued(pairs), strict=True)
+        lost = [(pair, up) for pair, up in reached if up != pair[1]]
+        back = self._continued([(b, a) for (a, b), _ in lost])
+        for ((a, _), up), down in zip(lost, back, strict=True):
+            if down != a:
                 yield Break(min(up, down), max(up, down), SEVERAL if up > down else NONE)
 
     def with_outer_motions(self, found: Break, speeds: list[float]) -> Break:
@@ -470,7 +508,7 @@ class BranchWalk:
         below = max((speed for speed in speeds if speed < found.low), default=found.low)
         above = min((speed for speed in speeds if speed > found.high), default=found.high)
         for begin, fold in ((below, found.low), (above, found.high)):
-            reached, motion = self.solved.continued(self.solved.known[begin], begin, fold)
+            reached, motion = self.solved.continued([FollowedMotion(self.solved.known[begin], begin, fold)])[0]
             if reached == fold:
                 self.solved.known[fold] = motion
         return found
@@ -492,14 +530,24 @@ class BranchWalk:
                 found[i] = bool(good)
         return found
 
-    def _continued(self, begin: float, aim: float) -> float:
-        """How far the motion at ``begin`` goes on: ``aim`` where it leads to the one known there, else as far as it
-        goes, past that speed too where the one known there is another."""
+    def _continued(self, ways: list[tuple[float, float]]) -> list[float]:
+        """How far the motions at the first of each pair of speeds go on towards the second: that where it leads to the
+        one known there, else as far as it goes, past that speed too where the one known there is another."""
         known = self.solved.known
-        at, motion = self.solved.continued(known[begin], begin, aim, self.leap)
-        goal = known.get(aim)
-        if at == aim and goal is not None and goal.settled and apart(motion.rows, goal.rows) > ALIKE:
-            at, motion = self.solved.continued(motion, aim, self.high if aim > begin else self.low, self.leap)
-        if at not in known or not known[at].settled:
-            known[at] = motion
-        return at
+        walks = [FollowedMotion(known[begin], begin, aim) for begin, aim in ways]
+        found = self.solved.continued(walks, self.leap)
+        others = [i for i, way in enumerate(ways) if self._meets_another(*found[i], way[1])]
+        past = [
+            FollowedMotion(found[i][1], ways[i][1], self.high if ways[i][1] > ways[i][0] else self.low) for i in others
+        ]
+        for i, one in zip(others, self.solved.continued(past, self.leap), strict=True):
+            found[i] = one
+        for at, motion in found:
+            if at not in known or not known[at].settled:
+                known[at] = motion
+        return [at for at, _ in found]
+
+    def _meets_another(self, at: float, motion: KnownSteadyState, aim: float) -> bool:
+        """Whether a motion that leads as far as ``aim`` is another one than that known there."""
+        goal = self.solved.known.get(aim)
+        return at == aim and goal is not None and goal.settled and apart(motion.rows, goal.rows) > ALIKE

@@ -84,14 +84,17 @@ class TreeNewton:
         matrices = tree_matrices(self.topo, self.co, tau, given)
         rate = 2 * np.pi * self.co.speed / self.period
         hill = TreeHill(self.topo, matrices, np.zeros((len(rate), len(self.topo.compliances))), rate)
-        both = [np.fft.fft(part, axis=1) / times for part in (matrices.forcing, self._driven(tau, given))]
+        both = [np.fft.fft(part, axis=1) / times for part in (matrices.forcing, self.driven(tau, given))]
         forcing, driven = (np.ascontiguousarray(np.moveaxis(part, 2, 0)) for part in both)
         return forcing, hill, driven
 
-    def _driven(self, tau: Array, given: GivenRotation) -> Array:
+    def driven(self, tau: Array, given: GivenRotation) -> Array:
         """Torques (case, time, n) that one N m of the drives puts on the unknowns."""
-        motion, topo = base_motion(self.topo, self.co, tau, given=given), self.topo
+        topo = self.topo
         found = np.zeros((len(self.drive), len(tau), topo.size))
+        if not self.drive.any():
+            return found
+        motion = base_motion(topo, self.co, tau, given=given)
         sense = np.sign(topo.mean_speeds)
         for s in np.flatnonzero(self.drive.any(axis=0)).tolist():
             i = topo.coordinate[topo.group_of(s)]

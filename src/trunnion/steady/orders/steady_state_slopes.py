@@ -32,12 +32,10 @@ class StateSlopes:
     @classmethod
     def of(cls, motions: SteadyStates) -> StateSlopes:
         """Along the motions."""
-        n, times = len(motions.balance.turn), motions.times
-        rates, slopes = motions.sampled()
-        drive = motions.sampled(more=1.0)[0] - rates
+        times = motions.times
         return cls(
-            np.fft.fft(slopes[:, :, n:], axis=1) / times,
-            np.fft.fft(drive[..., n:], axis=1) / times,
+            np.fft.fft(motions.sampled()[1], axis=1) / times,
+            np.fft.fft(motions.by_drive(), axis=1) / times,
             motions.balance.phase,
             motions.rate,
         )

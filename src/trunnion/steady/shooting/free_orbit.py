@@ -21,9 +21,9 @@ from trunnion.arrays import Array
 from trunnion.driveline.elements import Loaded
 from trunnion.driveline.parameters import SPEED
 from trunnion.equations.aligned import rigid_rotation
-from trunnion.equations.coefficients import Assembly, joint_laws
+from trunnion.equations.coefficients import joint_laws
 from trunnion.equations.line_system import LineSystem
-from trunnion.equations.steady_base import require_balance, require_share
+from trunnion.equations.steady_base import loaded_by_speed, require_balance, require_share
 from trunnion.errors import InputError
 from trunnion.numerics.integration.integration import IntegrationEnd
 from trunnion.steady.shooting.periodic_orbit import (
@@ -192,11 +192,6 @@ def _nonuniform(line: LineSystem, system: System) -> bool:
     """Whether any joint of the line is bent in ``system``."""
     table = np.array([[system.parameters[label] for label in line.assembly.packed.labels]])
     return any(law.nonuniform for law in joint_laws(line.assembly, table))
-
-
-def loaded_by_speed(assembly: Assembly) -> bool:
-    """Whether any load of the line depends on the speed."""
-    return any(rotor.loaded_by_speed for _, rotor in assembly.topology.rotors)
 
 
 def torque_scale(line: LineSystem) -> float:
